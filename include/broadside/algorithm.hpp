@@ -1,0 +1,73 @@
+// What the library knows of an algorithm: its description, how to make one from a spec, and the list of all of them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/spec.hpp"
+
+namespace broadside {
+
+/// The spec that find_pairs() and World use unless told otherwise.
+inline constexpr std::string_view default_algorithm = "grid";
+
+/// Where an algorithm comes from.
+enum class AlgorithmKind { own, paper, peer };
+
+/// "own", "paper" or "peer".
+std::string_view name(AlgorithmKind kind) noexcept;
+
+template <int D>
+using MakeFinder = std::function<std::unique_ptr<PairFinder<D>>(const Settings&)>;
+template <int D>
+using MakeTracker = std::function<std::unique_ptr<PairTracker<D>>(const Settings&)>;
+
+/// A broad-phase algorithm, described. One's own is made the same way as the library's: see examples/own_algorithm.
+struct Algorithm {
+  std::string name;     ///< as in a spec: lower case, digits and underscores
+  std::string summary;  ///< one line
+  std::string source;   ///< the paper, book or program it is from
+  AlgorithmKind kind = AlgorithmKind::own;
+  std::string version{};  ///< of the library behind it; empty for what is part of Broadside
+  std::vector<Tunable> tunables{};
+
+  MakeFinder<2> finder_2d{};  ///< empty where the algorithm does not do that dimension
+  MakeFinder<3> finder_3d{};
+  MakeTracker<2> tracker_2d{};  ///< empty where a DiffTracker over the finder is what tracks
+  MakeTracker<3> tracker_3d{};
+
+  bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
+
+  /// Whether it does `dimension`.
+  bool has_dimension(int dimension) const { return dimension == 2 ? bool(finder_2d) : dimension == 3 && bool(finder_3d); }
+};
+
+/// The library's algorithms: its own, then the paper's, in a fixed order. Thread-safe.
+std::span<const Algorithm> algorithms();
+
+/// The algorithm called `name` among `among`, or a null pointer.
+const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
+
+/// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at.
+/// Throws InvalidSpec if a value is wrong or the algorithm does not do D dimensions.
+template <int D>
+std::unique_ptr<PairFinder<D>> make_finder(const Algorithm& algorithm, const Spec& spec);
+
+/// Likewise a tracker: the algorithm's own, or a DiffTracker over its finder.
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Algorithm& algorithm, const Spec& spec);
+
+/// Makes a finder or a tracker of one of the library's algorithms, from a spec such as "grid:cell=2.5".
+/// Throws InvalidSpec, naming the algorithms there are, if there is none of that name.
+template <int D>
+std::unique_ptr<PairFinder<D>> make_finder(std::string_view spec);
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(std::string_view spec);
+
+}  // namespace broadside

@@ -1,0 +1,15 @@
+// Everything of the public library in one include.
+#pragma once
+
+// IWYU pragma: begin_exports
+#include "broadside/algorithm.hpp"
+#include "broadside/box.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
+#include "broadside/version.hpp"
+#include "broadside/world.hpp"
+// IWYU pragma: end_exports

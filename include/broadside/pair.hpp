@@ -1,0 +1,78 @@
+// Ids of boxes, pairs of ids, and PairSink: where an algorithm writes the pairs it finds.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace broadside {
+
+/// A box's place in the array that was handed in, counted from 0.
+enum class BoxId : std::uint32_t {};
+
+/// The array index that `id` stands for.
+constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
+
+/// Two different boxes; first < second.
+struct Pair {
+  BoxId first;
+  BoxId second;
+
+  friend constexpr auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+/// A pair as one number that orders as pairs do: first in the high half, second in the low.
+constexpr std::uint64_t key(Pair pair) noexcept {
+  return std::uint64_t{index(pair.first)} << 32 | index(pair.second);
+}
+
+/// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
+///
+/// PairFinder and PairTracker flush the sink they were given before they return. One thread at a time.
+class PairSink {
+ public:
+  /// The most pairs room() can be asked for at once.
+  static constexpr std::size_t max_room = 512;
+
+  virtual ~PairSink() = default;
+
+  /// Writes the pair of two different boxes, in either order.
+  void add(BoxId a, BoxId b) {
+    if (used_ == buffer_.size()) flush();
+    buffer_[used_++] = a < b ? Pair{a, b} : Pair{b, a};
+  }
+
+  /// Space for `count` <= max_room pairs, which a kernel writes at once and then commits. What is written there must
+  /// have first < second. The pointer holds until the next call of any member.
+  Pair* room(std::size_t count) {
+    if (buffer_.size() - used_ < count) flush();
+    return buffer_.data() + used_;
+  }
+
+  /// Says that the first `count` pairs of the last room() were written and count.
+  void commit(std::size_t count) noexcept { used_ += count; }
+
+  /// Hands on what is in the buffer. Throws what consume() throws; that chunk then counts as handed on.
+  void flush() {
+    if (const std::size_t count = std::exchange(used_, 0); count > 0) consume({buffer_.data(), count});
+  }
+
+  /// Forgets what is in the buffer: after an exception in the middle of a search.
+  void discard() noexcept { used_ = 0; }
+
+ protected:
+  PairSink() = default;
+  PairSink(const PairSink&) = default;
+  PairSink& operator=(const PairSink&) = default;
+
+ private:
+  virtual void consume(std::span<const Pair> pairs) = 0;
+
+  std::size_t used_ = 0;
+  std::array<Pair, 2 * max_room> buffer_;
+};
+
+}  // namespace broadside

@@ -1,0 +1,72 @@
+// Ready-made sinks: pairs into a vector, into a function, counted, or hashed as a set.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "broadside/pair.hpp"
+
+namespace broadside {
+
+/// Appends every pair to the caller's vector, which must outlive the sink.
+class PairCollector final : public PairSink {
+ public:
+  explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override { pairs_->insert(pairs_->end(), pairs.begin(), pairs.end()); }
+
+  std::vector<Pair>* pairs_;
+};
+
+/// Counts pairs and keeps none. The count is complete once the search that fills the sink has returned.
+class PairCounter final : public PairSink {
+ public:
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override { count_ += pairs.size(); }
+
+  std::uint64_t count_ = 0;
+};
+
+/// Calls a function with each chunk of pairs, in the thread that runs the search.
+class PairFunction final : public PairSink {
+ public:
+  explicit PairFunction(std::function<void(std::span<const Pair>)> function) : function_(std::move(function)) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override { function_(pairs); }
+
+  std::function<void(std::span<const Pair>)> function_;
+};
+
+/// One pair's contribution to the hash of a set: the finaliser of MurmurHash3 over its key.
+constexpr std::uint64_t hash(Pair pair) noexcept {
+  std::uint64_t bits = key(pair) + 0x9e3779b97f4a7c15U;
+  bits = (bits ^ bits >> 33) * 0xff51afd7ed558ccdU;
+  bits = (bits ^ bits >> 33) * 0xc4ceb9fe1a85ec53U;
+  return bits ^ bits >> 33;
+}
+
+/// Hashes and counts pairs as a set: the same for any order, different for a pair that is missing, extra or repeated
+/// (but for a chance of 2^-64).
+class PairHasher final : public PairSink {
+ public:
+  std::uint64_t hash() const noexcept { return hash_; }
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) hash_ += broadside::hash(pair);
+    count_ += pairs.size();
+  }
+
+  std::uint64_t hash_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace broadside

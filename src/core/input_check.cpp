@@ -1,0 +1,58 @@
+// Refuses boxes that no algorithm may see, before anything has changed.
+#include "core/input_check.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <sstream>
+
+#include "broadside/error.hpp"
+
+namespace broadside::core {
+namespace {
+
+template <int D>
+[[noreturn]] void refuse(const Box<D>& box, std::size_t index) {
+  std::ostringstream message;
+  message.precision(std::numeric_limits<float>::max_digits10);
+  const auto print = [&message](const std::array<float, D>& point) {
+    for (int axis = 0; axis < D; ++axis) message << (axis == 0 ? "(" : ", ") << point[axis];
+    message << ')';
+  };
+  message << "box " << index << " has min ";
+  print(box.min);
+  message << " and max ";
+  print(box.max);
+  message << "; expected numbers with min <= max on every axis, or the absent box (min = +inf, max = -inf)";
+  throw InvalidInput(index, message.str());
+}
+
+}  // namespace
+
+template <int D>
+void check_box(const Box<D>& box, std::size_t index) {
+  if (!is_present(box) && !is_absent(box)) refuse(box, index);
+}
+
+template <int D>
+std::size_t check_boxes(std::span<const Box<D>> boxes) {
+  std::size_t absent = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (is_present(boxes[i])) continue;
+    check_box(boxes[i], i);
+    ++absent;
+  }
+  return absent;
+}
+
+void check_count(std::size_t count) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (count > most)
+    throw InvalidInput(most, std::to_string(count) + " boxes; expected at most " + std::to_string(most));
+}
+
+template void check_box(const Box<2>&, std::size_t);
+template void check_box(const Box<3>&, std::size_t);
+template std::size_t check_boxes(std::span<const Box<2>>);
+template std::size_t check_boxes(std::span<const Box<3>>);
+
+}  // namespace broadside::core

@@ -1,0 +1,23 @@
+// Refuses boxes that no algorithm may see, before anything has changed.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "broadside/box.hpp"
+
+namespace broadside::core {
+
+/// Throws InvalidInput, naming `index` and the box's values, unless `box` is present or absent.
+template <int D>
+void check_box(const Box<D>& box, std::size_t index);
+
+/// Checks every box as check_box does and returns how many of them are absent. One pass.
+template <int D>
+std::size_t check_boxes(std::span<const Box<D>> boxes);
+
+/// Throws InvalidInput if there are more boxes than ids.
+void check_count(std::size_t count);
+
+}  // namespace broadside::core

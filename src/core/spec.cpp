@@ -1,0 +1,111 @@
+// Specs read and written, and their values checked against tunables.
+#include "broadside/spec.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "broadside/error.hpp"
+
+namespace broadside {
+namespace {
+
+template <typename Names>
+std::string listed(const Names& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list.empty() ? "none" : list;
+}
+
+/// The number that `text` is from end to end, or NaN.
+double read_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
+}
+
+std::string range(const Tunable& tunable) {
+  std::ostringstream text;
+  text << (tunable.type == Tunable::Type::integer ? "a whole number" : "a number");
+  if (tunable.most < std::numeric_limits<double>::max())
+    text << " from " << tunable.least << " to " << tunable.most;
+  else
+    text << " of at least " << tunable.least;
+  return text.str();
+}
+
+void check(const std::string& owner, const Tunable& tunable, const std::string& value) {
+  if (value == tunable.standard) return;
+  const auto refuse = [&](const std::string& expected) {
+    throw InvalidSpec(owner + ": " + tunable.name + " is '" + value + "'; expected " + expected +
+                      (tunable.standard == "auto" ? ", or auto" : ""));
+  };
+  if (tunable.type == Tunable::Type::choice) {
+    if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
+      refuse("one of: " + listed(tunable.choices));
+    return;
+  }
+  const double number = read_number(value);
+  const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
+  if (!(number >= tunable.least && number <= tunable.most && std::isfinite(number) && whole)) refuse(range(tunable));
+}
+
+}  // namespace
+
+Spec Spec::parse(std::string_view text) {
+  const auto refuse = [text](const std::string& found) {
+    throw InvalidSpec("spec '" + std::string(text) + "': " + found + "; expected name:tunable=value:...");
+  };
+  Spec spec;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    if (begin == 0) {
+      if (part.empty()) refuse("no name");
+      spec.name = part;
+    } else {
+      const std::size_t equals = part.find('=');
+      if (equals == std::string_view::npos || equals == 0)
+        refuse("'" + std::string(part) + "' has no " + (equals == 0 ? "name before" : "") + " '='");
+      const std::string tunable(part.substr(0, equals));
+      if (std::ranges::any_of(spec.values, [&](const auto& value) { return value.first == tunable; }))
+        refuse("'" + tunable + "' is given twice");
+      spec.values.emplace_back(tunable, part.substr(equals + 1));
+    }
+    begin = end + 1;
+  }
+  return spec;
+}
+
+std::string Spec::text() const {
+  std::string text = name;
+  for (const auto& [tunable, value] : values) text += ":" + tunable + "=" + value;
+  return text;
+}
+
+Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
+  for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.standard);
+  for (const auto& [name, value] : spec.values) {
+    const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
+    if (tunable == tunables.end()) {
+      std::vector<std::string_view> names;
+      for (const Tunable& known : tunables) names.push_back(known.name);
+      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'; expected one of: " + listed(names));
+    }
+    check(spec.name, *tunable, value);
+    values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;
+  }
+}
+
+const std::string& Settings::text(std::string_view tunable) const {
+  const auto found = std::ranges::find(values_, tunable, &std::pair<std::string, std::string>::first);
+  if (found == values_.end()) throw InvalidSpec("there is no tunable '" + std::string(tunable) + "'");
+  return found->second;
+}
+
+double Settings::number(std::string_view tunable) const { return read_number(text(tunable)); }
+
+std::int64_t Settings::integer(std::string_view tunable) const { return std::llround(number(tunable)); }
+
+}  // namespace broadside
