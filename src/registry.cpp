@@ -5,7 +5,6 @@
 #include "algorithms/descriptions.hpp"
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "paper/descriptions.hpp"
 
 namespace broadside {
 namespace {
@@ -36,8 +35,7 @@ std::string_view name(AlgorithmKind kind) noexcept {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      algorithms::brute_force(), algorithms::grid(), algorithms::sweep_and_prune(), algorithms::quadtree(),
-      paper::brute_force(),      paper::grid(),      paper::sweep_and_prune(),      paper::quadtree(),
+      own::brute_force(),
   };
   return list;
 }

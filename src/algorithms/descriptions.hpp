@@ -3,11 +3,11 @@
 
 #include "broadside/algorithm.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::own {
 
 Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::own

@@ -1,0 +1,96 @@
+// What the lab compares algorithms on: boxes, and how they change from frame to frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/spec.hpp"
+
+namespace broadside::lab {
+
+/// What changes from one frame to the next.
+template <int D>
+struct Step {
+  std::size_t size;              ///< the number of boxes from this frame on
+  std::vector<BoxId> changed;    ///< places whose boxes change, each once
+  std::vector<Box<D>> boxes;     ///< their new boxes, in the same order; absent where one is removed
+};
+
+/// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
+template <int D>
+struct History {
+  std::vector<Box<D>> boxes;
+  std::vector<Step<D>> steps;
+};
+
+/// Turns the boxes of one frame into those of the next.
+template <int D>
+void apply(const Step<D>& step, std::vector<Box<D>>& boxes);
+
+/// How many boxes, from which seed, and how they move.
+struct SceneRequest {
+  std::size_t boxes = 1000;   ///< ignored by a scene that has a count of its own
+  std::uint64_t seed = 1;     ///< the same seed gives the same boxes on every machine
+  std::size_t frames = 0;     ///< steps after the first frame; 0: a still scene
+  double moving = 0.1;        ///< the fraction of boxes that move, 0 to 1; ignored by recordings
+  double drift = 0.2;         ///< how far a mover goes in a frame, in units of its own size
+  double teleport = 0;        ///< the fraction of movers that jump to another place, in each frame
+};
+
+template <int D>
+using MakeBoxes = std::function<std::vector<Box<D>>(const Settings&, std::size_t boxes, std::uint64_t seed)>;
+template <int D>
+using MakeHistory = std::function<History<D>(const Settings&, const SceneRequest&)>;
+
+/// Where a scene's boxes come from.
+enum class SceneKind { generated, recorded, file };
+
+/// "generated", "recorded" or "file".
+std::string_view name(SceneKind kind) noexcept;
+
+/// A scene, described. It has either boxes (which the lab sets moving by itself) or a history (which moves on its own).
+struct Scene {
+  std::string name;
+  std::string summary;  ///< one line
+  std::string source;   ///< whose scene it is; for a recording, the engine and its version
+  SceneKind kind = SceneKind::generated;
+  std::vector<Tunable> tunables{};
+
+  MakeBoxes<2> boxes_2d{};  ///< empty where the scene does not exist in that dimension
+  MakeBoxes<3> boxes_3d{};
+  MakeHistory<2> history_2d{};
+  MakeHistory<3> history_3d{};
+
+  bool fixed_count = false;  ///< the number of boxes is the scene's own
+  bool fixed_seed = false;   ///< the boxes are the same for every seed
+  bool integers = false;     ///< all coordinates are integers made without libm: equal under every compiler
+
+  bool has_dimension(int dimension) const {
+    return dimension == 2 ? boxes_2d || history_2d : dimension == 3 && (boxes_3d || history_3d);
+  }
+};
+
+/// The generated and recorded scenes, in a fixed order.
+std::span<const Scene> scenes();
+
+/// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a file that one
+/// of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or what the reader throws.
+struct NamedScene {
+  Scene scene;
+  Spec spec;
+};
+NamedScene find_scene(std::string_view text);
+
+/// The scene's boxes in D dimensions, in motion if the request has frames. Throws InvalidSpec if a value in `spec` is
+/// wrong, or if the scene does not exist in D dimensions.
+template <int D>
+History<D> make_history(const Scene& scene, const Spec& spec, const SceneRequest& request);
+
+}  // namespace broadside::lab
