@@ -15,7 +15,8 @@ struct Contender {
   Spec spec;
 };
 
-/// A list of algorithms that can be searched by name, spec and group. Not to be changed while contenders point into it.
+/// A list of algorithms that can be searched by name, spec and group. Not to be changed while contenders
+/// point into it.
 class Catalogue {
  public:
   /// The library's algorithms and the peers that were built in.
@@ -26,8 +27,8 @@ class Catalogue {
 
   std::span<const Algorithm> algorithms() const noexcept { return algorithms_; }
 
-  /// The contenders that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper, peers, all;
-  /// each spec once, in the list's order. Throws InvalidSpec naming what there is.
+  /// The contenders that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper,
+  /// peers, all; each spec once, in the list's order. Throws InvalidSpec naming what there is.
   std::vector<Contender> select(std::string_view list) const;
 
  private:

@@ -16,9 +16,13 @@ std::vector<Pair> collect(std::span<const Box<D>> boxes, std::string_view spec) 
 
 }  // namespace
 
-std::vector<Pair> find_pairs(std::span<const Box2> boxes, std::string_view spec) { return collect(boxes, spec); }
+std::vector<Pair> find_pairs(std::span<const Box2> boxes, std::string_view spec) {
+  return collect(boxes, spec);
+}
 
-std::vector<Pair> find_pairs(std::span<const Box3> boxes, std::string_view spec) { return collect(boxes, spec); }
+std::vector<Pair> find_pairs(std::span<const Box3> boxes, std::string_view spec) {
+  return collect(boxes, spec);
+}
 
 void find_pairs(std::span<const Box2> boxes, PairSink& pairs, std::string_view spec) {
   make_finder<2>(spec)->find(boxes, pairs);

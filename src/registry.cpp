@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <array>
 
-#include "algorithms/descriptions.hpp"
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+
+#include "algorithms/descriptions.hpp"
 
 namespace broadside {
 namespace {
@@ -17,11 +18,12 @@ const Algorithm& require_algorithm(std::string_view name) {
 }
 
 template <int D, typename Made>
-std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Settings&)>& maker, const Algorithm& algorithm,
-                           const Spec& spec) {
+std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Settings&)>& maker,
+                           const Algorithm& algorithm, const Spec& spec) {
   if (!maker) {
     const std::string other = std::to_string(5 - D);
-    throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other + "D boxes");
+    throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other +
+                      "D boxes");
   }
   return maker(Settings(spec, algorithm.tunables));
 }

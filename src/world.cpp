@@ -9,6 +9,7 @@
 
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
+
 #include "core/input_check.hpp"
 
 namespace broadside {
@@ -18,7 +19,8 @@ namespace {
 template <int D>
 void check_present(const Box<D>& box, std::size_t slot) {
   core::check_box(box, slot);
-  if (is_absent(box)) throw InvalidInput(slot, "the box for slot " + std::to_string(slot) + " is absent; expected a box");
+  if (is_absent(box))
+    throw InvalidInput(slot, "the box for slot " + std::to_string(slot) + " is absent; expected a box");
 }
 
 }  // namespace
@@ -85,8 +87,8 @@ Events World<D>::update() {
     std::ranges::merge(merged_, begun_, std::back_inserter(pairs_));
   }
 
-  // A slot whose removal the last update reported can be used again from here on; one whose removal this update reports,
-  // from the next on.
+  // A slot whose removal the last update reported can be used again from here on; one whose removal this
+  // update reports, from the next on.
   for (const std::uint32_t slot : reported_) {
     last_boxes_.erase(slot);
     slots_[slot].state = SlotState::free;
@@ -127,8 +129,10 @@ template <int D>
 void World<D>::refuse(Handle handle, const char* action) const {
   const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
                             std::to_string(handle.generation) + ")";
-  const char* const why = handle.slot >= slots_.size() ? " was never issued by this world" : " names a box that was removed";
-  throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why + "; expected a box in the world");
+  const char* const why =
+      handle.slot >= slots_.size() ? " was never issued by this world" : " names a box that was removed";
+  throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why +
+                      "; expected a box in the world");
 }
 
 template <int D>

@@ -1,4 +1,5 @@
-// What the library knows of an algorithm: its description, how to make one from a spec, and the list of all of them.
+// What the library knows of an algorithm: its description, how to make one from a spec, and the list of all
+// of them.
 #pragma once
 
 #include <functional>
@@ -28,7 +29,8 @@ using MakeFinder = std::function<std::unique_ptr<PairFinder<D>>(const Settings&)
 template <int D>
 using MakeTracker = std::function<std::unique_ptr<PairTracker<D>>(const Settings&)>;
 
-/// A broad-phase algorithm, described. One's own is made the same way as the library's: see examples/own_algorithm.
+/// A broad-phase algorithm, described. One's own is made the same way as the library's: see
+/// examples/own_algorithm.
 struct Algorithm {
   std::string name;     ///< as in a spec: lower case, digits and underscores
   std::string summary;  ///< one line
@@ -45,7 +47,9 @@ struct Algorithm {
   bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
 
   /// Whether it does `dimension`.
-  bool has_dimension(int dimension) const { return dimension == 2 ? bool(finder_2d) : dimension == 3 && bool(finder_3d); }
+  bool has_dimension(int dimension) const {
+    return dimension == 2 ? bool(finder_2d) : dimension == 3 && bool(finder_3d);
+  }
 };
 
 /// The library's algorithms: its own, then the paper's, in a fixed order. Thread-safe.

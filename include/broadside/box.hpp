@@ -21,8 +21,8 @@ struct Box {
 using Box2 = Box<2>;
 using Box3 = Box<3>;
 
-/// The box that is not there: min = +inf and max = -inf on every axis. It overlaps nothing, not even an infinite box,
-/// and stands in an array for a box that has been removed.
+/// The box that is not there: min = +inf and max = -inf on every axis. It overlaps nothing, not even an
+/// infinite box, and stands in an array for a box that has been removed.
 template <int D>
 constexpr Box<D> absent_box() noexcept {
   Box<D> box{};
@@ -49,7 +49,8 @@ constexpr bool is_present(const Box<D>& box) noexcept {
 template <int D>
 constexpr bool overlap(const Box<D>& a, const Box<D>& b) noexcept {
   bool touching = true;
-  for (int axis = 0; axis < D; ++axis) touching &= (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]);
+  for (int axis = 0; axis < D; ++axis)
+    touching &= (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]);
   return touching;
 }
 

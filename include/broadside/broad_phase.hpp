@@ -1,8 +1,8 @@
-// The two interfaces behind which every algorithm stands: PairFinder (boxes to pairs) and PairTracker (changes to
-// pairs begun and ended), and DiffTracker, which makes any finder a tracker.
+// The two interfaces behind which every algorithm stands: PairFinder (boxes to pairs) and PairTracker
+// (changes to pairs begun and ended), and DiffTracker, which makes any finder a tracker.
 //
-// The law that joins them: for every algorithm, after any history, the events accumulated = find() on the boxes as
-// they are now = brute force, as sets, each pair exactly once.
+// The law that joins them: for every algorithm, after any history, the events accumulated = find() on the
+// boxes as they are now = brute force, as sets, each pair exactly once.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ struct Statistics {
 
 /// Finds every overlapping pair in an array of boxes, from nothing, at each call.
 ///
-/// A finder keeps its scratch memory between calls, and nothing else that can be observed. One thread at a time.
+/// A finder keeps its scratch memory between calls, and nothing else that can be observed. One thread at a
+/// time.
 template <int D>
 class PairFinder {
  public:
@@ -33,11 +34,11 @@ class PairFinder {
   PairFinder& operator=(const PairFinder&) = delete;
   virtual ~PairFinder() = default;
 
-  /// Writes each pair of overlapping boxes to `pairs` once, as ids = places in `boxes`, and flushes it. The order is
-  /// fixed by the algorithm and the boxes. Absent boxes pair with nothing.
+  /// Writes each pair of overlapping boxes to `pairs` once, as ids = places in `boxes`, and flushes it. The
+  /// order is fixed by the algorithm and the boxes. Absent boxes pair with nothing.
   ///
-  /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min > max without
-  /// being absent; and what the sink throws.
+  /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
+  /// max without being absent; and what the sink throws.
   void find(std::span<const Box<D>> boxes, PairSink& pairs);
 
   /// What the last find() did; empty where the algorithm does not count.
@@ -48,8 +49,8 @@ class PairFinder {
   void count(const Statistics& statistics) { statistics_ = statistics; }
 
  private:
-  /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of places in
-  /// `boxes`. No need to flush.
+  /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
+  /// places in `boxes`. No need to flush.
   virtual void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) = 0;
 
   std::vector<Box<D>> present_;  // the boxes without the absent ones; unused while there are none
@@ -60,20 +61,22 @@ class PairFinder {
 /// The boxes of one frame, and which of them changed since the frame before.
 template <int D>
 struct Frame {
-  /// All boxes. A box is added, moved or removed by changing its place in the array (an absent box is no box). An array
-  /// longer than before adds boxes, which need not be listed; a shorter one makes the missing ones absent.
+  /// All boxes. A box is added, moved or removed by changing its place in the array (an absent box is no
+  /// box). An array longer than before adds boxes, which need not be listed; a shorter one makes the missing
+  /// ones absent.
   std::span<const Box<D>> boxes;
 
-  /// The places whose boxes may differ from the frame before, in any order; one listed twice is harmless. A change that
-  /// is not listed is not seen. In a tracker's first frame everything has changed.
+  /// The places whose boxes may differ from the frame before, in any order; one listed twice is harmless. A
+  /// change that is not listed is not seen. In a tracker's first frame everything has changed.
   std::span<const BoxId> changed;
 };
 
 /// What changed from one frame to the next, as a tracker's algorithm sees it.
 template <int D>
 struct Change {
-  std::span<const Box<D>> before;       ///< boxes of the frame before; as long as `now`, filled up with absent boxes
-  std::span<const Box<D>> now;          ///< boxes of this frame, likewise; each one present or absent
+  std::span<const Box<D>>
+      before;                   ///< boxes of the frame before; as long as `now`, filled up with absent boxes
+  std::span<const Box<D>> now;  ///< boxes of this frame, likewise; each one present or absent
   std::span<const BoxId> changed;       ///< places where the two may differ, each once
   std::span<const std::uint8_t> flags;  ///< for each place, 1 if it is in `changed`
   bool rebuild;  ///< nothing kept from earlier frames can be relied on; every place is in `changed`
@@ -90,12 +93,13 @@ class PairTracker {
   PairTracker& operator=(const PairTracker&) = delete;
   virtual ~PairTracker() = default;
 
-  /// Takes the next frame; writes to `begun` the pairs that overlap now and did not before, to `ended` those that did
-  /// and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
+  /// Takes the next frame; writes to `begun` the pairs that overlap now and did not before, to `ended` those
+  /// that did and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
   ///
-  /// Throws InvalidInput before anything has changed if a changed box is invalid, or if an id in `changed` lies beyond
-  /// both this frame's array and the last one's. If a sink throws, the frame counts as not taken: the next update rebuilds, takes every
-  /// box for changed and delivers the events since the last whole update.
+  /// Throws InvalidInput before anything has changed if a changed box is invalid, or if an id in `changed`
+  /// lies beyond both this frame's array and the last one's. If a sink throws, the frame counts as not taken:
+  /// the next update rebuilds, takes every box for changed and delivers the events since the last whole
+  /// update.
   void update(const Frame<D>& frame, PairSink& begun, PairSink& ended);
 
   /// What the last update() did; empty where the algorithm does not count.

@@ -7,10 +7,12 @@
 
 namespace broadside {
 
-/// A box that no algorithm may see: a NaN, or min > max without being absent. Thrown before anything has changed.
+/// A box that no algorithm may see: a NaN, or min > max without being absent. Thrown before anything has
+/// changed.
 class InvalidInput : public std::invalid_argument {
  public:
-  InvalidInput(std::size_t index, const std::string& message) : std::invalid_argument(message), index_(index) {}
+  InvalidInput(std::size_t index, const std::string& message)
+      : std::invalid_argument(message), index_(index) {}
 
   /// The index of the first such box in the array that was handed in.
   std::size_t index() const noexcept { return index_; }
@@ -19,7 +21,8 @@ class InvalidInput : public std::invalid_argument {
   std::size_t index_;
 };
 
-/// A spec that cannot be read, or that names an algorithm or a tunable that does not exist or a value out of range.
+/// A spec that cannot be read, or that names an algorithm or a tunable that does not exist or a value out of
+/// range.
 class InvalidSpec : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

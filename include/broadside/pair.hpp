@@ -45,8 +45,8 @@ class PairSink {
     buffer_[used_++] = a < b ? Pair{a, b} : Pair{b, a};
   }
 
-  /// Space for `count` <= max_room pairs, which a kernel writes at once and then commits. What is written there must
-  /// have first < second. The pointer holds until the next call of any member.
+  /// Space for `count` <= max_room pairs, which a kernel writes at once and then commits. What is written
+  /// there must have first < second. The pointer holds until the next call of any member.
   Pair* room(std::size_t count) {
     if (buffer_.size() - used_ < count) flush();
     return buffer_.data() + used_;

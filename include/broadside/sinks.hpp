@@ -17,7 +17,9 @@ class PairCollector final : public PairSink {
   explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
 
  private:
-  void consume(std::span<const Pair> pairs) override { pairs_->insert(pairs_->end(), pairs.begin(), pairs.end()); }
+  void consume(std::span<const Pair> pairs) override {
+    pairs_->insert(pairs_->end(), pairs.begin(), pairs.end());
+  }
 
   std::vector<Pair>* pairs_;
 };
@@ -36,7 +38,8 @@ class PairCounter final : public PairSink {
 /// Calls a function with each chunk of pairs, in the thread that runs the search.
 class PairFunction final : public PairSink {
  public:
-  explicit PairFunction(std::function<void(std::span<const Pair>)> function) : function_(std::move(function)) {}
+  explicit PairFunction(std::function<void(std::span<const Pair>)> function)
+      : function_(std::move(function)) {}
 
  private:
   void consume(std::span<const Pair> pairs) override { function_(pairs); }
@@ -52,8 +55,8 @@ constexpr std::uint64_t hash(Pair pair) noexcept {
   return bits ^ bits >> 33;
 }
 
-/// Hashes and counts pairs as a set: the same for any order, different for a pair that is missing, extra or repeated
-/// (but for a chance of 2^-64).
+/// Hashes and counts pairs as a set: the same for any order, different for a pair that is missing, extra or
+/// repeated (but for a chance of 2^-64).
 class PairHasher final : public PairSink {
  public:
   std::uint64_t hash() const noexcept { return hash_; }

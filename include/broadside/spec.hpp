@@ -16,8 +16,8 @@ struct Spec {
   std::string name;
   std::vector<std::pair<std::string, std::string>> values;
 
-  /// Reads a spec. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable is given
-  /// twice. Whether name and tunables exist is for Settings to say.
+  /// Reads a spec. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
+  /// is given twice. Whether name and tunables exist is for Settings to say.
   static Spec parse(std::string_view text);
 
   /// The text that parse() reads back to the same spec.
@@ -40,8 +40,8 @@ struct Tunable {
 /// A spec's values, checked against the tunables they are for; those not given have their standard value.
 class Settings {
  public:
-  /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of range. "auto" is
-  /// a value of a tunable if and only if it is its standard one.
+  /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
+  /// range. "auto" is a value of a tunable if and only if it is its standard one.
   Settings(const Spec& spec, std::span<const Tunable> tunables);
 
   /// Whether the tunable is left for the algorithm to choose.

@@ -1,4 +1,5 @@
-// World: boxes that come, move and go under stable handles, and the pairs that begin and end. The face for engines.
+// World: boxes that come, move and go under stable handles, and the pairs that begin and end. The face for
+// engines.
 #pragma once
 
 #include <compare>
@@ -41,8 +42,8 @@ struct Events {
 
 /// A set of boxes that changes, and its overlapping pairs.
 ///
-/// add(), move() and remove() cost O(1) and show their effect on pairs at the next update(). One thread at a time;
-/// several may read between updates.
+/// add(), move() and remove() cost O(1) and show their effect on pairs at the next update(). One thread at a
+/// time; several may read between updates.
 template <int D>
 class World {
  public:
@@ -61,7 +62,8 @@ class World {
   /// Takes a box out. Its pairs end at the next update. Throws InvalidHandle if it is not in the world.
   void remove(Handle handle);
 
-  /// Brings the pairs up to date. Cost: the tracker's, and one pass over the current pairs if any began or ended.
+  /// Brings the pairs up to date. Cost: the tracker's, and one pass over the current pairs if any began or
+  /// ended.
   Events update();
 
   /// The pairs that hold since the last update, sorted by slots. Valid until the next update.
@@ -70,8 +72,8 @@ class World {
   /// Whether the box is in the world: added and not removed.
   bool contains(Handle handle) const noexcept;
 
-  /// The box as it was last set. A removed one stays readable until the update after the one that reported its
-  /// removal, so that whoever handles its ended pairs can look at it. Throws InvalidHandle.
+  /// The box as it was last set. A removed one stays readable until the update after the one that reported
+  /// its removal, so that whoever handles its ended pairs can look at it. Throws InvalidHandle.
   const Box<D>& box(Handle handle) const;
 
   /// The number of boxes in the world.
@@ -94,8 +96,8 @@ class World {
   std::vector<Box<D>> boxes_;  // by slot; absent where nothing lives
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> removed_;   // since the last update
-  std::vector<std::uint32_t> reported_;  // whose removal the last update reported
+  std::vector<std::uint32_t> removed_;                    // since the last update
+  std::vector<std::uint32_t> reported_;                   // whose removal the last update reported
   std::unordered_map<std::uint32_t, Box<D>> last_boxes_;  // of those two
   std::vector<BoxId> changed_;
   std::vector<Pair> begun_ids_;

@@ -18,9 +18,9 @@ namespace broadside::lab {
 /// What changes from one frame to the next.
 template <int D>
 struct Step {
-  std::size_t size;              ///< the number of boxes from this frame on
-  std::vector<BoxId> changed;    ///< places whose boxes change, each once
-  std::vector<Box<D>> boxes;     ///< their new boxes, in the same order; absent where one is removed
+  std::size_t size;            ///< the number of boxes from this frame on
+  std::vector<BoxId> changed;  ///< places whose boxes change, each once
+  std::vector<Box<D>> boxes;   ///< their new boxes, in the same order; absent where one is removed
 };
 
 /// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
@@ -36,12 +36,12 @@ void apply(const Step<D>& step, std::vector<Box<D>>& boxes);
 
 /// How many boxes, from which seed, and how they move.
 struct SceneRequest {
-  std::size_t boxes = 1000;   ///< ignored by a scene that has a count of its own
-  std::uint64_t seed = 1;     ///< the same seed gives the same boxes on every machine
-  std::size_t frames = 0;     ///< steps after the first frame; 0: a still scene
-  double moving = 0.1;        ///< the fraction of boxes that move, 0 to 1; ignored by recordings
-  double drift = 0.2;         ///< how far a mover goes in a frame, in units of its own size
-  double teleport = 0;        ///< the fraction of movers that jump to another place, in each frame
+  std::size_t boxes = 1000;  ///< ignored by a scene that has a count of its own
+  std::uint64_t seed = 1;    ///< the same seed gives the same boxes on every machine
+  std::size_t frames = 0;    ///< steps after the first frame; 0: a still scene
+  double moving = 0.1;       ///< the fraction of boxes that move, 0 to 1; ignored by recordings
+  double drift = 0.2;        ///< how far a mover goes in a frame, in units of its own size
+  double teleport = 0;       ///< the fraction of movers that jump to another place, in each frame
 };
 
 template <int D>
@@ -55,7 +55,8 @@ enum class SceneKind { generated, recorded, file };
 /// "generated", "recorded" or "file".
 std::string_view name(SceneKind kind) noexcept;
 
-/// A scene, described. It has either boxes (which the lab sets moving by itself) or a history (which moves on its own).
+/// A scene, described. It has either boxes (which the lab sets moving by itself) or a history (which moves on
+/// its own).
 struct Scene {
   std::string name;
   std::string summary;  ///< one line
@@ -80,16 +81,17 @@ struct Scene {
 /// The generated and recorded scenes, in a fixed order.
 std::span<const Scene> scenes();
 
-/// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a file that one
-/// of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or what the reader throws.
+/// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
+/// file that one of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or what
+/// the reader throws.
 struct NamedScene {
   Scene scene;
   Spec spec;
 };
 NamedScene find_scene(std::string_view text);
 
-/// The scene's boxes in D dimensions, in motion if the request has frames. Throws InvalidSpec if a value in `spec` is
-/// wrong, or if the scene does not exist in D dimensions.
+/// The scene's boxes in D dimensions, in motion if the request has frames. Throws InvalidSpec if a value in
+/// `spec` is wrong, or if the scene does not exist in D dimensions.
 template <int D>
 History<D> make_history(const Scene& scene, const Spec& spec, const SceneRequest& request);
 

@@ -1,8 +1,9 @@
 // Brute force: every box against every later one. Section II of the paper; the reference for all others.
 #include <memory>
 
-#include "algorithms/descriptions.hpp"
 #include "broadside/broad_phase.hpp"
+
+#include "algorithms/descriptions.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::own {

@@ -1,12 +1,14 @@
 // PairFinder: what every finder does before its algorithm sees the boxes.
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+
 #include "core/input_check.hpp"
 
 namespace broadside {
 namespace {
 
-/// Passes pairs on under other ids. The ids must rise with the places they stand for, so that pairs stay ordered.
+/// Passes pairs on under other ids. The ids must rise with the places they stand for, so that pairs stay
+/// ordered.
 class RenamingSink final : public PairSink {
  public:
   RenamingSink(std::span<const BoxId> ids, PairSink& target) : ids_(ids), target_(&target) {}
@@ -16,7 +18,8 @@ class RenamingSink final : public PairSink {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
       Pair* const out = target_->room(count);
-      for (std::size_t i = 0; i < count; ++i) out[i] = {ids_[index(pairs[i].first)], ids_[index(pairs[i].second)]};
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = {ids_[index(pairs[i].first)], ids_[index(pairs[i].second)]};
       target_->commit(count);
       pairs = pairs.subspan(count);
     }

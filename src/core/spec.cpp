@@ -48,7 +48,8 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   }
   const double number = read_number(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
-  if (!(number >= tunable.least && number <= tunable.most && std::isfinite(number) && whole)) refuse(range(tunable));
+  if (!(number >= tunable.least && number <= tunable.most && std::isfinite(number) && whole))
+    refuse(range(tunable));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
+
 #include "core/input_check.hpp"
 
 namespace broadside {
@@ -26,8 +27,8 @@ void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& en
   const std::size_t known = before_.size();
   const std::size_t size = std::max(boxes.size(), known);
 
-  // Everything that can be wrong with the frame, before anything changes. A box beyond the ones known is new and counts
-  // as listed; after a failed update every box does.
+  // Everything that can be wrong with the frame, before anything changes. A box beyond the ones known is new
+  // and counts as listed; after a failed update every box does.
   core::check_count(boxes.size());
   core::check_boxes(boxes.subspan(dirty_ ? 0 : std::min(known, boxes.size())));
   for (const BoxId id : frame.changed) {
@@ -35,7 +36,8 @@ void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& en
       core::check_box(boxes[index(id)], index(id));
     } else if (index(id) >= size) {
       throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
-                                        std::to_string(boxes.size()) + " boxes; expected a place in this frame or the last");
+                                        std::to_string(boxes.size()) +
+                                        " boxes; expected a place in this frame or the last");
     }
   }
 
@@ -94,8 +96,9 @@ void DiffTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pair
     PairCollector collector(pairs);
     finder_->find(boxes, collector);
   };
-  // Events need no search in the stored pairs: a pair of this frame began unless its boxes overlapped before, and one of
-  // the frame before ended unless they overlap now; and neither can be said of two boxes that rested.
+  // Events need no search in the stored pairs: a pair of this frame began unless its boxes overlapped before,
+  // and one of the frame before ended unless they overlap now; and neither can be said of two boxes that
+  // rested.
   const auto differs = [&change](Pair pair, std::span<const Box<D>> boxes) {
     const std::uint32_t a = index(pair.first);
     const std::uint32_t b = index(pair.second);

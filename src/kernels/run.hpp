@@ -11,16 +11,17 @@
 
 namespace broadside::kernels {
 
-/// `size` boxes seen as arrays. Axis 0 of a run is the axis that is swept; which axis of the caller's boxes that is, is
-/// the caller's affair.
+/// `size` boxes seen as arrays. Axis 0 of a run is the axis that is swept; which axis of the caller's boxes
+/// that is, is the caller's affair.
 template <int D>
 struct Run {
   std::array<const float*, D> min;
   std::array<const float*, D> max;
   const BoxId* id;
 
-  /// Bit b of a box's `before` is set if the box starts before the run's cell on the cell's axis b. Two boxes of which
-  /// both start before it on the same axis share an earlier cell, and it is there that their pair is reported.
+  /// Bit b of a box's `before` is set if the box starts before the run's cell on the cell's axis b. Two boxes
+  /// of which both start before it on the same axis share an earlier cell, and it is there that their pair is
+  /// reported.
   const std::uint32_t* before;
 
   std::size_t size;

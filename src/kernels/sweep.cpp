@@ -1,8 +1,8 @@
 // The kernels: a sorted run swept against itself or against another, and all of a run compared.
 //
-// Hits are written without a branch, since whether two candidates overlap is what no predictor can know: each candidate
-// writes its pair and the place to write moves on by one if it was a hit. Where the candidates are many, blocks without
-// any hit are passed over first, by a loop that compilers vectorise.
+// Hits are written without a branch, since whether two candidates overlap is what no predictor can know: each
+// candidate writes its pair and the place to write moves on by one if it was a hit. Where the candidates are
+// many, blocks without any hit are passed over first, by a loop that compilers vectorise.
 #include "kernels/sweep.hpp"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ struct Query {
   std::uint32_t before;
 };
 
-/// Whether box j of the run and the query overlap on the axes from `First` on and are to be reported here: 1 or 0.
+/// Whether box j of the run and the query overlap on the axes from `First` on and are to be reported here: 1
+/// or 0.
 template <int First, bool Cells, int D>
 inline std::uint32_t hit(const Query<D>& query, const Run<D>& run, std::size_t j) {
   std::uint32_t touching = 1;
@@ -44,7 +45,8 @@ inline Pair ordered(BoxId a, BoxId b) { return {std::min(a, b), std::max(a, b)};
 
 /// Compares the query with the boxes [begin, end) of the run, at most max_room of them.
 template <int First, bool Cells, int D>
-inline void compare(const Query<D>& query, const Run<D>& run, std::size_t begin, std::size_t end, PairSink& pairs) {
+inline void compare(const Query<D>& query, const Run<D>& run, std::size_t begin, std::size_t end,
+                    PairSink& pairs) {
   Pair* const out = pairs.room(end - begin);
   std::size_t count = 0;
   for (std::size_t j = begin; j < end; ++j) {
@@ -62,13 +64,15 @@ inline void compare_block(const Query<D>& query, const Run<D>& run, std::size_t 
   if (any != 0) compare<First, Cells>(query, run, begin, begin + block, pairs);
 }
 
-/// Compares the query with the boxes from `begin` on that start on axis 0 no later than it ends. Returns where it stopped.
+/// Compares the query with the boxes from `begin` on that start on axis 0 no later than it ends. Returns
+/// where it stopped.
 template <bool Cells, int D>
 inline std::size_t sweep_from(const Query<D>& query, const Run<D>& run, std::size_t begin, PairSink& pairs) {
   const float* const min = run.min[0];
   const float last = query.max[0];
   std::size_t j = begin;
-  for (; j + block <= run.size && min[j + block - 1] <= last; j += block) compare_block<1, Cells>(query, run, j, pairs);
+  for (; j + block <= run.size && min[j + block - 1] <= last; j += block)
+    compare_block<1, Cells>(query, run, j, pairs);
   Pair* const out = pairs.room(block);
   std::size_t count = 0;
   for (; j < run.size && min[j] <= last; ++j) {
@@ -84,13 +88,15 @@ inline std::size_t sweep_from(const Query<D>& query, const Run<D>& run, std::siz
 template <int D>
 std::uint64_t sweep(const Run<D>& run, PairSink& pairs) {
   std::uint64_t tests = 0;
-  for (std::size_t i = 0; i < run.size; ++i) tests += sweep_from<true>(Query<D>(run, i), run, i + 1, pairs) - i - 1;
+  for (std::size_t i = 0; i < run.size; ++i)
+    tests += sweep_from<true>(Query<D>(run, i), run, i + 1, pairs) - i - 1;
   return tests;
 }
 
 template <int D>
 std::uint64_t sweep(const Run<D>& a, const Run<D>& b, PairSink& pairs) {
-  // Each pair has one box that starts first, or at the same place: there the box of `a` is taken for the first.
+  // Each pair has one box that starts first, or at the same place: there the box of `a` is taken for the
+  // first.
   std::uint64_t tests = 0;
   std::size_t i = 0;
   std::size_t j = 0;

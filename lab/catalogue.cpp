@@ -1,0 +1,72 @@
+// The lab's list of algorithms, searched by name, spec and group.
+#include "lab/catalogue.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <utility>
+
+#include "broadside/error.hpp"
+
+namespace broadside::lab {
+namespace {
+
+bool is_name(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
+  });
+}
+
+/// Whether `group` is a group's name and `algorithm` is in it.
+bool in_group(const Algorithm& algorithm, std::string_view group) {
+  return group == "all" || (group == "own" && algorithm.kind == AlgorithmKind::own) ||
+         (group == "paper" && algorithm.kind == AlgorithmKind::paper) ||
+         (group == "peers" && algorithm.kind == AlgorithmKind::peer);
+}
+
+bool is_group(std::string_view name) {
+  return name == "all" || name == "own" || name == "paper" || name == "peers";
+}
+
+}  // namespace
+
+Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside::algorithms().end()) {}
+
+void Catalogue::add(Algorithm algorithm) {
+  if (!is_name(algorithm.name))
+    throw InvalidSpec("algorithm name '" + algorithm.name + "'; expected lower-case letters, digits and underscores");
+  if (is_group(algorithm.name) || find_algorithm(algorithm.name, algorithms_) != nullptr)
+    throw InvalidSpec("algorithm name '" + algorithm.name + "' is taken; expected another one");
+  algorithms_.push_back(std::move(algorithm));
+}
+
+std::vector<Contender> Catalogue::select(std::string_view list) const {
+  std::vector<Contender> selected;
+  const auto select_once = [&selected](const Algorithm& algorithm, Spec spec) {
+    const auto same = [&](const Contender& other) { return other.spec.text() == spec.text(); };
+    if (std::ranges::none_of(selected, same)) selected.push_back({&algorithm, std::move(spec)});
+  };
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string_view part = list.substr(begin, end - begin);
+    begin = end + 1;
+    if (is_group(part)) {
+      for (const Algorithm& algorithm : algorithms_) {
+        if (in_group(algorithm, part)) select_once(algorithm, Spec{algorithm.name, {}});
+      }
+      continue;
+    }
+    Spec spec = Spec::parse(part);
+    const Algorithm* const algorithm = find_algorithm(spec.name, algorithms_);
+    if (algorithm == nullptr) {
+      std::string known = "own, paper, peers, all";
+      for (const Algorithm& other : algorithms_) known += ", " + other.name;
+      throw InvalidSpec("unknown algorithm '" + spec.name + "'; expected one of: " + known);
+    }
+    const Settings checked(spec, algorithm->tunables);
+    select_once(*algorithm, std::move(spec));
+  }
+  return selected;
+}
+
+}  // namespace broadside::lab
