@@ -1,0 +1,54 @@
+# The front door. Each target brings what it needs: missing packages, data, the build.
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PRECIOUS: build/%/build.ninja
+.PHONY: help setup setup-ci program compare bench test sanitize clang format check-format lint clean
+
+jobs := $(shell nproc)
+sources := find $(wildcard include src lab cli tests bench examples) -name '*.[ch]pp'
+
+help: ## List the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
+
+compare: program ## Build the program and run the quick comparison
+	build/release/broadside compare
+
+bench: program ## The long comparison; its measurements also go to build/bench.json
+	build/release/broadside compare --long --json build/bench.json
+
+test: tests-release ## Build everything and run all tests
+
+sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
+
+clang: tests-clang ## The tests in a build by clang
+
+format: setup-ci ## Put every source file in the project's format
+	$(sources) | xargs clang-format -i
+
+lint: check-format build/clang/build.ninja ## Check the format and what clang-tidy says of library, lab and program
+	find src lab cli -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
+
+check-format: setup-ci
+	$(sources) | xargs clang-format --dry-run --Werror
+
+clean: ## Remove everything that was built or fetched
+	rm -rf build
+
+setup:
+	@scripts/setup
+
+setup-ci:
+	@scripts/setup --ci
+
+program: build/release/build.ninja
+	cmake --build --preset release --target broadside_program
+
+# Everything built under one preset, and its tests.
+tests-%: build/%/build.ninja
+	cmake --build --preset $*
+	ctest --preset $* --parallel $(jobs)
+
+build/%/build.ninja: CMakePresets.json | setup
+	cmake --preset $*
+
+build/clang/build.ninja: | setup-ci
