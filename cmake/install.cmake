@@ -1,0 +1,20 @@
+# Installs the library: headers, archive or shared object, and the CMake package that find_package(Broadside) reads.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Broadside)
+
+install(TARGETS broadside EXPORT BroadsideTargets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
+
+# The library depends on nothing, so its list of targets is the whole package. Below 1.0 a minor version may break
+# what the one before promised.
+file(WRITE ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake
+     "include(\${CMAKE_CURRENT_LIST_DIR}/BroadsideTargets.cmake)\n")
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake ${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
+        DESTINATION ${package_folder})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
