@@ -1,0 +1,119 @@
+// The law of finders: exactly the overlapping pairs, each once, whatever the boxes and whatever came before.
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/sinks.hpp"
+
+#include "dice.hpp"
+#include "hard_inputs.hpp"
+#include "law_case.hpp"
+#include "smallest_failure.hpp"
+
+namespace broadside::laws {
+namespace {
+
+template <int D>
+std::vector<Pair> pairs_of(PairFinder<D>& finder, std::span<const Box<D>> boxes) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  finder.find(boxes, collector);
+  return pairs;
+}
+
+class FinderLaw : public Law {};
+
+TEST_P(FinderLaw, FindsEachOverlappingPairOnce) {
+  in_dimension([&]<int D>() {
+    for (const Input<D>& input : hard_inputs<D>(algorithm()))
+      EXPECT_TRUE(finds_the_pairs<D>(algorithm(), spec(), input.boxes)) << input.name;
+  });
+}
+
+TEST_P(FinderLaw, HasNoMemoryThatShows) {
+  in_dimension([&]<int D>() {
+    const auto used = make_finder<D>(algorithm(), spec());
+    std::vector<Input<D>> inputs = hard_inputs<D>(algorithm());
+    for (int round = 0; round < 2; ++round) {
+      for (const Input<D>& input : inputs) {
+        const auto fresh = make_finder<D>(algorithm(), spec());
+        EXPECT_EQ(pairs_of<D>(*used, input.boxes), pairs_of<D>(*fresh, input.boxes)) << input.name;
+      }
+      Dice(1).shuffle(inputs);
+    }
+  });
+}
+
+TEST_P(FinderLaw, FindsTheSamePairsInAnyOrderOfTheBoxes) {
+  in_dimension([&]<int D>() {
+    Dice dice(2);
+    for (Input<D>& input : hard_inputs<D>(algorithm())) {
+      dice.shuffle(input.boxes);
+      EXPECT_TRUE(finds_the_pairs<D>(algorithm(), spec(), input.boxes)) << input.name << ", shuffled";
+    }
+  });
+}
+
+TEST_P(FinderLaw, FindsThePairsOfShiftedAndScaledBoxes) {
+  in_dimension([&]<int D>() {
+    Dice dice(3);
+    for (const float scale : {1e-30f, 1e-3f, 1e3f, 1e30f}) {
+      for (const float shift : {0.0f, -1.0f, 1000.0f}) {
+        std::vector<Box<D>> boxes(200);
+        for (Box<D>& box : boxes) {
+          for (int axis = 0; axis < D; ++axis) {
+            box.min[axis] = scale * (shift + dice.between(0, 10));
+            box.max[axis] = box.min[axis] + scale * dice.between(0, 2);
+          }
+        }
+        EXPECT_TRUE(finds_the_pairs<D>(algorithm(), spec(), boxes))
+            << "scale " << scale << ", shift " << shift;
+      }
+    }
+  });
+}
+
+/// Values that strain a tunable: the ends of its range, each choice, and numbers of every magnitude between.
+std::vector<std::string> straining_values(const Tunable& tunable) {
+  std::vector<std::string> values = tunable.choices;
+  if (tunable.type == Tunable::Type::choice) return values;
+  for (const double value : {tunable.least, tunable.most, tunable.least + 1, 1e-30, 1e-3, 0.3, 1.0, 2.0, 3.0,
+                             7.0, 64.0, 1e4, 1e9, 1e30}) {
+    const bool whole = tunable.type != Tunable::Type::integer || value == std::floor(value);
+    if (!whole || value < tunable.least || value > tunable.most) continue;
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << value;
+    values.push_back(text.str());
+  }
+  return values;
+}
+
+TEST_P(FinderLaw, HoldsForEveryTunable) {
+  in_dimension([&]<int D>() {
+    const std::vector<Input<D>> inputs = hard_inputs<D>(algorithm());
+    for (const Tunable& tunable : algorithm().tunables) {
+      for (const std::string& value : straining_values(tunable)) {
+        Spec strained = spec();
+        strained.values.emplace_back(tunable.name, value);
+        try {
+          make_finder<D>(algorithm(), strained);
+        } catch (const InvalidSpec&) {
+          continue;  // such as an axis that there is in 3D only
+        }
+        for (const Input<D>& input : inputs)
+          EXPECT_TRUE(finds_the_pairs<D>(algorithm(), strained, input.boxes)) << input.name;
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, FinderLaw, testing::ValuesIn(law_cases()), case_name);
+
+}  // namespace
+}  // namespace broadside::laws
