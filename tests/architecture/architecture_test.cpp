@@ -1,0 +1,137 @@
+// The house stands: no file includes what its floor may not, and every algorithm's file is in the registry.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+
+#include "includes.hpp"
+
+namespace broadside::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAreArray;
+
+const fs::path project = BROADSIDE_SOURCE_DIR;
+
+bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The names under which the files of a folder should stand in the registry.
+std::vector<std::string> names_of_files(const std::string& folder, const std::string& prefix) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(project / "src" / folder)) {
+    const std::string stem = entry.path().stem();
+    if (entry.path().extension() == ".cpp" && !stem.starts_with("printed")) names.push_back(prefix + stem);
+  }
+  return names;
+}
+
+std::vector<std::string> registered_names(AlgorithmKind kind) {
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : algorithms()) {
+    if (algorithm.kind == kind) names.push_back(algorithm.name);
+  }
+  return names;
+}
+
+TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
+  std::size_t files = 0;
+  for (const char* const floor : {"include", "src", "lab", "cli", "tests", "examples"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
+      const fs::path& path = entry.path();
+      if (!is_source(path)) continue;
+      ++files;
+      const std::string name = path.lexically_relative(project).generic_string();
+      EXPECT_THAT(breaches(name, text_of(path)), IsEmpty());
+    }
+  }
+  EXPECT_GT(files, 30U) << "the project's files were not found under " << project;
+}
+
+TEST(Architecture, EveryAlgorithmsFileIsInTheRegistryAndTheOtherWayRound) {
+  EXPECT_THAT(registered_names(AlgorithmKind::own),
+              UnorderedElementsAreArray(names_of_files("algorithms", "")));
+}
+
+TEST(Architecture, EveryMendedListingsFileIsInTheRegistryAndTheOtherWayRound) {
+  EXPECT_THAT(registered_names(AlgorithmKind::paper),
+              UnorderedElementsAreArray(names_of_files("paper", "paper_")));
+}
+
+TEST(IncludeRules, SeeEveryFormOfInclude) {
+  EXPECT_THAT(
+      includes_of("#include <vector>\n  #  include \"core/a.hpp\"\n// #include <no>\n#include NAME\nint i;"),
+      ElementsAre("<vector>", "\"core/a.hpp\"", "NAME"));
+}
+
+TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
+  EXPECT_THAT(breaches("include/broadside/a.hpp", "#include <span>\n#include \"broadside/box.hpp\"\n"),
+              IsEmpty());
+  EXPECT_THAT(breaches("src/kernels/a.cpp", "#include \"broadside/pair.hpp\"\n#include \"kernels/run.hpp\""),
+              IsEmpty());
+  EXPECT_THAT(breaches("src/algorithms/tree.cpp",
+                       "#include \"algorithms/tree.hpp\"\n#include \"algorithms/tree_cells.hpp\"\n"
+                       "#include \"algorithms/descriptions.hpp\"\n#include \"kernels/run.hpp\"\n"),
+              IsEmpty());
+  EXPECT_THAT(breaches("lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
+  EXPECT_THAT(
+      breaches("cli/main.cpp", "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
+      IsEmpty());
+}
+
+TEST(IncludeRules, CatchEveryKindOfBreach) {
+  const struct {
+    const char* path;
+    const char* include;
+  } wrong[] = {
+      {"include/broadside/world.hpp", "\"core/radix_sort.hpp\""},
+      {"include/broadside/world.hpp", "<fmt/format.h>"},
+      {"src/core/spec.cpp", "\"kernels/run.hpp\""},
+      {"src/core/spec.cpp", "\"algorithms/descriptions.hpp\""},
+      {"src/kernels/sweep.cpp", "\"broadside/algorithm.hpp\""},
+      {"src/kernels/sweep.cpp", "\"core/input_check.hpp\""},
+      {"src/algorithms/grid.cpp", "\"algorithms/quadtree.hpp\""},
+      {"src/algorithms/grid.cpp", "\"paper/grid.hpp\""},
+      {"src/algorithms/grid.cpp", "\"descriptions.hpp\""},
+      {"src/paper/grid.cpp", "\"algorithms/grid.hpp\""},
+      {"src/paper/grid.cpp", "\"paper/quadtree.hpp\""},
+      {"src/registry.cpp", "\"algorithms/quadtree.hpp\""},
+      {"src/world.cpp", "\"lab/verify.hpp\""},
+      {"lab/verify.cpp", "\"core/input_check.hpp\""},
+      {"lab/verify.cpp", "\"../src/core/input_check.hpp\""},
+      {"lab/verify.cpp", "\"cli/compare.hpp\""},
+      {"lab/verify.cpp", "<box2d/box2d.h>"},
+      {"lab/scenes/scene.cpp", "<bullet/btBulletDynamicsCommon.h>"},
+      {"lab/recordings/box2d.cpp", "<assimp/scene.h>"},
+      {"lab/readers/mesh.cpp", "<box2d/box2d.h>"},
+      {"cli/main.cpp", "\"core/input_check.hpp\""},
+      {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
+      {"tests/unit/cli_test.cpp", "\"cli/compare.hpp\""},
+      {"tests/unit/engine_test.cpp", "<box2d/box2d.h>"},
+  };
+  for (const auto& [path, include] : wrong) {
+    const std::string text = "// A file.\n#include <vector>\n#include " + std::string(include) + "\n";
+    EXPECT_THAT(breaches(path, text), ElementsAre(HasSubstr(include))) << path;
+  }
+}
+
+TEST(IncludeRules, CatchAFileInAFolderWithoutARule) {
+  EXPECT_THAT(breaches("attic/old.cpp", ""), ElementsAre(HasSubstr("attic/old.cpp")));
+}
+
+}  // namespace
+}  // namespace broadside::architecture
