@@ -35,6 +35,7 @@ World<D>::World(std::unique_ptr<PairTracker<D>> tracker) : tracker_(std::move(tr
 
 template <int D>
 Handle World<D>::add(const Box<D>& box) {
+  const Box<D> added = box;  // the caller's may be one of ours, and those move when the arrays grow
   const auto slot = free_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_.back();
   check_present(box, slot);
   if (free_.empty()) {
@@ -46,7 +47,7 @@ Handle World<D>::add(const Box<D>& box) {
   }
   mark_changed(slot);
   slots_[slot].state = SlotState::live;
-  boxes_[slot] = box;
+  boxes_[slot] = added;
   ++size_;
   return {slot, slots_[slot].generation};
 }
@@ -129,8 +130,12 @@ template <int D>
 void World<D>::refuse(Handle handle, const char* action) const {
   const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
                             std::to_string(handle.generation) + ")";
-  const char* const why =
-      handle.slot >= slots_.size() ? " was never issued by this world" : " names a box that was removed";
+  // A slot that is free has not yet issued a handle of its own generation.
+  const bool issued =
+      handle.slot < slots_.size() &&
+      (handle.generation < slots_[handle.slot].generation ||
+       (handle.generation == slots_[handle.slot].generation && slots_[handle.slot].state != SlotState::free));
+  const char* const why = issued ? " names a box that was removed" : " was never issued by this world";
   throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why +
                       "; expected a box in the world");
 }

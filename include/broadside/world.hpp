@@ -73,7 +73,8 @@ class World {
   bool contains(Handle handle) const noexcept;
 
   /// The box as it was last set. A removed one stays readable until the update after the one that reported
-  /// its removal, so that whoever handles its ended pairs can look at it. Throws InvalidHandle.
+  /// its removal, so that whoever handles its ended pairs can look at it. The reference holds until the next
+  /// add(), remove() or update(). Throws InvalidHandle.
   const Box<D>& box(Handle handle) const;
 
   /// The number of boxes in the world.

@@ -1,4 +1,6 @@
 // PairFinder: what every finder does before its algorithm sees the boxes.
+#include <algorithm>
+
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 

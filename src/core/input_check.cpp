@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <locale>
 #include <sstream>
 
 #include "broadside/error.hpp"
@@ -13,6 +14,7 @@ namespace {
 template <int D>
 [[noreturn]] void refuse(const Box<D>& box, std::size_t index) {
   std::ostringstream message;
+  message.imbue(std::locale::classic());  // whatever the program has made of the global one
   message.precision(std::numeric_limits<float>::max_digits10);
   const auto print = [&message](const std::array<float, D>& point) {
     for (int axis = 0; axis < D; ++axis) message << (axis == 0 ? "(" : ", ") << point[axis];
@@ -34,9 +36,9 @@ void check_box(const Box<D>& box, std::size_t index) {
 }
 
 template <int D>
-std::size_t check_boxes(std::span<const Box<D>> boxes) {
+std::size_t check_boxes(std::span<const Box<D>> boxes, std::size_t from) {
   std::size_t absent = 0;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
+  for (std::size_t i = from; i < boxes.size(); ++i) {
     if (is_present(boxes[i])) continue;
     check_box(boxes[i], i);
     ++absent;
@@ -52,7 +54,7 @@ void check_count(std::size_t count) {
 
 template void check_box(const Box<2>&, std::size_t);
 template void check_box(const Box<3>&, std::size_t);
-template std::size_t check_boxes(std::span<const Box<2>>);
-template std::size_t check_boxes(std::span<const Box<3>>);
+template std::size_t check_boxes(std::span<const Box<2>>, std::size_t);
+template std::size_t check_boxes(std::span<const Box<3>>, std::size_t);
 
 }  // namespace broadside::core

@@ -13,9 +13,10 @@ namespace broadside::core {
 template <int D>
 void check_box(const Box<D>& box, std::size_t index);
 
-/// Checks every box as check_box does and returns how many of them are absent. One pass.
+/// Checks the boxes from place `from` on as check_box does, in their order, and returns how many of them are
+/// absent. One pass.
 template <int D>
-std::size_t check_boxes(std::span<const Box<D>> boxes);
+std::size_t check_boxes(std::span<const Box<D>> boxes, std::size_t from = 0);
 
 /// Throws InvalidInput if there are more boxes than ids.
 void check_count(std::size_t count);

@@ -2,9 +2,9 @@
 #include "broadside/spec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "broadside/error.hpp"
 
@@ -25,14 +25,23 @@ double read_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
 }
 
+/// The shortest text that reads back to `value`.
+std::string text_of(double value) {
+  std::array<char, 32> text;
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+/// The largest value of a tunable; an integer is never beyond what a double holds exactly.
+double most(const Tunable& tunable) {
+  return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
+}
+
 std::string range(const Tunable& tunable) {
-  std::ostringstream text;
-  text << (tunable.type == Tunable::Type::integer ? "a whole number" : "a number");
-  if (tunable.most < std::numeric_limits<double>::max())
-    text << " from " << tunable.least << " to " << tunable.most;
-  else
-    text << " of at least " << tunable.least;
-  return text.str();
+  const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
+  if (most(tunable) == std::numeric_limits<double>::max())
+    return kind + " of at least " + text_of(tunable.least);
+  return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));
 }
 
 void check(const std::string& owner, const Tunable& tunable, const std::string& value) {
@@ -48,7 +57,7 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   }
   const double number = read_number(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
-  if (!(number >= tunable.least && number <= tunable.most && std::isfinite(number) && whole))
+  if (!(number >= tunable.least && number <= most(tunable) && std::isfinite(number) && whole))
     refuse(range(tunable));
 }
 
@@ -68,7 +77,7 @@ Spec Spec::parse(std::string_view text) {
     } else {
       const std::size_t equals = part.find('=');
       if (equals == std::string_view::npos || equals == 0)
-        refuse("'" + std::string(part) + "' has no " + (equals == 0 ? "name before" : "") + " '='");
+        refuse("'" + std::string(part) + "' has no " + (equals == 0 ? "name before " : "") + "'='");
       const std::string tunable(part.substr(0, equals));
       if (std::ranges::any_of(spec.values, [&](const auto& value) { return value.first == tunable; }))
         refuse("'" + tunable + "' is given twice");

@@ -28,18 +28,19 @@ void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& en
   const std::size_t size = std::max(boxes.size(), known);
 
   // Everything that can be wrong with the frame, before anything changes. A box beyond the ones known is new
-  // and counts as listed; after a failed update every box does.
+  // and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
+  // order of the list.
   core::check_count(boxes.size());
-  core::check_boxes(boxes.subspan(dirty_ ? 0 : std::min(known, boxes.size())));
+  std::size_t first = dirty_ ? 0 : std::min(known, boxes.size());
   for (const BoxId id : frame.changed) {
-    if (index(id) < boxes.size()) {
-      core::check_box(boxes[index(id)], index(id));
-    } else if (index(id) >= size) {
+    if (index(id) >= size) {
       throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
                                         std::to_string(boxes.size()) +
                                         " boxes; expected a place in this frame or the last");
     }
+    if (index(id) < first && !is_present(boxes[index(id)]) && !is_absent(boxes[index(id)])) first = index(id);
   }
+  core::check_boxes(boxes, first);
 
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
   before_.resize(size, absent_box<D>());

@@ -1,8 +1,8 @@
 // PairSink and the ready-made sinks.
-#include <gtest/gtest.h>
-
 #include <stdexcept>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "broadside/sinks.hpp"
 

@@ -1,0 +1,58 @@
+// find_pairs: one call from boxes to pairs.
+#include "broadside/find_pairs.hpp"
+
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/sinks.hpp"
+
+namespace broadside {
+namespace {
+
+const std::vector<Pair> first_two = {{BoxId{0}, BoxId{1}}};
+
+TEST(FindPairs, TakesAVector) {
+  const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{9, 9}, {9, 9}}};
+  EXPECT_EQ(find_pairs(boxes, "brute_force"), first_two);
+}
+
+TEST(FindPairs, TakesAnArrayAndASpan) {
+  const std::array<Box3, 3> boxes = {
+      {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{0, 0, 2}, {0, 0, 3}}}};
+  EXPECT_EQ(find_pairs(boxes, "brute_force"), first_two);
+  EXPECT_EQ(find_pairs(std::span<const Box3>(boxes).first(2), "brute_force"), first_two);
+}
+
+TEST(FindPairs, FindsNothingAmongNoBoxesAndInOneBox) {
+  EXPECT_TRUE(find_pairs(std::vector<Box2>{}, "brute_force").empty());
+  EXPECT_TRUE(find_pairs(std::span<const Box3>(), "brute_force").empty());
+  EXPECT_TRUE(find_pairs(std::vector<Box2>{{{0, 0}, {1, 1}}}, "brute_force").empty());
+}
+
+TEST(FindPairs, WritesToASinkAndFlushesIt) {
+  const std::vector<Box2> boxes(100, Box2{{0, 0}, {1, 1}});
+  PairCounter counter;
+  find_pairs(boxes, counter, "brute_force");
+  EXPECT_EQ(counter.count(), 4950u);
+
+  const std::vector<Box3> solid(100, Box3{{0, 0, 0}, {1, 1, 1}});
+  find_pairs(solid, counter, "brute_force");
+  EXPECT_EQ(counter.count(), 2 * 4950u);
+}
+
+TEST(FindPairs, HasAStandardAlgorithm) {
+  const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}};
+  EXPECT_EQ(find_pairs(boxes), first_two);
+}
+
+TEST(FindPairs, RefusesABadBoxAndABadSpec) {
+  const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {0, 0}}};
+  EXPECT_THROW(find_pairs(boxes, "brute_force"), InvalidInput);
+  EXPECT_THROW(find_pairs(boxes, "brute-force"), InvalidSpec);
+}
+
+}  // namespace
+}  // namespace broadside

@@ -1,0 +1,102 @@
+// The library's list of algorithms, and how a spec becomes a finder or a tracker.
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+Algorithm planar() {
+  return {
+      .name = "planar",
+      .summary = "does the plane only",
+      .source = "this test",
+      .tunables = {{.name = "cell", .summary = "edge", .standard = "1"}},
+      .finder_2d = [](const Settings&) { return make_finder<2>("brute_force"); },
+  };
+}
+
+TEST(Registry, DescribesEachAlgorithmFullyAndOnce) {
+  std::set<std::string> names;
+  for (const Algorithm& algorithm : algorithms()) {
+    EXPECT_TRUE(names.insert(algorithm.name).second) << algorithm.name << " is listed twice";
+    EXPECT_TRUE(std::ranges::all_of(algorithm.name, [](unsigned char c) {
+      return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
+    })) << algorithm.name;
+    EXPECT_FALSE(algorithm.summary.empty()) << algorithm.name;
+    EXPECT_FALSE(algorithm.source.empty()) << algorithm.name;
+    EXPECT_TRUE(algorithm.has_dimension(2) || algorithm.has_dimension(3)) << algorithm.name;
+    EXPECT_FALSE(algorithm.has_dimension(4)) << algorithm.name;
+    EXPECT_NE(algorithm.kind, AlgorithmKind::peer) << algorithm.name;
+  }
+}
+
+TEST(Registry, NamesThePaperAlgorithmsAfterThePaper) {
+  for (const Algorithm& algorithm : algorithms())
+    EXPECT_EQ(algorithm.kind == AlgorithmKind::paper, algorithm.name.starts_with("paper_")) << algorithm.name;
+}
+
+TEST(Registry, HasTunablesWhoseStandardValuesAreAllowed) {
+  for (const Algorithm& algorithm : algorithms()) {
+    std::set<std::string> names;
+    for (const Tunable& tunable : algorithm.tunables) {
+      EXPECT_TRUE(names.insert(tunable.name).second) << algorithm.name << " has " << tunable.name << " twice";
+      EXPECT_FALSE(tunable.summary.empty()) << algorithm.name << ": " << tunable.name;
+      Tunable without_standard = tunable;
+      without_standard.standard = "auto";
+      const Spec spec{algorithm.name, {{tunable.name, tunable.standard}}};
+      EXPECT_NO_THROW(Settings(spec, std::span(&without_standard, 1))) << spec.text();
+    }
+  }
+}
+
+TEST(Registry, FindsAnAlgorithmByItsName) {
+  const Algorithm* const found = find_algorithm("brute_force");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->name, "brute_force");
+  EXPECT_EQ(find_algorithm("brute"), nullptr);
+  EXPECT_EQ(find_algorithm(""), nullptr);
+}
+
+TEST(Registry, HasTheStandardAlgorithm) { EXPECT_NE(find_algorithm(default_algorithm), nullptr); }
+
+TEST(Registry, RefusesAnUnknownNameAndNamesTheKnownOnes) {
+  std::string known;
+  for (const Algorithm& algorithm : algorithms()) known += (known.empty() ? "" : ", ") + algorithm.name;
+  const std::string expected = "unknown algorithm 'gird'; expected one of: " + known;
+  EXPECT_EQ(message_of<InvalidSpec>([] { make_finder<2>("gird:cell=2"); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([] { make_tracker<3>("gird"); }), expected);
+}
+
+TEST(Registry, RefusesADimensionThatTheAlgorithmDoesNotDo) {
+  const Algorithm algorithm = planar();
+  EXPECT_NE(make_finder<2>(algorithm, {"planar", {}}), nullptr);
+  const std::string expected = "planar does not do 3D; expected 2D boxes";
+  EXPECT_EQ(message_of<InvalidSpec>([&] { make_finder<3>(algorithm, {"planar", {}}); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([&] { make_tracker<3>(algorithm, {"planar", {}}); }), expected);
+}
+
+TEST(Registry, RefusesAValueThatIsWrong) {
+  const Algorithm algorithm = planar();
+  EXPECT_EQ(message_of<InvalidSpec>([&] { make_finder<2>(algorithm, Spec::parse("planar:cell=-1")); }),
+            "planar: cell is '-1'; expected a number of at least 0");
+  EXPECT_EQ(message_of<InvalidSpec>([&] { make_tracker<2>(algorithm, Spec::parse("planar:size=1")); }),
+            "planar: unknown tunable 'size'; expected one of: cell");
+}
+
+TEST(AlgorithmKind, HasANameForEachKind) {
+  EXPECT_EQ(name(AlgorithmKind::own), "own");
+  EXPECT_EQ(name(AlgorithmKind::paper), "paper");
+  EXPECT_EQ(name(AlgorithmKind::peer), "peer");
+}
+
+}  // namespace
+}  // namespace broadside

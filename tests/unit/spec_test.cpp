@@ -1,0 +1,135 @@
+// Specs and settings: what is read, and what is refused with which words.
+#include "broadside/spec.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+const std::vector<Tunable> tunables = {
+    {.name = "cell", .summary = "edge of a cell", .standard = "auto", .least = 0.5, .most = 2147483648.0},
+    {.name = "capacity",
+     .summary = "boxes a leaf",
+     .standard = "16",
+     .type = Tunable::Type::integer,
+     .least = 1},
+    {.name = "axis",
+     .summary = "swept axis",
+     .standard = "auto",
+     .type = Tunable::Type::choice,
+     .choices = {"x", "y"}},
+    {.name = "margin", .summary = "slack", .standard = "0"},
+};
+
+std::string refusal_of(std::string_view text) {
+  return message_of<InvalidSpec>([&] { Settings(Spec::parse(text), tunables); });
+}
+
+TEST(Spec, ReadsANameAlone) {
+  const Spec spec = Spec::parse("grid");
+  EXPECT_EQ(spec.name, "grid");
+  EXPECT_TRUE(spec.values.empty());
+}
+
+TEST(Spec, ReadsValuesInTheirOrder) {
+  const Spec spec = Spec::parse("grid:cell=2.5:axis=x");
+  EXPECT_EQ(spec.name, "grid");
+  EXPECT_EQ(spec.values, (Values{{"cell", "2.5"}, {"axis", "x"}}));
+}
+
+TEST(Spec, LeavesEqualsSignsInAValue) {
+  EXPECT_EQ(Spec::parse("file:where=a=b").values, (Values{{"where", "a=b"}}));
+}
+
+TEST(Spec, GivesBackTheTextItWasReadFrom) {
+  for (const char* const text : {"grid", "grid:cell=2.5", "grid:cell=:axis=x", "a:b=c:d=e"})
+    EXPECT_EQ(Spec::parse(text).text(), text);
+}
+
+TEST(Spec, RefusesWhatIsNoSpec) {
+  const auto refusal = [](std::string_view text) {
+    return message_of<InvalidSpec>([&] { Spec::parse(text); });
+  };
+  EXPECT_EQ(refusal(""), "spec '': no name; expected name:tunable=value:...");
+  EXPECT_EQ(refusal(":cell=1"), "spec ':cell=1': no name; expected name:tunable=value:...");
+  EXPECT_EQ(refusal("grid:cell"), "spec 'grid:cell': 'cell' has no '='; expected name:tunable=value:...");
+  EXPECT_EQ(refusal("grid:"), "spec 'grid:': '' has no '='; expected name:tunable=value:...");
+  EXPECT_EQ(refusal("grid:=1"),
+            "spec 'grid:=1': '=1' has no name before '='; expected name:tunable=value:...");
+  EXPECT_EQ(refusal("grid:cell=1:cell=1"),
+            "spec 'grid:cell=1:cell=1': 'cell' is given twice; expected name:tunable=value:...");
+}
+
+TEST(Settings, HaveStandardValuesWhereNoneIsGiven) {
+  const Settings settings(Spec::parse("grid"), tunables);
+  EXPECT_TRUE(settings.is_auto("cell"));
+  EXPECT_TRUE(settings.is_auto("axis"));
+  EXPECT_EQ(settings.integer("capacity"), 16);
+  EXPECT_EQ(settings.number("margin"), 0);
+}
+
+TEST(Settings, TakeTheValuesGiven) {
+  const Settings settings(Spec::parse("grid:cell=2.5:capacity=1e3:axis=y:margin=0.1"), tunables);
+  EXPECT_FALSE(settings.is_auto("cell"));
+  EXPECT_EQ(settings.number("cell"), 2.5);
+  EXPECT_EQ(settings.integer("capacity"), 1000);
+  EXPECT_EQ(settings.text("axis"), "y");
+  EXPECT_EQ(settings.number("margin"), 0.1);
+}
+
+TEST(Settings, TakeBothEndsOfARange) {
+  EXPECT_EQ(Settings(Spec::parse("grid:cell=0.5"), tunables).number("cell"), 0.5);
+  EXPECT_EQ(Settings(Spec::parse("grid:cell=2147483648"), tunables).number("cell"), 2147483648.0);
+  EXPECT_EQ(Settings(Spec::parse("grid:capacity=9007199254740992"), tunables).integer("capacity"),
+            9007199254740992);
+}
+
+TEST(Settings, TakeAutoOnlyWhereItIsTheStandard) {
+  EXPECT_TRUE(Settings(Spec::parse("grid:cell=auto"), tunables).is_auto("cell"));
+  EXPECT_EQ(refusal_of("grid:capacity=auto"),
+            "grid: capacity is 'auto'; expected a whole number from 1 to 9007199254740992");
+}
+
+TEST(Settings, RefuseAnUnknownTunableAndNameTheKnownOnes) {
+  EXPECT_EQ(refusal_of("grid:cells=2"),
+            "grid: unknown tunable 'cells'; expected one of: cell, capacity, axis, margin");
+  EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec::parse("a:b=1"), {}); }),
+            "a: unknown tunable 'b'; expected one of: none");
+}
+
+TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
+  for (const char* const value :
+       {"0.499", "2147483649", "-1", "inf", "nan", "1e400", "0x10", "2.5m", " 2", "+2", ""})
+    EXPECT_EQ(
+        refusal_of(std::string("grid:cell=") + value),
+        std::string("grid: cell is '") + value + "'; expected a number from 0.5 to 2147483648, or auto");
+  EXPECT_EQ(refusal_of("grid:margin=-1"), "grid: margin is '-1'; expected a number of at least 0");
+}
+
+TEST(Settings, RefuseAnIntegerThatIsNotWholeOrThatADoubleCannotHold) {
+  for (const char* const value : {"1.5", "0", "1e300", "9007199254740993e3"})
+    EXPECT_EQ(
+        refusal_of(std::string("grid:capacity=") + value),
+        std::string("grid: capacity is '") + value + "'; expected a whole number from 1 to 9007199254740992");
+}
+
+TEST(Settings, RefuseAChoiceThatIsNotOffered) {
+  EXPECT_EQ(refusal_of("grid:axis=z"), "grid: axis is 'z'; expected one of: x, y, or auto");
+}
+
+TEST(Settings, RefuseToReadATunableThatDoesNotExist) {
+  const Settings settings(Spec::parse("grid"), tunables);
+  EXPECT_THROW(settings.text("depth"), InvalidSpec);
+}
+
+}  // namespace
+}  // namespace broadside

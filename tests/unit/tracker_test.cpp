@@ -1,0 +1,305 @@
+// PairTracker and DiffTracker: frames that grow and shrink, changes listed and not, frames that fail.
+#include <functional>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+#include "broadside/sinks.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using Ids = std::vector<BoxId>;
+using Pairs = std::vector<Pair>;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
+
+Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
+
+struct Events {
+  Pairs begun;
+  Pairs ended;
+};
+
+Events update(PairTracker<2>& tracker, const std::vector<Box2>& boxes, const Ids& changed) {
+  Events events;
+  PairCollector begun(events.begun);
+  PairCollector ended(events.ended);
+  tracker.update({boxes, changed}, begun, ended);
+  return events;
+}
+
+std::unique_ptr<PairTracker<2>> diff_tracker() {
+  return std::make_unique<DiffTracker<2>>(make_finder<2>("brute_force"));
+}
+
+/// Calls a function with the change that an algorithm gets to see.
+class StubTracker final : public PairTracker<2> {
+ public:
+  using Update = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
+
+  explicit StubTracker(Update update) : update_(std::move(update)) {}
+
+ private:
+  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    update_(change, begun, ended);
+  }
+
+  Update update_;
+};
+
+/// What a StubTracker was last shown, copied.
+struct Seen {
+  std::vector<Box2> before;
+  std::vector<Box2> now;
+  Ids changed;
+  std::vector<std::uint8_t> flags;
+  bool rebuild = false;
+
+  StubTracker::Update recorder() {
+    return [this](const Change<2>& change, PairSink&, PairSink&) {
+      before.assign(change.before.begin(), change.before.end());
+      now.assign(change.now.begin(), change.now.end());
+      changed.assign(change.changed.begin(), change.changed.end());
+      flags.assign(change.flags.begin(), change.flags.end());
+      rebuild = change.rebuild;
+    };
+  }
+};
+
+TEST(PairTracker, TakesEveryBoxOfTheFirstFrameForChanged) {
+  Seen seen;
+  StubTracker tracker(seen.recorder());
+  update(tracker, {at(0), at(5)}, {});
+  EXPECT_TRUE(seen.rebuild);
+  EXPECT_EQ(seen.before, (std::vector<Box2>{absent_box<2>(), absent_box<2>()}));
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0), at(5)}));
+  EXPECT_EQ(seen.changed, (Ids{BoxId{0}, BoxId{1}}));
+  EXPECT_EQ(seen.flags, (std::vector<std::uint8_t>{1, 1}));
+}
+
+TEST(PairTracker, ShowsAChangedBoxOnceHoweverOftenItIsListed) {
+  Seen seen;
+  StubTracker tracker(seen.recorder());
+  update(tracker, {at(0), at(5), at(9)}, {});
+  update(tracker, {at(0), at(6), at(9)}, {BoxId{1}, BoxId{1}, BoxId{1}});
+  EXPECT_FALSE(seen.rebuild);
+  EXPECT_EQ(seen.before, (std::vector<Box2>{at(0), at(5), at(9)}));
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0), at(6), at(9)}));
+  EXPECT_EQ(seen.changed, (Ids{BoxId{1}}));
+  EXPECT_EQ(seen.flags, (std::vector<std::uint8_t>{0, 1, 0}));
+}
+
+TEST(PairTracker, DoesNotSeeAChangeThatIsNotListed) {
+  Seen seen;
+  StubTracker tracker(seen.recorder());
+  update(tracker, {at(0), at(5)}, {});
+  update(tracker, {at(3), at(6)}, {BoxId{1}});
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0), at(6)}));
+}
+
+TEST(PairTracker, FillsUpTheShorterFrameWithAbsentBoxes) {
+  Seen seen;
+  StubTracker tracker(seen.recorder());
+  update(tracker, {at(0)}, {});
+  update(tracker, {at(0), at(1), at(2)}, {});
+  EXPECT_EQ(seen.before, (std::vector<Box2>{at(0), absent_box<2>(), absent_box<2>()}));
+  EXPECT_EQ(seen.changed, (Ids{BoxId{1}, BoxId{2}}));
+  update(tracker, {at(0)}, {BoxId{2}});
+  EXPECT_EQ(seen.before, (std::vector<Box2>{at(0), at(1), at(2)}));
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0), absent_box<2>(), absent_box<2>()}));
+  EXPECT_EQ(seen.changed, (Ids{BoxId{2}, BoxId{1}}));
+  update(tracker, {at(0)}, {});
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0)}));
+  EXPECT_TRUE(seen.changed.empty());
+}
+
+TEST(PairTracker, SortsTheEventsOfItsAlgorithm) {
+  StubTracker tracker([](const Change<2>&, PairSink& begun, PairSink& ended) {
+    begun.add(BoxId{2}, BoxId{1});
+    begun.add(BoxId{0}, BoxId{5});
+    begun.add(BoxId{0}, BoxId{3});
+    ended.add(BoxId{9}, BoxId{8});
+    ended.add(BoxId{9}, BoxId{4});
+  });
+  const Events events = update(tracker, {}, {});
+  EXPECT_EQ(events.begun, (Pairs{pair(0, 3), pair(0, 5), pair(1, 2)}));
+  EXPECT_EQ(events.ended, (Pairs{pair(4, 9), pair(8, 9)}));
+}
+
+TEST(PairTracker, WritesToOneSinkWhatBeganAndThenWhatEnded) {
+  const auto tracker = diff_tracker();
+  Pairs both;
+  PairCollector sink(both);
+  const std::vector<Box2> first = {at(0), at(1), at(9)};
+  const std::vector<Box2> second = {at(0), at(9), at(9)};
+  const Ids changed = {BoxId{1}};
+  tracker->update({first, {}}, sink, sink);
+  tracker->update({second, changed}, sink, sink);
+  EXPECT_EQ(both, (Pairs{pair(0, 1), pair(1, 2), pair(0, 1)}));
+}
+
+TEST(PairTracker, NamesTheFirstWrongBoxByItsPlaceInTheFrame) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1), at(2)}, {});
+  const Box2 wrong = {{nan, 0}, {1, 1}};
+  const auto index_of = [&](const std::vector<Box2>& boxes, const Ids& changed) -> std::size_t {
+    try {
+      update(*tracker, boxes, changed);
+    } catch (const InvalidInput& error) {
+      return error.index();
+    }
+    return 99;
+  };
+  EXPECT_EQ(index_of({at(0), at(1), at(2), at(3), wrong, wrong}, {}), 4u);
+  EXPECT_EQ(index_of({at(0), wrong, at(2), at(3), wrong}, {BoxId{4}, BoxId{1}}), 1u);
+  EXPECT_EQ(index_of({wrong, wrong, wrong}, {BoxId{2}, BoxId{0}, BoxId{1}}), 0u);
+  EXPECT_EQ(index_of({wrong, at(1), at(2)}, {BoxId{1}}), 99u) << "a change that is not listed is not seen";
+}
+
+TEST(PairTracker, RefusesAnIdBeyondThisFrameAndTheLast) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1), at(2)}, {});
+  EXPECT_NO_THROW(update(*tracker, {at(0)}, {BoxId{2}}));
+  EXPECT_EQ(message_of<InvalidInput>([&] {
+              update(*tracker, {at(0), at(1)}, {BoxId{2}});
+            }),
+            "changed box 2 of a frame of 2 boxes; expected a place in this frame or the last");
+}
+
+TEST(PairTracker, IsUnchangedByAFrameThatWasRefused) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1)}, {});
+  const Box2 wrong = {{0, 0}, {1, -1}};
+  EXPECT_THROW(update(*tracker, {at(9), wrong, at(0)}, {BoxId{0}, BoxId{1}}), InvalidInput);
+  EXPECT_THROW(update(*tracker, {at(9), at(1), wrong}, {BoxId{0}}), InvalidInput);
+  EXPECT_THROW(update(*tracker, {at(9), at(1)}, {BoxId{0}, BoxId{2}}), InvalidInput);
+  const Events rest = update(*tracker, {at(0), at(1)}, {});
+  EXPECT_TRUE(rest.begun.empty());
+  EXPECT_TRUE(rest.ended.empty());
+  EXPECT_EQ(update(*tracker, {at(0), at(9)}, {BoxId{1}}).ended, (Pairs{pair(0, 1)}));
+}
+
+/// Takes nothing.
+class FailingSink final : public PairSink {
+ private:
+  void consume(std::span<const Pair>) override { throw std::runtime_error("full"); }
+};
+
+TEST(PairTracker, DeliversTheEventsOfAFailedUpdateWithTheNext) {
+  for (const bool begun_fails : {true, false}) {
+    const auto tracker = diff_tracker();
+    update(*tracker, {at(0), at(1), at(9)}, {});
+
+    const std::vector<Box2> boxes = {at(0), at(9), at(9), at(0)};
+    const Ids changed = {BoxId{1}};
+    Pairs taken;
+    PairCollector collector(taken);
+    FailingSink failing;
+    PairSink& begun = begun_fails ? static_cast<PairSink&>(failing) : collector;
+    PairSink& ended = begun_fails ? static_cast<PairSink&>(collector) : failing;
+    EXPECT_THROW(tracker->update({boxes, changed}, begun, ended), std::runtime_error);
+
+    // The caller need not list again what the failed frame had changed.
+    const Events events = update(*tracker, boxes, {});
+    EXPECT_EQ(events.begun, (Pairs{pair(0, 3), pair(1, 2)}));
+    EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
+    const Events rest = update(*tracker, boxes, {});
+    EXPECT_TRUE(rest.begun.empty());
+    EXPECT_TRUE(rest.ended.empty());
+  }
+}
+
+TEST(PairTracker, TakesAShorterFrameAfterAFailedLongerOne) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1)}, {});
+  const std::vector<Box2> longer = {at(0), at(1), at(1), at(0)};
+  FailingSink failing;
+  PairCounter counter;
+  EXPECT_THROW(tracker->update({longer, {}}, failing, counter), std::runtime_error);
+  const Events events = update(*tracker, {at(0)}, {});
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
+  EXPECT_EQ(update(*tracker, {at(0), at(1)}, {}).begun, (Pairs{pair(0, 1)}));
+}
+
+TEST(PairTracker, ChecksEveryBoxAfterAFailedUpdate) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1)}, {});
+  const std::vector<Box2> moved = {at(5), at(1)};
+  const Ids changed = {BoxId{0}};
+  FailingSink failing;
+  PairCounter counter;
+  EXPECT_THROW(tracker->update({moved, changed}, counter, failing), std::runtime_error);
+  EXPECT_THROW(update(*tracker, {at(5), {{nan, 0}, {1, 1}}}, {}), InvalidInput);
+  EXPECT_EQ(update(*tracker, {at(5), at(1)}, {}).ended, (Pairs{pair(0, 1)}));
+}
+
+TEST(PairTracker, RebuildsAfterItsAlgorithmThrew) {
+  bool fails = false;
+  Seen seen;
+  StubTracker tracker(
+      [&, record = seen.recorder()](const Change<2>& change, PairSink& begun, PairSink& ended) {
+        if (fails) throw std::runtime_error("out of luck");
+        record(change, begun, ended);
+      });
+  update(tracker, {at(0), at(1)}, {});
+  fails = true;
+  EXPECT_THROW(update(tracker, {at(0), at(2)}, {BoxId{1}}), std::runtime_error);
+  fails = false;
+  update(tracker, {at(0), at(3)}, {});
+  EXPECT_TRUE(seen.rebuild);
+  EXPECT_EQ(seen.before, (std::vector<Box2>{at(0), at(1)}));
+  EXPECT_EQ(seen.now, (std::vector<Box2>{at(0), at(3)}));
+}
+
+TEST(DiffTracker, TellsWhatBeganAndWhatEnded) {
+  const auto tracker = diff_tracker();
+  EXPECT_EQ(update(*tracker, {at(0), at(1), at(9)}, {}).begun, (Pairs{pair(0, 1)}));
+  const Events events = update(*tracker, {at(0), at(8), at(9)}, {BoxId{1}});
+  EXPECT_EQ(events.begun, (Pairs{pair(1, 2)}));
+  EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
+}
+
+TEST(DiffTracker, IsSilentWhereAListedBoxDidNotChangeOrItsPairsDidNot) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1)}, {});
+  EXPECT_TRUE(update(*tracker, {at(0), at(1)}, {BoxId{0}, BoxId{1}}).begun.empty());
+  const Events events = update(*tracker, {at(0), at(0.5f)}, {BoxId{1}});
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_TRUE(events.ended.empty());
+}
+
+TEST(DiffTracker, EndsThePairsOfABoxThatGoesEvenWithInfiniteOnes) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const Box2 whole = {{-infinity, -infinity}, {infinity, infinity}};
+  const auto tracker = diff_tracker();
+  EXPECT_EQ(update(*tracker, {whole, at(1)}, {}).begun, (Pairs{pair(0, 1)}));
+  EXPECT_EQ(update(*tracker, {whole, absent_box<2>()}, {BoxId{1}}).ended, (Pairs{pair(0, 1)}));
+  EXPECT_EQ(update(*tracker, {whole, at(1)}, {BoxId{1}}).begun, (Pairs{pair(0, 1)}));
+}
+
+TEST(DiffTracker, PassesOnTheCountsOfItsFinder) {
+  const auto tracker = diff_tracker();
+  update(*tracker, {at(0), at(1), at(9)}, {});
+  ASSERT_TRUE(tracker->statistics().has_value());
+  EXPECT_EQ(tracker->statistics()->tests, 3u);
+}
+
+TEST(DiffTracker, RefusesANullFinder) {
+  EXPECT_EQ(message_of<std::invalid_argument>([] { DiffTracker<2>(nullptr); }),
+            "DiffTracker was given a null finder; expected a finder");
+}
+
+}  // namespace
+}  // namespace broadside

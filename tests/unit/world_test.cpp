@@ -1,0 +1,300 @@
+// World: handles that name, boxes that come and go, events and pairs by handle.
+#include "broadside/world.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using HandlePairs = std::vector<HandlePair>;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
+
+HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
+
+class WorldTest : public testing::Test {
+ protected:
+  World2 world_{"brute_force"};
+};
+
+TEST_F(WorldTest, IsEmptyAtFirst) {
+  EXPECT_EQ(world_.size(), 0u);
+  EXPECT_TRUE(world_.pairs().empty());
+  const Events events = world_.update();
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_TRUE(events.ended.empty());
+}
+
+TEST_F(WorldTest, HoldsTheBoxesThatAreAdded) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(5));
+  EXPECT_NE(a, b);
+  EXPECT_EQ(world_.size(), 2u);
+  EXPECT_TRUE(world_.contains(a));
+  EXPECT_EQ(world_.box(a), at(0));
+  EXPECT_EQ(world_.box(b), at(5));
+}
+
+TEST_F(WorldTest, ReportsPairsAtTheNextUpdateAndNotBefore) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(1));
+  EXPECT_TRUE(world_.pairs().empty());
+  const Events events = world_.update();
+  EXPECT_EQ(listed(events.begun), (HandlePairs{{a, b}}));
+  EXPECT_TRUE(events.ended.empty());
+  EXPECT_EQ(listed(world_.pairs()), (HandlePairs{{a, b}}));
+}
+
+TEST_F(WorldTest, IsSilentWhileNothingChanges) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(1));
+  world_.update();
+  const Events events = world_.update();
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_TRUE(events.ended.empty());
+  EXPECT_EQ(listed(world_.pairs()), (HandlePairs{{a, b}}));
+}
+
+TEST_F(WorldTest, FollowsAMovingBox) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(5));
+  const Handle c = world_.add(at(9));
+  world_.update();
+  world_.move(b, at(1));
+  EXPECT_EQ(world_.box(b), at(1));
+  EXPECT_EQ(listed(world_.update().begun), (HandlePairs{{a, b}}));
+  world_.move(b, at(7));
+  world_.move(b, at(8));
+  const Events events = world_.update();
+  EXPECT_EQ(listed(events.begun), (HandlePairs{{b, c}}));
+  EXPECT_EQ(listed(events.ended), (HandlePairs{{a, b}}));
+  EXPECT_EQ(listed(world_.pairs()), (HandlePairs{{b, c}}));
+}
+
+TEST_F(WorldTest, SeesNoMoveThatWasTakenBack) {
+  const Handle a = world_.add(at(0));
+  world_.add(at(1));
+  world_.update();
+  world_.move(a, at(50));
+  world_.move(a, at(0));
+  const Events events = world_.update();
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_TRUE(events.ended.empty());
+}
+
+TEST_F(WorldTest, EndsThePairsOfARemovedBox) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(1));
+  world_.update();
+  world_.remove(a);
+  EXPECT_EQ(world_.size(), 1u);
+  EXPECT_FALSE(world_.contains(a));
+  EXPECT_EQ(listed(world_.pairs()), (HandlePairs{{a, b}})) << "they hold until the update";
+  EXPECT_EQ(listed(world_.update().ended), (HandlePairs{{a, b}}));
+  EXPECT_TRUE(world_.pairs().empty());
+}
+
+TEST_F(WorldTest, NeverShowsABoxThatCameAndWentBetweenUpdates) {
+  world_.add(at(0));
+  world_.update();
+  const Handle visitor = world_.add(at(0));
+  world_.remove(visitor);
+  const Events events = world_.update();
+  EXPECT_TRUE(events.begun.empty());
+  EXPECT_TRUE(events.ended.empty());
+  EXPECT_EQ(world_.size(), 1u);
+}
+
+TEST_F(WorldTest, TellsARemovedBoxFromTheOneAddedInItsPlace) {
+  const Handle a = world_.add(at(0));
+  const Handle old_box = world_.add(at(1));
+  world_.update();
+  world_.remove(old_box);
+  const Handle new_box = world_.add(at(1));
+  EXPECT_NE(old_box, new_box);
+  const Events events = world_.update();
+  EXPECT_EQ(listed(events.ended), (HandlePairs{{a, old_box}}));
+  EXPECT_EQ(listed(events.begun), (HandlePairs{{a, new_box}}));
+}
+
+TEST_F(WorldTest, ReusesASlotUnderAnotherGenerationAfterTheUpdateThatFollowsTheReport) {
+  const Handle first = world_.add(at(0));
+  world_.update();
+  world_.remove(first);
+  EXPECT_NE(world_.add(at(10)).slot, first.slot) << "not yet reported";
+  world_.update();
+  EXPECT_NE(world_.add(at(20)).slot, first.slot) << "still readable";
+  world_.update();
+  const Handle again = world_.add(at(30));
+  EXPECT_EQ(again.slot, first.slot);
+  EXPECT_NE(again.generation, first.generation);
+  EXPECT_FALSE(world_.contains(first));
+  EXPECT_TRUE(world_.contains(again));
+  EXPECT_EQ(world_.box(again), at(30));
+}
+
+TEST_F(WorldTest, DoesNotGrowWhileAsManyComeAsGo) {
+  std::uint32_t highest = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    const Handle visitor = world_.add(at(0));
+    highest = std::max(highest, visitor.slot);
+    world_.update();
+    world_.remove(visitor);
+  }
+  EXPECT_LE(highest, 2u);
+}
+
+TEST_F(WorldTest, KeepsARemovedBoxReadableUntilTheUpdateAfterItsReport) {
+  const Handle a = world_.add(at(3));
+  world_.update();
+  world_.remove(a);
+  EXPECT_EQ(world_.box(a), at(3));
+  world_.update();
+  EXPECT_EQ(world_.box(a), at(3));
+  world_.update();
+  EXPECT_THROW(world_.box(a), InvalidHandle);
+}
+
+TEST_F(WorldTest, RefusesToMoveOrRemoveABoxThatWasRemoved) {
+  const Handle a = world_.add(at(3));
+  world_.remove(a);
+  EXPECT_EQ(
+      message_of<InvalidHandle>([&] { world_.move(a, at(1)); }),
+      "cannot move a box: handle (slot 0, generation 0) names a box that was removed; expected a box in the "
+      "world");
+  EXPECT_EQ(
+      message_of<InvalidHandle>([&] { world_.remove(a); }),
+      "cannot remove a box: handle (slot 0, generation 0) names a box that was removed; expected a box in "
+      "the world");
+  EXPECT_EQ(world_.box(a), at(3)) << "what was refused has changed nothing";
+}
+
+TEST_F(WorldTest, TellsAHandleThatWasRemovedFromOneThatNeverWas) {
+  const Handle a = world_.add(at(3));
+  const std::string removed = "names a box that was removed";
+  const std::string unknown = "was never issued by this world";
+  const auto refusal = [&](Handle handle) { return message_of<InvalidHandle>([&] { world_.box(handle); }); };
+  EXPECT_NE(refusal(Handle{}).find("cannot read a box: handle (slot 4294967295, generation 0) " + unknown),
+            std::string::npos);
+  EXPECT_NE(refusal({1, 0}).find(unknown), std::string::npos);
+  EXPECT_NE(refusal({a.slot, 1}).find(unknown), std::string::npos);
+  world_.remove(a);
+  world_.update();
+  world_.update();
+  EXPECT_NE(refusal(a).find(removed), std::string::npos);
+  EXPECT_NE(refusal({a.slot, 1}).find(unknown), std::string::npos) << "free, but not given out again";
+  const Handle again = world_.add(at(1));
+  EXPECT_EQ(again, (Handle{a.slot, 1}));
+  EXPECT_NE(refusal(a).find(removed), std::string::npos);
+}
+
+TEST_F(WorldTest, RefusesWrongBoxesAndStaysAsItIs) {
+  const Handle a = world_.add(at(0));
+  for (const Box2& wrong : {Box2{{nan, 0}, {1, 1}}, Box2{{0, 2}, {1, 1}}, absent_box<2>()}) {
+    EXPECT_THROW(world_.add(wrong), InvalidInput);
+    EXPECT_THROW(world_.move(a, wrong), InvalidInput);
+  }
+  EXPECT_EQ(world_.size(), 1u);
+  EXPECT_EQ(world_.box(a), at(0));
+  EXPECT_EQ(world_.add(at(1)).slot, 1u);
+  EXPECT_EQ(world_.update().begun.size(), 1u);
+}
+
+TEST_F(WorldTest, SaysWhyAnAbsentBoxIsRefused) {
+  const Handle a = world_.add(at(0));
+  EXPECT_EQ(message_of<InvalidInput>([&] { world_.move(a, absent_box<2>()); }),
+            "the box for slot 0 is absent; expected a box");
+}
+
+TEST_F(WorldTest, TakesACopyOfItsOwnBox) {
+  const Handle first = world_.add(at(42));
+  for (int i = 0; i < 100; ++i) {
+    const Handle copy = world_.add(world_.box(first));
+    EXPECT_EQ(world_.box(copy), at(42));
+  }
+  world_.remove(first);
+  world_.update();
+  const Handle heir = world_.add(world_.box(first));
+  EXPECT_EQ(world_.box(heir), at(42));
+}
+
+TEST_F(WorldTest, TakesInfiniteBoxes) {
+  const Handle whole = world_.add({{-infinity, -infinity}, {infinity, infinity}});
+  const Handle small = world_.add(at(0));
+  EXPECT_EQ(listed(world_.update().begun), (HandlePairs{{whole, small}}));
+  world_.remove(small);
+  EXPECT_EQ(listed(world_.update().ended), (HandlePairs{{whole, small}}));
+}
+
+TEST_F(WorldTest, SortsEventsAndPairsBySlot) {
+  for (int i = 0; i < 20; ++i) world_.add(at(0));
+  const Events events = world_.update();
+  EXPECT_EQ(events.begun.size(), 190u);
+  EXPECT_TRUE(std::ranges::is_sorted(events.begun));
+  EXPECT_EQ(listed(events.begun), listed(world_.pairs()));
+}
+
+TEST_F(WorldTest, WorksInThreeDimensions) {
+  World3 world("brute_force");
+  const Handle a = world.add({{0, 0, 0}, {1, 1, 1}});
+  const Handle b = world.add({{1, 1, 1}, {2, 2, 2}});
+  EXPECT_EQ(listed(world.update().begun), (HandlePairs{{a, b}}));
+  world.move(b, {{1, 1, 1.5f}, {2, 2, 2}});
+  EXPECT_EQ(listed(world.update().ended), (HandlePairs{{a, b}}));
+}
+
+/// Fails when it is told to.
+class FailingFinder final : public PairFinder<2> {
+ public:
+  explicit FailingFinder(const bool& fails) : fails_(&fails), finder_(make_finder<2>("brute_force")) {}
+
+ private:
+  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+    if (*fails_) throw std::runtime_error("out of luck");
+    finder_->find(boxes, pairs);
+  }
+
+  const bool* fails_;
+  std::unique_ptr<PairFinder<2>> finder_;
+};
+
+TEST_F(WorldTest, LosesNoEventWhenAnUpdateFails) {
+  bool fails = false;
+  World2 world(std::make_unique<DiffTracker<2>>(std::make_unique<FailingFinder>(fails)));
+  const Handle a = world.add(at(0));
+  const Handle b = world.add(at(1));
+  world.update();
+  world.remove(b);
+  const Handle c = world.add(at(0));
+  fails = true;
+  EXPECT_THROW(world.update(), std::runtime_error);
+  EXPECT_EQ(listed(world.pairs()), (HandlePairs{{a, b}}));
+  EXPECT_EQ(world.box(b), at(1));
+  fails = false;
+  const Events events = world.update();
+  EXPECT_EQ(listed(events.ended), (HandlePairs{{a, b}}));
+  EXPECT_EQ(listed(events.begun), (HandlePairs{{a, c}}));
+  EXPECT_EQ(world.box(b), at(1));
+}
+
+TEST_F(WorldTest, RefusesANullTrackerAndABadSpec) {
+  EXPECT_EQ(message_of<std::invalid_argument>([] { World2(std::unique_ptr<PairTracker<2>>()); }),
+            "World was given a null tracker; expected a tracker");
+  EXPECT_THROW(World2("no_such_algorithm"), InvalidSpec);
+}
+
+}  // namespace
+}  // namespace broadside
