@@ -37,7 +37,7 @@ std::string_view name(AlgorithmKind kind) noexcept {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::brute_force(),
+      own::brute_force(), own::grid(), own::sweep_and_prune(), own::quadtree(),
   };
   return list;
 }

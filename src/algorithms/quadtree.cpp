@@ -1,0 +1,244 @@
+// Quadtree, in 3D an octree: nodes split until they hold few boxes, which are then swept.
+//
+// Section V of the paper, without its limits. A node is split at the median of a sample of its boxes' minima,
+// not at a world's centre, so no world is declared and clusters do not deepen the tree. An axis that would
+// not separate is not split, and a node that would not shrink is a leaf, so coincident boxes end the
+// recursion. A box that covers the middle of its node stays there and is swept against the node's other
+// boxes; any other goes into each child that it touches. No pair is found twice: it is reported in the one
+// node that holds the greater of the two minima on every axis.
+//
+// The tree is never stored: a node is a stretch of one stack of references, each stretch in the order of the
+// sweep.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
+#include "kernels/sweep.hpp"
+
+namespace broadside::own {
+namespace {
+
+constexpr std::size_t node_samples = 31;
+
+/// Leaves of this many boxes: a sweep of so few costs about what a further split would.
+template <int D>
+constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
+
+/// A box in a node. Bit a of `before` is set if the box starts before the node's region on axis a.
+struct Reference {
+  std::uint32_t place;
+  std::uint32_t before;
+};
+
+template <int D>
+class Quadtree final : public PairFinder<D> {
+ public:
+  explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
+
+ private:
+  static constexpr std::uint32_t most_children = 1U << D;
+
+  /// Where a node is split; axes not in the list are not.
+  struct Split {
+    std::array<float, D> at;
+    std::array<float, D> low;   // a box that spans from low to high
+    std::array<float, D> high;  // covers the middle half of the node
+    std::array<int, D> axes;
+    int axis_count;
+  };
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    sample_.take(boxes);
+    sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap());
+    statistics_ = {};
+    stack_.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) stack_.push_back({i, 0});
+    search(0, stack_.size(), pairs);
+    this->count(statistics_);
+  }
+
+  const Box<D>& box(const Reference& reference) const { return sorted_boxes_[reference.place].box; }
+
+  /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
+  /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
+  void search(std::size_t begin, std::size_t end, PairSink& pairs) {
+    const std::size_t count = end - begin;
+    if (count < 2) return;
+    Split split;
+    std::array<std::size_t, most_children> sizes;
+    if (count <= capacity_ || !choose_split(begin, end, split) || !partition(begin, end, split, sizes)) {
+      statistics_.references += count;
+      gather(begin, end, run_, [](std::size_t) { return true; });
+      statistics_.tests += kernels::sweep(run_.view(), pairs);
+      return;
+    }
+    if (kept_count_ > 0) sweep_kept(begin, end, pairs);
+    const std::size_t top = stack_.size();
+    push_children(begin, end, split, sizes);
+    std::size_t child = top;
+    for (const std::size_t size : sizes) {
+      search(child, child + size, pairs);
+      child += size;
+    }
+    stack_.resize(top);
+  }
+
+  /// Chooses on which axes to split and where. False if no axis would separate the boxes.
+  bool choose_split(std::size_t begin, std::size_t end, Split& split) {
+    split.axis_count = 0;
+    const std::size_t count = end - begin;
+    std::array<float, node_samples> minima;
+    for (int axis = 0; axis < D; ++axis) {
+      const auto sample = [&](std::size_t i) -> const Box<D>& {
+        return box(stack_[begin + (2 * i + 1) * count / (2 * node_samples)]);
+      };
+      for (std::size_t i = 0; i < node_samples; ++i) minima[i] = sample(i).min[axis];
+      std::ranges::sort(minima);
+      const float at = minima[node_samples / 2];
+      std::size_t crossing = 0;
+      for (std::size_t i = 0; i < node_samples; ++i)
+        crossing += static_cast<std::size_t>(sample(i).min[axis] < at && sample(i).max[axis] >= at);
+      if (minima.front() == at || crossing > node_samples / 4) continue;
+      split.at[axis] = at;
+      split.low[axis] = minima[node_samples / 4];
+      split.high[axis] = minima[node_samples - 1 - node_samples / 4];
+      split.axes[split.axis_count++] = axis;
+    }
+    return split.axis_count > 0;
+  }
+
+  /// The children of a box are those in whose regions it has a part: lower ones if it begins before the
+  /// split, upper ones if it does not end before it. Fills children_ with a mask for each reference, 0 for a
+  /// box kept at the node, and `sizes`. False if a child would be nearly as large as the node.
+  bool partition(std::size_t begin, std::size_t end, const Split& split,
+                 std::array<std::size_t, most_children>& sizes) {
+    // For each axis, the children on its lower and on its upper side.
+    constexpr std::array<std::uint32_t, 3> lower = {0x55, 0x33, 0x0f};
+    constexpr std::array<std::uint32_t, 3> upper = {0xaa, 0xcc, 0xf0};
+    const std::uint32_t all = (1U << (1U << split.axis_count)) - 1;
+    children_.resize(std::max(children_.size(), end - begin));
+    sizes.fill(0);
+    std::array<std::size_t, 256> masks{};
+    for (std::size_t i = begin; i < end; ++i) {
+      const Box<D>& b = box(stack_[i]);
+      std::uint32_t mask = all;
+      for (int at = 0; at < split.axis_count; ++at) {
+        const int axis = split.axes[at];
+        const float border = split.at[axis];
+        mask &= (b.min[axis] < border ? lower[at] : 0U) | (b.max[axis] >= border ? upper[at] : 0U);
+      }
+      if (mask == all && covers_middle(b, split)) mask = 0;
+      children_[i - begin] = static_cast<std::uint8_t>(mask);
+      ++masks[mask];
+    }
+    kept_count_ = masks[0];
+    std::size_t largest = 0;
+    for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
+      for (std::uint32_t mask = 1; mask <= all; ++mask) sizes[child] += (mask >> child & 1U) * masks[mask];
+      largest = std::max(largest, sizes[child]);
+    }
+    return largest <= (end - begin) / 8 * 7;
+  }
+
+  static bool covers_middle(const Box<D>& b, const Split& split) {
+    bool covers = true;
+    for (int at = 0; at < split.axis_count; ++at) {
+      const int axis = split.axes[at];
+      covers &= b.min[axis] <= split.low[axis] && b.max[axis] >= split.high[axis];
+    }
+    return covers;
+  }
+
+  /// Pushes the references of all children, one child after the other.
+  void push_children(std::size_t begin, std::size_t end, const Split& split,
+                     const std::array<std::size_t, most_children>& sizes) {
+    std::array<std::size_t, most_children> next;
+    std::size_t top = stack_.size();
+    for (std::uint32_t child = 0; child < most_children; ++child) {
+      next[child] = top;
+      top += sizes[child];
+    }
+    stack_.resize(top);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Reference reference = stack_[i];
+      for (std::uint32_t mask = children_[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
+        if ((mask & 1U) == 0) continue;
+        std::uint32_t before = reference.before;
+        for (int at = 0; at < split.axis_count; ++at) {
+          const int axis = split.axes[at];
+          if ((child >> at & 1U) != 0 && box(reference).min[axis] < split.at[axis]) before |= 1U << axis;
+        }
+        stack_[next[child]++] = {reference.place, before};
+      }
+    }
+  }
+
+  /// Sweeps the boxes kept at a node among themselves and against the node's others.
+  void sweep_kept(std::size_t begin, std::size_t end, PairSink& pairs) {
+    gather(begin, end, kept_run_, [this](std::size_t i) { return children_[i] == 0; });
+    gather(begin, end, run_, [this](std::size_t i) { return children_[i] != 0; });
+    statistics_.references += kept_run_.size();
+    statistics_.tests += kernels::sweep(kept_run_.view(), pairs);
+    statistics_.tests += kernels::sweep(kept_run_.view(), run_.view(), pairs);
+  }
+
+  /// Fills `run` with those of the node's references whose places in the node are `wanted`.
+  template <typename Wanted>
+  void gather(std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run, Wanted wanted) const {
+    run.clear();
+    run.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!wanted(i - begin)) continue;
+      const core::SortedBox<D>& sorted = sorted_boxes_[stack_[i].place];
+      run.append(sorted.box, sorted.id, stack_[i].before);
+    }
+  }
+
+  std::size_t capacity_;
+
+  core::Sample<D> sample_;
+  core::SortedBoxes<D> sorted_;
+  std::span<const core::SortedBox<D>> sorted_boxes_;
+  std::vector<Reference> stack_;
+  std::vector<std::uint8_t>
+      children_;  // by reference of the node being split: bit c set if it goes into child c
+  std::size_t kept_count_ = 0;
+  kernels::RunBuffer<D> run_;
+  kernels::RunBuffer<D> kept_run_;
+  Statistics statistics_;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  return std::make_unique<Quadtree<D>>(settings.is_auto("capacity")
+                                           ? standard_capacity<D>
+                                           : static_cast<std::size_t>(settings.integer("capacity")));
+}
+
+}  // namespace
+
+Algorithm quadtree() {
+  return {
+      .name = "quadtree",
+      .summary = "nodes split at medians until they hold few boxes, which are swept; an octree in 3D",
+      .source = "paper.md, section V",
+      .tunables = {{.name = "capacity",
+                    .summary = "most boxes in a leaf that could be split",
+                    .standard = "auto",
+                    .type = Tunable::Type::integer,
+                    .least = 1,
+                    .most = 1 << 30}},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+  };
+}
+
+}  // namespace broadside::own

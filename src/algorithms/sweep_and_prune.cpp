@@ -1,0 +1,155 @@
+// Sweep and prune: boxes sorted along one axis, each compared with those that begin before it ends; and the
+// same in stripes of a second axis.
+//
+// Section IV of the paper. The axis is the one on which a sample of the boxes overlaps least. Where that
+// leaves many candidates, a second axis is cut into stripes that hold equally many boxes, and each stripe is
+// swept by itself (P. Terdiman, "Box pruning revisited"). A box is in every stripe it touches; a pair is
+// reported in the stripe that holds the greater of its two minima.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "core/cell_lists.hpp"
+#include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
+#include "kernels/sweep.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// What filing a box once more costs, in tests of two boxes.
+constexpr double reference_cost = 64;
+
+constexpr std::size_t most_stripes = 256;
+
+template <int D>
+class SweepAndPrune final : public PairFinder<D> {
+ public:
+  explicit SweepAndPrune(const Settings& settings) {
+    if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
+    if (!settings.is_auto("axes")) axes_ = static_cast<int>(settings.text("axes")[0] - '0');
+    if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
+  }
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    sample_.take(boxes);
+    std::array<int, D> axes = sample_.axes_by_overlap();
+    std::ranges::stable_sort(axes, {}, [this](int axis) { return axis_ >= 0 && axis != axis_; });
+    choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
+    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes);
+    if (borders_.empty())
+      sweep_all(sorted, pairs);
+    else
+      sweep_stripes(sorted, pairs);
+  }
+
+  /// Sets the borders between stripes, none if one axis is enough.
+  void choose_stripes(std::size_t boxes, const core::AxisSample& swept, const core::AxisSample& striped) {
+    // Of S stripes with borders where boxes begin, a box touches S / 2 times the axis's overlap more than
+    // one; and a sweep compares the square of a stripe's boxes.
+    const auto cost = [&](std::size_t stripes) {
+      const auto count = static_cast<double>(boxes);
+      const double references = count * (1 + static_cast<double>(stripes - 1) * striped.overlap / 2);
+      return reference_cost * references +
+             references * references * swept.overlap / 2 / static_cast<double>(stripes);
+    };
+    std::size_t best = axes_ == 2 ? 2 : 1;
+    for (std::size_t stripes = 2 * best; axes_ != 1 && stripes <= most_stripes && 16 * stripes <= boxes;
+         stripes *= 2) {
+      if (cost(stripes) < cost(best)) best = stripes;
+    }
+    borders_.clear();
+    const std::vector<float>& minima = striped.minima;
+    for (std::size_t stripe = 1; stripe < best && !minima.empty(); ++stripe)
+      borders_.push_back(minima[minima.size() * stripe / best]);
+    borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
+  }
+
+  void sweep_all(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+    run_.clear();
+    run_.reserve(sorted.size());
+    for (const core::SortedBox<D>& box : sorted) run_.append(box.box, box.id);
+    this->count({.tests = kernels::sweep(run_.view(), pairs), .references = sorted.size()});
+  }
+
+  void sweep_stripes(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+    const auto stripe_of = [this](float coordinate) {
+      return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
+    };
+    places_.resize(sorted.size());
+    stripes_.reset(borders_.size() + 1);
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      places_[i] = {stripe_of(sorted[i].box.min[1]), stripe_of(sorted[i].box.max[1])};
+      for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe) stripes_.count(stripe);
+    }
+    stripes_.prepare();
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) {
+      for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
+        stripes_.file(stripe, i);
+    }
+    Statistics statistics{.tests = 0, .references = stripes_.size()};
+    for (std::size_t stripe = 0; stripe <= borders_.size(); ++stripe) {
+      const std::span<const std::uint32_t> list = stripes_.list(stripe);
+      run_.clear();
+      run_.reserve(list.size());
+      for (const std::uint32_t i : list)
+        run_.append(sorted[i].box, sorted[i].id, static_cast<std::uint32_t>(places_[i].first < stripe));
+      statistics.tests += kernels::sweep(run_.view(), pairs);
+    }
+    this->count(statistics);
+  }
+
+  /// The stripes in which a box begins and ends.
+  struct Place {
+    std::uint16_t first;
+    std::uint16_t last;
+  };
+
+  int axis_ = -1;  // the axis to sweep along; -1: to be chosen
+  int axes_ = 0;   // 1: no stripes; 2: stripes; 0: to be chosen
+
+  core::Sample<D> sample_;
+  core::SortedBoxes<D> sorted_;
+  std::vector<float> borders_;  // a stripe's first coordinate, from the second stripe on
+  std::vector<Place> places_;
+  core::CellLists stripes_;
+  kernels::RunBuffer<D> run_;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  return std::make_unique<SweepAndPrune<D>>(settings);
+}
+
+}  // namespace
+
+Algorithm sweep_and_prune() {
+  return {
+      .name = "sweep_and_prune",
+      .summary =
+          "a sorted sweep along the axis that separates the boxes best, in stripes of a second axis where "
+          "that pays",
+      .source = "paper.md, section IV; P. Terdiman, Box pruning revisited",
+      .tunables = {{.name = "axis",
+                    .summary = "the axis to sweep along",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"x", "y", "z"}},
+                   {.name = "axes",
+                    .summary = "how many axes are used: 1, or 2 for stripes",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"1", "2"}}},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+  };
+}
+
+}  // namespace broadside::own

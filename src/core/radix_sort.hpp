@@ -1,0 +1,39 @@
+// Boxes' places sorted by a float, by a radix sort: O(n) whatever the values.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace broadside::core {
+
+/// A number that orders as `value` does, for any float but NaN; -0.0 and 0.0 have the same.
+inline std::uint32_t sort_key(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
+  return bits ^ (bits >> 31 != 0 ? 0xffffffffU : 0x80000000U);
+}
+
+/// A place in an array and the key it is to be sorted by.
+struct KeyedPlace {
+  std::uint32_t key;
+  std::uint32_t place;
+};
+
+/// Sorts by key, those of equal keys staying in order. A counting pass for each 11 bits in which the keys
+/// differ.
+class RadixSort {
+ public:
+  /// Room for `count` places to be filled in and sorted. Valid until the next call.
+  std::span<KeyedPlace> places(std::size_t count);
+
+  /// Sorts what was filled in. The result is valid until the next call of places().
+  std::span<const KeyedPlace> sort();
+
+ private:
+  std::vector<KeyedPlace> places_;
+  std::vector<KeyedPlace> other_;
+};
+
+}  // namespace broadside::core

@@ -1,0 +1,86 @@
+// What a sample of the boxes says about each axis: the signals from which algorithms choose their tunables.
+#include "core/sample.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+namespace broadside::core {
+namespace {
+
+constexpr std::size_t most_samples = 512;
+constexpr float largest = std::numeric_limits<float>::max();
+
+/// A few boxes are sampled densely; of many, so few that sampling is a small part of the work.
+std::size_t sample_count(std::size_t boxes) { return std::min({boxes, 64 + boxes / 16, most_samples}); }
+
+/// The part of the pairs among `minima.size()` intervals that overlap; both ends sorted, each for itself.
+double overlapping_part(std::span<const float> minima, std::span<const float> maxima) {
+  // Of all pairs, those whose one ends before the other begins are apart.
+  std::uint64_t apart = 0;
+  std::size_t ended = 0;
+  for (const float min : minima) {
+    while (ended < maxima.size() && maxima[ended] < min) ++ended;
+    apart += ended;
+  }
+  const auto count = static_cast<double>(minima.size());
+  const double pairs = count * (count - 1) / 2;
+  return pairs > 0 ? 1 - static_cast<double>(apart) / pairs : 1;
+}
+
+/// Sets the bounds of a sample from its ends, both sorted: those of the middle three quarters, and as much
+/// again on either side if the sample reaches that far.
+void set_bounds(AxisSample& sample, std::span<const float> maxima) {
+  if (maxima.empty()) return;
+  const std::size_t eighth = maxima.size() / 8;
+  const auto finite = [](float value) { return static_cast<double>(std::clamp(value, -largest, largest)); };
+  const double low = finite(sample.minima[eighth]);
+  const double high = finite(maxima[maxima.size() - 1 - eighth]);
+  sample.low = static_cast<float>(std::max(finite(sample.minima.front()), low - (high - low)));
+  sample.high = static_cast<float>(std::min(finite(maxima.back()), high + (high - low)));
+}
+
+}  // namespace
+
+template <int D>
+void Sample<D>::take(std::span<const Box<D>> boxes) {
+  const std::size_t count = sample_count(boxes.size());
+  for (int axis = 0; axis < D; ++axis) {
+    AxisSample& sample = axes_[axis];
+    sample.minima.clear();
+    maxima_.clear();
+    extents_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      // Multiples of the golden ratio, modulo 1, fall everywhere and never in step with a pattern in the
+      // array.
+      const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
+      const Box<D>& box = boxes[count == boxes.size() ? i : fraction * std::uint64_t{boxes.size()} >> 32];
+      const float min = box.min[axis];
+      const float max = box.max[axis];
+      sample.minima.push_back(min);
+      maxima_.push_back(max);
+      extents_.push_back(std::min(max - min, largest));
+    }
+    std::ranges::sort(sample.minima);
+    std::ranges::sort(maxima_);
+    sample.overlap = overlapping_part(sample.minima, maxima_);
+    set_bounds(sample, maxima_);
+    const auto middle = extents_.begin() + static_cast<std::ptrdiff_t>(extents_.size() / 2);
+    std::nth_element(extents_.begin(), middle, extents_.end());
+    sample.extent = extents_.empty() ? 0 : *middle;
+  }
+}
+
+template <int D>
+std::array<int, D> Sample<D>::axes_by_overlap() const {
+  std::array<int, D> axes;
+  std::iota(axes.begin(), axes.end(), 0);
+  std::ranges::stable_sort(axes, {}, [this](int axis) { return axes_[axis].overlap; });
+  return axes;
+}
+
+template class Sample<2>;
+template class Sample<3>;
+
+}  // namespace broadside::core

@@ -1,0 +1,44 @@
+// What a sample of the boxes says about each axis: the signals from which algorithms choose their tunables.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+namespace broadside::core {
+
+/// One axis as the sample shows it.
+struct AxisSample {
+  /// The chance that two boxes overlap in their projections on this axis. A sweep along the axis compares
+  /// about n / 2 times this many pairs a box.
+  double overlap = 1;
+
+  float low = 0;     ///< the finite bounds between which the sampled boxes lie, but for far outliers
+  float high = 0;    ///<
+  float extent = 0;  ///< the median of the boxes' extents, at most FLT_MAX
+
+  std::vector<float> minima;  ///< of the sampled boxes, ascending
+};
+
+/// A sample of at most some hundred boxes: the same for the same boxes, spread over the array without a
+/// period that a regular scene could share. Cost O(1) for large arrays.
+template <int D>
+class Sample {
+ public:
+  void take(std::span<const Box<D>> boxes);
+
+  const AxisSample& operator[](int axis) const noexcept { return axes_[axis]; }
+
+  /// The axes, the one with the least overlap first: the best to sweep along.
+  std::array<int, D> axes_by_overlap() const;
+
+ private:
+  std::array<AxisSample, D> axes_;
+  std::vector<float> maxima_;
+  std::vector<float> extents_;
+};
+
+}  // namespace broadside::core
