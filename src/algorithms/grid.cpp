@@ -104,9 +104,10 @@ class Grid final : public PairFinder<D> {
       counts[axis] = static_cast<std::uint32_t>(cells[axis]);
       const double range = static_cast<double>(sample.high) - sample.low;
       low_[axis] = sample.low;
-      // Never zero, which an infinite distance would turn into a NaN.
-      per_unit_[axis] = std::max(static_cast<float>(range > 0 ? counts[axis] / range : 1),
-                                 std::numeric_limits<float>::min());
+      // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+      const double per_unit = range > 0 ? counts[axis] / range : 1;
+      per_unit_[axis] = static_cast<float>(
+          std::clamp<double>(per_unit, std::numeric_limits<float>::min(), std::numeric_limits<float>::max()));
     }
     std::size_t offset = 0;
     level_count_ = 0;

@@ -60,7 +60,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes) {
       const float max = box.max[axis];
       sample.minima.push_back(min);
       maxima_.push_back(max);
-      extents_.push_back(std::min(max - min, largest));
+      extents_.push_back(max > min ? std::min(max - min, largest) : 0);  // inf - inf is not a number
     }
     std::ranges::sort(sample.minima);
     std::ranges::sort(maxima_);
