@@ -6,6 +6,7 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "paper/descriptions.hpp"
 
 namespace broadside {
 namespace {
@@ -37,7 +38,8 @@ std::string_view name(AlgorithmKind kind) noexcept {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::brute_force(), own::grid(), own::sweep_and_prune(), own::quadtree(),
+      own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),
+      paper::brute_force(), paper::grid(), paper::sweep_and_prune(), paper::quadtree(),
   };
   return list;
 }

@@ -27,7 +27,7 @@ const std::vector<Rule>& rules() {
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
       {"src/kernels/", standard + R"(|"broadside/(box|pair)\.hpp"|"kernels/[a-z_]+\.hpp")"},
       {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
-      {"src/paper/", inner + R"(|"paper/descriptions\.hpp")"},
+      {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
       {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines},

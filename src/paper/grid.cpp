@@ -1,0 +1,165 @@
+// The grid ("spatial partitioning index") as section III of paper.md has it: Algorithms 2 to 4. What was
+// mended, and why, is in docs/paper/errata.md.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+
+#include "paper/descriptions.hpp"
+#include "paper/shared/algorithm_1.hpp"
+#include "paper/shared/world.hpp"
+
+namespace broadside::paper {
+namespace {
+
+/// The most that any grid may hold, also one whose cell the user has set.
+double most_cells(double boxes) { return std::clamp<double>(16 * boxes, 1 << 16, 1 << 22); }
+double most_references(double boxes) { return std::max<double>(64 * boxes, 1 << 18); }
+
+/// The most in a grid that chooses its cell: beyond that, cells and references cost more than they save.
+double most_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22); }
+double most_auto_references(double boxes) { return 16 * boxes; }
+
+/// The number of the cell, of `count` cells, in which `x` lies. Rises with x, and is defined for every x:
+/// what lies outside the world is in the cell at its border.
+std::size_t cell_of(double x, double begin, double size, double count) {
+  const double cell = std::floor((x - begin) / size);                       // Errata 2c and 3d
+  return static_cast<std::size_t>(std::clamp<double>(cell, 0, count - 1));  // Errata 3e and 3f
+}
+
+/// Twice the mean finite extent; where the boxes have none, what gives each a cell of its own.
+double choose_size(std::span<const Box2> boxes, const World& world) {
+  double sum = 0;
+  double count = 0;
+  for (const Box2& box : boxes) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const double extent = double{box.max[axis]} - double{box.min[axis]};
+      if (!std::isfinite(extent)) continue;
+      sum += extent;
+      count += 1;
+    }
+  }
+  if (sum > 0) return 2 * sum / count;
+  return std::max(world.width, world.height) / std::sqrt(static_cast<double>(boxes.size()));
+}
+
+class Grid final : public PairFinder<2> {
+ public:
+  explicit Grid(const Settings& settings)
+      : world_settings_(settings), cell_(settings.is_auto("cell") ? 0 : settings.number("cell")) {}
+
+ private:
+  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+    statistics_ = {};
+    if (!boxes.empty()) {
+      boxes_ = boxes;
+      world_ = world_settings_.around(boxes);
+      algorithm_2_init(world_.width, world_.height, cell_ > 0 ? cell_ : choose_size(boxes, world_));
+      algorithm_3_spanning_add_element();
+      algorithm_4_spi(pairs);
+    }
+    this->count(statistics_);
+  }
+
+  /// Algorithm 2, "Initialize".
+  void algorithm_2_init(double width, double height, double size) {
+    const auto divide = [&](double by) {
+      size_ = by;
+      x_grids_ = std::max(1.0, std::ceil(width / by));
+      y_grids_ = std::max(1.0, std::ceil(height / by));
+    };
+    divide(size);
+    while (too_large()) divide(2 * size_);                     // Errata 2d and 3h
+    g_.resize(static_cast<std::size_t>(x_grids_ * y_grids_));  // Errata 2a and 2b
+    for (std::vector<BoxId>& cell : g_) cell.clear();
+  }
+
+  /// Algorithm 3, "Spanning Add Element".
+  void algorithm_3_spanning_add_element() {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {  // Erratum 3i
+      const Box2& e = boxes_[i];
+      const std::size_t last_row = row(e.max[1]);
+      const std::size_t last_col = column(e.max[0]);
+      for (std::size_t r = row(e.min[1]); r <= last_row; ++r) {       // Errata 3b, 3c and 3g
+        for (std::size_t c = column(e.min[0]); c <= last_col; ++c) {  // Errata 3b, 3c and 3g
+          g(c, r).push_back(BoxId(i));                                // Erratum 3a
+          ++statistics_.references;
+        }
+      }
+    }
+  }
+
+  /// Algorithm 4, "SPI".
+  void algorithm_4_spi(PairSink& pairs) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(x_grids_); ++i) {    // Errata 4a and 4c
+      for (std::size_t j = 0; j < static_cast<std::size_t>(y_grids_); ++j) {  // Errata 4a and 4c
+        algorithm_1_brute_force(g(i, j), [&](BoxId a, BoxId b) {
+          ++statistics_.tests;
+          const Box2& first = boxes_[index(a)];
+          const Box2& second = boxes_[index(b)];
+          if (!overlap(first, second)) return;
+          const bool here = column(std::max(first.min[0], second.min[0])) == i &&
+                            row(std::max(first.min[1], second.min[1])) == j;
+          if (here) pairs.add(a, b);  // Erratum 4b
+        });
+      }
+    }
+  }
+
+  /// Whether the grid of this size has more cells, or would hold more references, than it may.
+  bool too_large() const {
+    const auto boxes = static_cast<double>(boxes_.size());
+    const bool chosen = cell_ == 0;
+    if (x_grids_ * y_grids_ > (chosen ? most_auto_cells(boxes) : most_cells(boxes))) return true;
+    double references = 0;
+    for (const Box2& e : boxes_) {
+      references += static_cast<double>(column(e.max[0]) - column(e.min[0]) + 1) *
+                    static_cast<double>(row(e.max[1]) - row(e.min[1]) + 1);
+    }
+    return references > (chosen ? most_auto_references(boxes) : most_references(boxes));
+  }
+
+  std::size_t column(float x) const { return cell_of(x, world_.left, size_, x_grids_); }
+  std::size_t row(float y) const { return cell_of(y, world_.top, size_, y_grids_); }
+  std::vector<BoxId>& g(std::size_t c, std::size_t r) {
+    return g_[c * static_cast<std::size_t>(y_grids_) + r];
+  }
+
+  WorldSettings world_settings_;
+  double cell_;  // 0: to be chosen
+
+  std::span<const Box2> boxes_;
+  World world_{};
+  double size_ = 1;
+  double x_grids_ = 1;
+  double y_grids_ = 1;
+  std::vector<std::vector<BoxId>> g_;
+  Statistics statistics_;
+};
+
+}  // namespace
+
+Algorithm grid() {
+  std::vector<Tunable> tunables = {{
+      .name = "cell",
+      .summary = "side of a cell, in the coordinates' unit; doubled while the grid would be too large for "
+                 "memory (errata 2d, 3h)",
+      .standard = "auto",
+      .least = std::numeric_limits<float>::min(),
+      .most = std::numeric_limits<float>::max(),
+  }};
+  for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
+  return {
+      .name = "paper_grid",
+      .summary = "a uniform grid with brute force in each cell, as the paper lists it, mended; 2D only",
+      .source = "paper.md, section III, Algorithms 2 to 4",
+      .kind = AlgorithmKind::paper,
+      .tunables = std::move(tunables),
+      .finder_2d = [](const Settings& settings) { return std::make_unique<Grid>(settings); },
+  };
+}
+
+}  // namespace broadside::paper
