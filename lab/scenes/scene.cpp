@@ -1,7 +1,51 @@
-// Scenes found by name and turned into histories.
+// The one list of scenes, and how a scene found by name becomes a history.
 #include "lab/scenes/scene.hpp"
 
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "broadside/error.hpp"
+
+#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/motion.hpp"
+
 namespace broadside::lab {
+namespace {
+
+std::vector<Scene> all_scenes() {
+  return {
+      generated::uniform(),   generated::power_law(), generated::mixed(),   generated::clustered(),
+      generated::one_point(), generated::one_line(),  generated::lattice(), generated::integers(),
+      generated::thin(),      generated::terdiman(),  generated::churn(),
+  };
+}
+
+template <int D>
+History<D> make(const MakeBoxes<D>& boxes, const MakeHistory<D>& history, const Scene& scene,
+                const Spec& spec, const SceneRequest& request) {
+  const Settings settings(spec, scene.tunables);
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (request.boxes > most)
+    throw InvalidSpec(scene.name + ": " + std::to_string(request.boxes) + " boxes; expected at most " +
+                      std::to_string(most));
+  if (history) return history(settings, request);
+  if (!boxes) {
+    throw InvalidSpec("scene '" + scene.name + "' does not exist in " + std::to_string(D) +
+                      "D; expected dimension " + std::to_string(5 - D));
+  }
+  std::vector<Box<D>> still = boxes(settings, request.boxes, request.seed);
+  if (request.frames == 0) return {std::move(still), {}};
+  return set_moving<D>(std::move(still), request, scene.integers);
+}
+
+}  // namespace
+
+std::string_view name(SceneKind kind) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"generated", "recorded", "file"};
+  return names[static_cast<std::size_t>(kind)];
+}
 
 template <int D>
 void apply(const Step<D>& step, std::vector<Box<D>>& boxes) {
@@ -9,6 +53,34 @@ void apply(const Step<D>& step, std::vector<Box<D>>& boxes) {
   for (std::size_t i = 0; i < step.changed.size(); ++i) {
     if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
   }
+}
+
+std::span<const Scene> scenes() {
+  static const std::vector<Scene> list = all_scenes();
+  return list;
+}
+
+NamedScene find_scene(std::string_view text) {
+  Spec spec = Spec::parse(text);
+  const std::span<const Scene> list = scenes();
+  const auto found = std::ranges::find(list, spec.name, &Scene::name);
+  if (found == list.end()) {
+    std::string known;
+    for (const Scene& scene : list) known += (known.empty() ? "" : ", ") + scene.name;
+    throw InvalidSpec("unknown scene '" + spec.name + "'; expected a file or one of: " + known);
+  }
+  const Settings checked(spec, found->tunables);
+  return {*found, std::move(spec)};
+}
+
+template <>
+History<2> make_history(const Scene& scene, const Spec& spec, const SceneRequest& request) {
+  return make<2>(scene.boxes_2d, scene.history_2d, scene, spec, request);
+}
+
+template <>
+History<3> make_history(const Scene& scene, const Spec& spec, const SceneRequest& request) {
+  return make<3>(scene.boxes_3d, scene.history_3d, scene, spec, request);
 }
 
 template void apply(const Step<2>&, std::vector<Box<2>>&);

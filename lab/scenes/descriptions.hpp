@@ -1,0 +1,20 @@
+// The descriptions in which the files of this folder end, for the list of scenes.
+#pragma once
+
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab::generated {
+
+Scene uniform();
+Scene power_law();
+Scene mixed();
+Scene clustered();
+Scene one_point();
+Scene one_line();
+Scene lattice();
+Scene integers();
+Scene thin();
+Scene terdiman();
+Scene churn();
+
+}  // namespace broadside::lab::generated

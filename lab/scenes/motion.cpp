@@ -1,0 +1,167 @@
+// Still boxes set moving, and turned back at the bounds they had when they were still.
+#include "lab/scenes/motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "broadside/error.hpp"
+
+#include "lab/scenes/random.hpp"
+
+namespace broadside::lab {
+namespace {
+
+void check_range(const char* name, double value, double most) {
+  if (value >= 0 && value <= most) return;
+  const std::string expected = most == 1 ? "a number from 0 to 1" : "a number of at least 0";
+  throw InvalidSpec(std::string(name) + " is " + std::to_string(value) + "; expected " + expected);
+}
+
+template <int D>
+bool is_finite(const Box<D>& box) {
+  bool finite = is_present(box);
+  for (int axis = 0; axis < D; ++axis) finite &= std::isfinite(box.min[axis]) && std::isfinite(box.max[axis]);
+  return finite;
+}
+
+template <int D>
+double mean_extent(const Box<D>& box) {
+  double sum = 0;
+  for (int axis = 0; axis < D; ++axis) sum += static_cast<double>(box.max[axis]) - box.min[axis];
+  return sum / D;
+}
+
+/// How far a box has gone on one axis from where it was in the first frame, and how far it may go.
+struct Way {
+  double offset = 0;
+  double speed = 0;  // a frame
+  double least;      // <= 0
+  double most;       // >= 0
+
+  void advance() {
+    if (least == most) return;
+    offset += speed;
+    if (offset >= least && offset <= most) return;
+    speed = -speed;
+    offset = std::clamp(2 * (offset < least ? least : most) - offset, least, most);
+  }
+
+  void jump(Random& random, bool whole) {
+    offset = whole ? least + std::floor((most - least + 1) * random.fraction()) : random.between(least, most);
+  }
+};
+
+template <int D>
+struct Mover {
+  BoxId id;
+  Box<D> first;
+  std::array<Way, D> ways;
+
+  Box<D> box() const {
+    Box<D> moved;
+    for (int axis = 0; axis < D; ++axis) {
+      moved.min[axis] = static_cast<float>(first.min[axis] + ways[axis].offset);
+      moved.max[axis] = static_cast<float>(first.max[axis] + ways[axis].offset);
+    }
+    return moved;
+  }
+};
+
+/// A direction times a length, in whole numbers of which at least one is not 0.
+template <int D>
+void make_whole(std::array<double, D>& velocity) {
+  const auto steepest =
+      std::ranges::max_element(velocity, {}, [](double component) { return std::abs(component); });
+  const double sign = *steepest < 0 ? -1 : 1;
+  for (double& component : velocity) component = std::round(component);
+  if (*steepest == 0) *steepest = sign;
+}
+
+template <int D>
+std::vector<Mover<D>> draw_movers(std::span<const Box<D>> boxes, const SceneRequest& request,
+                                  bool whole_steps, Random& random) {
+  Box<D> bounds = absent_box<D>();
+  double mean = 0;
+  std::vector<BoxId> finite;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_finite(boxes[i])) continue;
+    for (int axis = 0; axis < D; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], boxes[i].min[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], boxes[i].max[axis]);
+    }
+    mean += mean_extent(boxes[i]);
+    finite.push_back(BoxId(i));
+  }
+  mean /= static_cast<double>(std::max<std::size_t>(finite.size(), 1));
+
+  const auto wanted = std::llround(request.moving * static_cast<double>(boxes.size()));
+  const std::size_t count = std::min(finite.size(), static_cast<std::size_t>(wanted));
+  random.shuffle(finite, count);
+  finite.resize(count);
+  std::ranges::sort(finite);
+
+  std::vector<Mover<D>> movers;
+  movers.reserve(count);
+  for (const BoxId id : finite) {
+    const Box<D>& box = boxes[index(id)];
+    const double extent = mean_extent(box);
+    std::array<double, D> velocity = random.direction<D>();
+    for (double& component : velocity) component *= request.drift * (extent > 0 ? extent : mean);
+    if (whole_steps && request.drift > 0) make_whole<D>(velocity);
+    Mover<D> mover{id, box, {}};
+    for (int axis = 0; axis < D; ++axis) {
+      mover.ways[axis] = {.speed = velocity[axis],
+                          .least = static_cast<double>(bounds.min[axis]) - box.min[axis],
+                          .most = static_cast<double>(bounds.max[axis]) - box.max[axis]};
+    }
+    movers.push_back(mover);
+  }
+  return movers;
+}
+
+}  // namespace
+
+template <int D>
+History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
+  check_range("moving", request.moving, 1);
+  check_range("teleport", request.teleport, 1);
+  check_range("drift", request.drift, std::numeric_limits<double>::max());
+
+  // Not the stream that the boxes came from: their places must not say where they go.
+  Random random(request.seed ^ 0x6d6f74696f6e0000U);
+  std::vector<Mover<D>> movers = draw_movers<D>(boxes, request, whole_steps, random);
+  std::vector<Box<D>> last;
+  last.reserve(movers.size());
+  for (const Mover<D>& mover : movers) last.push_back(mover.first);
+
+  History<D> history{std::move(boxes), {}};
+  history.steps.reserve(request.frames);
+  for (std::size_t frame = 0; frame < request.frames; ++frame) {
+    Step<D> step{history.boxes.size(), {}, {}};
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+      const bool jumps = random.chance(request.teleport);
+      for (Way& way : movers[i].ways) {
+        if (jumps)
+          way.jump(random, whole_steps);
+        else
+          way.advance();
+      }
+      const Box<D> box = movers[i].box();
+      if (box == last[i]) continue;
+      last[i] = box;
+      step.changed.push_back(movers[i].id);
+      step.boxes.push_back(box);
+    }
+    history.steps.push_back(std::move(step));
+  }
+  return history;
+}
+
+template History<2> set_moving(std::vector<Box<2>>, const SceneRequest&, bool);
+template History<3> set_moving(std::vector<Box<3>>, const SceneRequest&, bool);
+
+}  // namespace broadside::lab

@@ -1,0 +1,39 @@
+// Motion: still boxes set moving, and random histories that do everything a history may do.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+/// The history of `boxes` over request.frames steps, in which a fraction request.moving of them, drawn once,
+/// are movers. Each goes in a direction of its own, request.drift times its mean extent a frame (the mean of
+/// all boxes where it is a point), and turns back at the bounds of `boxes`, so that none ever leaves them;
+/// in each frame the fraction request.teleport of the movers, drawn anew, jumps anywhere within the bounds
+/// instead. Sizes stay as they are but for rounding. Boxes with an infinite extent, and absent ones, do not
+/// move.
+///
+/// With `whole_steps`, a mover goes a whole number a frame on each axis, at least 1 on one, so that integers
+/// remain integers. Throws InvalidSpec if a fraction is not from 0 to 1, or the drift is negative or not
+/// finite. Cost O(frames x movers) in time and memory.
+template <int D>
+History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps);
+
+/// What a random history is to contain.
+struct Churn {
+  std::size_t boxes = 60;      ///< about how many boxes there are
+  std::size_t frames = 30;     ///< steps after the first frame
+  std::uint64_t seed = 1;      ///< the same seed gives the same history on every machine
+  bool infinite_boxes = true;  ///< whether some boxes are infinite, and some as large as a float can be
+};
+
+/// A history for tests of trackers. From frame to frame boxes are added, moved, removed and teleported;
+/// places are used again, some in the very frame in which their box is removed; the array grows and shrinks;
+/// some frames change nothing, some everything, and some list a box that stays as it was. Coordinates are
+/// small integers, so ties abound; among the boxes are points, duplicates and -0.0.
+template <int D>
+History<D> random_history(const Churn& churn);
+
+}  // namespace broadside::lab

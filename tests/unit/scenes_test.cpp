@@ -1,0 +1,216 @@
+// The generated scenes: the same everywhere, as many boxes and as many neighbours as asked for.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/scenes/scatter.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+namespace {
+
+template <int D>
+std::vector<Box<D>> boxes_of(std::string_view text, std::size_t count, std::uint64_t seed = 1) {
+  const NamedScene named = find_scene(text);
+  return make_history<D>(named.scene, named.spec, {.boxes = count, .seed = seed}).boxes;
+}
+
+template <int D>
+std::uint64_t count_pairs(const std::vector<Box<D>>& boxes) {
+  PairCounter counter;
+  find_pairs(boxes, counter, "brute_force");
+  return counter.count();
+}
+
+/// Over several seeds, because where few boxes are huge, much hangs on where they lie.
+template <int D>
+double mean_neighbours(std::string_view text, std::size_t count) {
+  constexpr int seeds = 8;
+  double sum = 0;
+  for (int seed = 1; seed <= seeds; ++seed)
+    sum +=
+        2.0 * static_cast<double>(count_pairs(boxes_of<D>(text, count, seed))) / static_cast<double>(count);
+  return sum / seeds;
+}
+
+/// Calls `check` with each generated scene and the boxes it makes, in each of its dimensions.
+template <typename Check>
+void for_each_generated(std::size_t count, Check check) {
+  for (const Scene& scene : scenes()) {
+    if (scene.kind != SceneKind::generated) continue;
+    SCOPED_TRACE(scene.name);
+    if (scene.boxes_2d) check(scene, boxes_of<2>(scene.name, count));
+    if (scene.boxes_3d) check(scene, boxes_of<3>(scene.name, count));
+  }
+}
+
+TEST(Scenes, MakeAsManyValidBoxesAsAskedFor) {
+  for (const std::size_t count : {0, 1, 2, 3, 500}) {
+    for_each_generated(count, [count](const Scene&, const auto& boxes) {
+      EXPECT_EQ(boxes.size(), count);
+      EXPECT_TRUE(std::ranges::all_of(boxes, [](const auto& box) { return is_present(box); }));
+    });
+  }
+}
+
+TEST(Scenes, AreTheSameForASeedAndDifferentForAnother) {
+  for (const Scene& scene : scenes()) {
+    if (scene.kind != SceneKind::generated) continue;
+    SCOPED_TRACE(scene.name);
+    EXPECT_EQ(boxes_of<2>(scene.name, 100, 7), boxes_of<2>(scene.name, 100, 7));
+    EXPECT_EQ(boxes_of<3>(scene.name, 100, 7), boxes_of<3>(scene.name, 100, 7));
+    EXPECT_EQ(boxes_of<3>(scene.name, 100, 7) == boxes_of<3>(scene.name, 100, 8), scene.fixed_seed);
+  }
+}
+
+TEST(Scenes, HaveIntegerCoordinatesWhereTheySaySo) {
+  for_each_generated(500, [](const Scene& scene, const auto& boxes) {
+    const auto is_whole = [](float coordinate) { return coordinate == std::floor(coordinate); };
+    const bool whole = std::ranges::all_of(boxes, [&](const auto& box) {
+      return std::ranges::all_of(box.min, is_whole) && std::ranges::all_of(box.max, is_whole);
+    });
+    EXPECT_EQ(whole, scene.integers);
+  });
+}
+
+/// A number that tells any two arrays of boxes apart, their order included.
+template <int D>
+std::uint64_t fingerprint(const std::vector<Box<D>>& boxes) {
+  std::uint64_t fingerprint = 0;
+  for (const Box<D>& box : boxes) {
+    for (const auto& corner : {box.min, box.max}) {
+      for (const float coordinate : corner)
+        fingerprint =
+            fingerprint * 0x9e3779b97f4a7c15U + static_cast<std::uint64_t>(std::int64_t(coordinate));
+    }
+  }
+  return fingerprint;
+}
+
+TEST(Scenes, MadeOfIntegersAreTheSameUnderEveryCompiler) {
+  EXPECT_EQ(fingerprint(boxes_of<2>("integers", 1000)), 0x92b62a4ba609a3d9U);
+  EXPECT_EQ(fingerprint(boxes_of<3>("integers", 1000)), 0x40f12bae98da8ad1U);
+  EXPECT_EQ(fingerprint(boxes_of<2>("lattice", 1000)), 0x1fd039b1e1b24658U);
+  EXPECT_EQ(fingerprint(boxes_of<3>("lattice", 1000)), 0x9449edc6b0ee5500U);
+  EXPECT_EQ(fingerprint(boxes_of<2>("terdiman", 1000)), 0x47c3e149dc09e378U);
+  EXPECT_EQ(fingerprint(boxes_of<3>("terdiman", 1000)), 0x68d509b3321d965aU);
+}
+
+TEST(Scenes, GiveABoxFourNeighboursOnAverage) {
+  for (const char* name : {"uniform", "power_law", "mixed", "clustered", "one_line", "thin"}) {
+    SCOPED_TRACE(name);
+    for (const std::size_t count : {500, 2000}) {
+      EXPECT_NEAR(mean_neighbours<2>(name, count), 4, 0.8);
+      EXPECT_NEAR(mean_neighbours<3>(name, count), 4, 0.8);
+    }
+  }
+}
+
+TEST(Integers, GiveABoxFewNeighbours) {
+  EXPECT_NEAR(mean_neighbours<2>("integers", 2000), 3.8, 0.4);
+  EXPECT_NEAR(mean_neighbours<3>("integers", 2000), 3.3, 0.4);
+}
+
+TEST(Scenes, GiveABoxAsManyNeighboursAsTheTunableSays) {
+  for (const char* name : {"uniform", "power_law", "mixed", "clustered", "one_line", "thin"}) {
+    SCOPED_TRACE(name);
+    const std::string dense = std::string(name) + ":neighbours=40";
+    EXPECT_NEAR(mean_neighbours<2>(dense, 4000), 40, 8);
+    EXPECT_NEAR(mean_neighbours<3>(dense, 4000), 40, 12);
+  }
+}
+
+TEST(Scenes, LetEveryBoxTouchEveryOtherWhereMoreNeighboursAreAskedForThanThereAre) {
+  EXPECT_EQ(count_pairs(boxes_of<2>("uniform:neighbours=1000", 50)), 50u * 49 / 2);
+  EXPECT_EQ(count_pairs(boxes_of<3>("one_line:neighbours=1000", 50)), 50u * 49 / 2);
+}
+
+TEST(OnePoint, MakesEveryPairOverlap) {
+  EXPECT_EQ(count_pairs(boxes_of<2>("one_point", 300)), 300u * 299 / 2);
+  EXPECT_EQ(count_pairs(boxes_of<3>("one_point", 300)), 300u * 299 / 2);
+}
+
+TEST(OneLine, GivesAllBoxesTheSameIntervalOnX) {
+  for (const Box3& box : boxes_of<3>("one_line", 100)) {
+    EXPECT_EQ(box.min[0], -0.5F);
+    EXPECT_EQ(box.max[0], 0.5F);
+  }
+}
+
+TEST(Lattice, TouchesAllNeighboursAndNothingElse) {
+  // On a full lattice of side s: (pairs one step apart in each direction of half the neighbourhood).
+  EXPECT_EQ(count_pairs(boxes_of<2>("lattice", 100)), 2u * 10 * 9 + 2u * 9 * 9);
+  EXPECT_EQ(count_pairs(boxes_of<3>("lattice", 1000)), 3u * 100 * 9 + 6u * 10 * 81 + 4u * 729);
+}
+
+TEST(Mixed, MakesOneBoxInAHundredHuge) {
+  const std::vector<Box2> boxes = boxes_of<2>("mixed", 1000);
+  EXPECT_EQ(std::ranges::count_if(boxes, [](const Box2& box) { return box.max[0] - box.min[0] > 10; }), 10);
+}
+
+TEST(PowerLaw, KeepsSizesWithinTheRatioAndMostOfThemSmall) {
+  std::vector<double> sizes;
+  for (const Box2& box : boxes_of<2>("power_law:exponent=2:ratio=100", 10000))
+    sizes.push_back(box.max[0] - box.min[0]);
+  std::ranges::sort(sizes);
+  EXPECT_GT(sizes.front(), 0.49);
+  EXPECT_LT(sizes.back(), 151);
+  EXPECT_GT(sizes.back(), 50);
+  // With density s^-2 half of the sizes lie below 2.
+  EXPECT_NEAR(sizes[sizes.size() / 2], 2, 0.3);
+}
+
+TEST(Churn, KeepsAboutAsManyBoxesAndNeighboursAsItHadAtFirst) {
+  const NamedScene named = find_scene("churn");
+  const History<2> history = make_history<2>(named.scene, named.spec, {.boxes = 2000, .frames = 40});
+  std::vector<Box2> boxes = history.boxes;
+  for (const Step<2>& step : history.steps) lab::apply(step, boxes);
+  EXPECT_EQ(history.boxes.size(), 2000u);
+  EXPECT_NEAR(static_cast<double>(boxes.size()), 2000, 1000);
+  EXPECT_GT(count_pairs(boxes), boxes.size() / 2);
+  EXPECT_LT(count_pairs(boxes), boxes.size() * 4);
+}
+
+TEST(Terdiman, HasExactlyThePublishedPairs) {
+  EXPECT_EQ(count_pairs(boxes_of<3>("terdiman", 10000)), 11811u);
+}
+
+TEST(Power, AgreesWithTheStandardLibrarys) {
+  for (const double base : {0.001, 0.5, 1.0, 7.0, 1e6}) {
+    for (const double exponent : {-3.25, -0.5, 0.0, 1.0 / 3, 1.0, 2.75})
+      EXPECT_NEAR(power(base, exponent) / std::pow(base, exponent), 1, 1e-8);
+  }
+}
+
+TEST(FindScene, NamesTheScenesThereAre) {
+  try {
+    find_scene("unifrom");
+    FAIL() << "found a scene that does not exist";
+  } catch (const InvalidSpec& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("'unifrom'"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("uniform, power_law"));
+  }
+}
+
+TEST(FindScene, RefusesUnknownTunablesAndValuesOutOfRange) {
+  EXPECT_THROW(find_scene("uniform:colour=red"), InvalidSpec);
+  EXPECT_THROW(find_scene("uniform:neighbours=-1"), InvalidSpec);
+  EXPECT_THROW(find_scene("clustered:clusters=1.5"), InvalidSpec);
+}
+
+TEST(MakeHistory, RefusesADimensionThatTheSceneDoesNotHave) {
+  Scene flat = find_scene("uniform").scene;
+  flat.boxes_3d = nullptr;
+  EXPECT_THROW(make_history<3>(flat, Spec{flat.name, {}}, {}), InvalidSpec);
+}
+
+}  // namespace
+}  // namespace broadside::lab
