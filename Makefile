@@ -26,7 +26,7 @@ format: setup-ci ## Put every source file in the project's format
 	$(sources) | xargs clang-format -i
 
 lint: check-format build/clang/build.ninja ## Check the format and what clang-tidy says of library, lab and program
-	find src lab cli -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
+	find $(wildcard src lab cli examples) -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
 
 check-format: setup-ci
 	$(sources) | xargs clang-format --dry-run --Werror

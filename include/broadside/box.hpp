@@ -49,8 +49,10 @@ constexpr bool is_present(const Box<D>& box) noexcept {
 template <int D>
 constexpr bool overlap(const Box<D>& a, const Box<D>& b) noexcept {
   bool touching = true;
-  for (int axis = 0; axis < D; ++axis)
-    touching &= (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]);
+  for (int axis = 0; axis < D; ++axis) {
+    touching &= a.min[axis] <= b.max[axis];
+    touching &= b.min[axis] <= a.max[axis];
+  }
   return touching;
 }
 
