@@ -9,7 +9,6 @@
 #include "broadside/pair.hpp"
 
 #include "core/radix_sort.hpp"
-#include "kernels/run.hpp"
 
 namespace broadside::core {
 
