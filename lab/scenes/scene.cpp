@@ -8,18 +8,34 @@
 
 #include "broadside/error.hpp"
 
+#include "lab/recordings/recordings.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::lab {
 namespace {
 
-std::vector<Scene> all_scenes() {
-  return {
+/// Every scene that the lab knows; those missing from this build last.
+struct SceneList {
+  std::vector<Scene> scenes = {
       generated::uniform(),   generated::power_law(), generated::mixed(),   generated::clustered(),
       generated::one_point(), generated::one_line(),  generated::lattice(), generated::integers(),
       generated::thin(),      generated::terdiman(),  generated::churn(),
   };
+  std::size_t there = 0;  // how many are not missing
+
+  SceneList() {
+    for (const std::vector<Scene>& more : {recordings::box2d(), recordings::bullet()})
+      scenes.insert(scenes.end(), more.begin(), more.end());
+    const auto missing =
+        std::ranges::stable_partition(scenes, [](const Scene& scene) { return scene.missing.empty(); });
+    there = scenes.size() - missing.size();
+  }
+};
+
+const SceneList& scene_list() {
+  static const SceneList list;
+  return list;
 }
 
 template <int D>
@@ -55,19 +71,22 @@ void apply(const Step<D>& step, std::vector<Box<D>>& boxes) {
   }
 }
 
-std::span<const Scene> scenes() {
-  static const std::vector<Scene> list = all_scenes();
-  return list;
-}
+std::span<const Scene> scenes() { return std::span(scene_list().scenes).first(scene_list().there); }
+
+std::span<const Scene> missing_scenes() { return std::span(scene_list().scenes).subspan(scene_list().there); }
 
 NamedScene find_scene(std::string_view text) {
   Spec spec = Spec::parse(text);
-  const std::span<const Scene> list = scenes();
+  const std::vector<Scene>& list = scene_list().scenes;
   const auto found = std::ranges::find(list, spec.name, &Scene::name);
   if (found == list.end()) {
     std::string known;
-    for (const Scene& scene : list) known += (known.empty() ? "" : ", ") + scene.name;
+    for (const Scene& scene : scenes()) known += (known.empty() ? "" : ", ") + scene.name;
     throw InvalidSpec("unknown scene '" + spec.name + "'; expected a file or one of: " + known);
+  }
+  if (!found->missing.empty()) {
+    throw InvalidSpec("scene '" + spec.name + "' is not built: " + found->missing +
+                      " was missing; install it and configure again");
   }
   const Settings checked(spec, found->tunables);
   return {*found, std::move(spec)};

@@ -73,13 +73,19 @@ struct Scene {
   bool fixed_seed = false;   ///< the boxes are the same for every seed
   bool integers = false;     ///< all coordinates are integers made without libm: equal under every compiler
 
+  std::string
+      missing{};  ///< the package whose lack at configure time left this scene out; empty if it is there
+
   bool has_dimension(int dimension) const {
     return dimension == 2 ? boxes_2d || history_2d : dimension == 3 && (boxes_3d || history_3d);
   }
 };
 
-/// The generated and recorded scenes, in a fixed order.
+/// The scenes there are, generated ones first, in a fixed order. Thread-safe.
 std::span<const Scene> scenes();
+
+/// The scenes that this build could have and has not: name and missing package only. Thread-safe.
+std::span<const Scene> missing_scenes();
 
 /// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
 /// file that one of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or what
