@@ -76,7 +76,7 @@ void add_few(std::vector<Input<D>>& inputs) {
 }
 
 template <int D>
-void add_ties(std::vector<Input<D>>& inputs) {
+void add_ties(std::vector<Input<D>>& inputs, std::size_t crowd) {
   const auto lattice_point = [](std::size_t i, int axis) {
     constexpr std::size_t side = D == 2 ? 18 : 7;
     for (int a = 0; a < axis; ++a) i /= side;
@@ -91,9 +91,7 @@ void add_ties(std::vector<Input<D>>& inputs) {
        })});
   inputs.push_back({"small whole numbers", drawn_from<D>({0, 1, 2, 3, 4, 5, 6, 7, 8}, 200)});
   inputs.push_back({"powers of two", drawn_from<D>({-4, -2, -1, -.5f, -.25f, 0, .25f, .5f, 1, 2, 4}, 200)});
-  inputs.push_back({"coincident boxes", boxes_of<D>(reduced(2000), [](std::size_t, int) {
-                      return Span{3, 4};
-                    })});
+  inputs.push_back({"coincident boxes", boxes_of<D>(crowd, [](std::size_t, int) { return Span{3, 4}; })});
   inputs.push_back({"coincident points", boxes_of<D>(reduced(500), [](std::size_t, int) {
                       return Span{3, 3};
                     })});
@@ -233,10 +231,10 @@ bool is_infinite(const Box<D>& box) {
 }
 
 template <int D>
-std::vector<Input<D>> hard_inputs(const Algorithm& algorithm) {
+std::vector<Input<D>> hard_inputs(const Algorithm& algorithm, std::size_t crowd) {
   std::vector<Input<D>> inputs;
   add_few(inputs);
-  add_ties(inputs);
+  add_ties(inputs, crowd);
   add_flat(inputs);
   add_scales(inputs);
   add_extremes(inputs);
@@ -248,7 +246,7 @@ std::vector<Input<D>> hard_inputs(const Algorithm& algorithm) {
 
 template bool is_infinite(const Box<2>&);
 template bool is_infinite(const Box<3>&);
-template std::vector<Input<2>> hard_inputs(const Algorithm&);
-template std::vector<Input<3>> hard_inputs(const Algorithm&);
+template std::vector<Input<2>> hard_inputs(const Algorithm&, std::size_t);
+template std::vector<Input<3>> hard_inputs(const Algorithm&, std::size_t);
 
 }  // namespace broadside::laws

@@ -16,9 +16,10 @@ struct Input {
   std::vector<Box<D>> boxes;
 };
 
-/// All hard inputs that are within the algorithm's declared limits.
+/// All hard inputs that are within the algorithm's declared limits. `crowd` is how many boxes coincide in the
+/// one in which most do; all of them pair with each other.
 template <int D>
-std::vector<Input<D>> hard_inputs(const Algorithm& algorithm);
+std::vector<Input<D>> hard_inputs(const Algorithm& algorithm, std::size_t crowd = 300);
 
 /// Whether the box has an infinite coordinate; false for the absent box.
 template <int D>

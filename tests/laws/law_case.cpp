@@ -21,6 +21,12 @@ const std::vector<LawCase>& law_cases() {
   return cases;
 }
 
+std::vector<LawCase> law_cases_in(int dimension) {
+  std::vector<LawCase> cases = law_cases();
+  std::erase_if(cases, [dimension](const LawCase& other) { return other.dimension != dimension; });
+  return cases;
+}
+
 std::string name(const LawCase& law_case) {
   return law_case.algorithm->name + "_" + std::to_string(law_case.dimension) + "d";
 }

@@ -30,6 +30,9 @@ struct LawCase {
 /// Every algorithm of the catalogue, in every dimension that it does.
 const std::vector<LawCase>& law_cases();
 
+/// Those of them in one dimension.
+std::vector<LawCase> law_cases_in(int dimension);
+
 /// Such as "grid_2d".
 std::string name(const LawCase& law_case);
 void PrintTo(const LawCase& law_case, std::ostream* out);

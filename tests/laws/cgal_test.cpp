@@ -1,0 +1,65 @@
+// CGAL's box_self_intersection_d as an oracle that shares no code with us, not even the definition.
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <CGAL/box_intersection_d.h>
+#include <gtest/gtest.h>
+
+#include "broadside/sinks.hpp"
+
+#include "lab/scenes/scene.hpp"
+#include "lab/verify.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+/// The overlapping pairs as CGAL sees them, boxes closed; sorted.
+template <int D>
+std::vector<Pair> cgal_pairs(std::span<const Box<D>> boxes) {
+  using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
+  std::vector<CgalBox> all;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    float min[D];
+    float max[D];
+    std::ranges::copy(boxes[i].min, min);
+    std::ranges::copy(boxes[i].max, max);
+    all.emplace_back(min, max, BoxId(i));
+  }
+  // CGAL sorts what it is given, and a box's address is what it tells boxes apart by.
+  std::vector<const CgalBox*> pointers;
+  for (const CgalBox& box : all) pointers.push_back(&box);
+
+  std::vector<Pair> pairs;
+  const auto report = [&pairs](const CgalBox* a, const CgalBox* b) {
+    pairs.push_back({std::min(a->info(), b->info()), std::max(a->info(), b->info())});
+  };
+  CGAL::box_self_intersection_d(pointers.begin(), pointers.end(), report, std::ptrdiff_t{10},
+                                CGAL::Box_intersection_d::CLOSED);
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+class CgalOracle : public Law {};
+
+TEST_P(CgalOracle, AgreesOnEveryGeneratedScene) {
+  in_dimension([&]<int D>() {
+    for (const lab::Scene& scene : lab::scenes()) {
+      if (scene.kind != lab::SceneKind::generated || !scene.has_dimension(D)) continue;
+      // All pairs of 20,000 boxes at one point would be 200 million.
+      const std::size_t boxes = scene.name == "one_point" ? 1000 : reduced(20'000);
+      const auto history = lab::make_history<D>(scene, {scene.name, {}}, {.boxes = boxes, .seed = 5});
+      std::vector<Pair> found;
+      PairCollector collector(found);
+      make_finder<D>(algorithm(), spec())->find(history.boxes, collector);
+      const auto divergence = lab::compare_pairs(std::move(found), cgal_pairs<D>(history.boxes));
+      EXPECT_FALSE(divergence) << scene.name << ": " << divergence->text;
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, CgalOracle, testing::ValuesIn(law_cases()), case_name);
+
+}  // namespace
+}  // namespace broadside::laws

@@ -1,0 +1,127 @@
+// Golden hashes: the pairs and events of scenes built from integers, the same whatever algorithm, compiler or
+// machine; and the order of our own finders' pairs, the same whatever compiler and machine.
+//
+// A hash of pairs never changes unless its scene does. A hash of an order changes when the algorithm reports
+// in another order: then the test's message says the new one, which must be the same under the presets
+// `release` and `clang`.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/sinks.hpp"
+
+#include "lab/scenes/scene.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+struct GoldenScene {
+  std::string_view scene;
+  int dimension;
+  std::uint64_t pairs;   ///< of the first frame
+  std::uint64_t hash;    ///< of those
+  std::uint64_t events;  ///< hash of all events, of the first frame and of those in motion
+};
+
+constexpr std::array<GoldenScene, 6> golden_scenes = {{
+    {"lattice", 2, 7733, 0x5a91e78e965e147dU, 0x131cc4a661d0ebd4U},
+    {"lattice", 3, 21954, 0xeb16de0c7a823206U, 0x5d1d57fb9cd3b5a4U},
+    {"integers", 2, 3757, 0x4a15172cc2d0baddU, 0x31353a5b23daab33U},
+    {"integers", 3, 3226, 0x428241f99d2d0572U, 0xfea20921a992f16eU},
+    {"terdiman", 2, 7949, 0x65a4aad6a4df8d34U, 0x704fe9d8c2fd08b6U},
+    {"terdiman", 3, 473, 0xa27437f56e244058U, 0x9ceca02540b7bedbU},
+}};
+
+struct GoldenOrder {
+  std::string_view algorithm;
+  int dimension;
+  std::uint64_t hash;
+};
+
+constexpr std::array<GoldenOrder, 8> golden_orders = {{
+    {"brute_force", 2, 0x79bebaf2ce36ffbdU},
+    {"brute_force", 3, 0x14940631e712ac4aU},
+    {"grid", 2, 0xc6e509ec197de519U},
+    {"grid", 3, 0x9b0e3ef125c5fc6eU},
+    {"sweep_and_prune", 2, 0x549142ce8c12c165U},
+    {"sweep_and_prune", 3, 0x4f601e2af8c50ebeU},
+    {"quadtree", 2, 0xc3cce26035314221U},
+    {"quadtree", 3, 0x58186a9ee7252c3aU},
+}};
+
+template <int D>
+lab::History<D> history_of(std::string_view name) {
+  const lab::NamedScene named = lab::find_scene(name);
+  EXPECT_TRUE(named.scene.integers) << name;
+  return lab::make_history<D>(named.scene, named.spec,
+                              {.boxes = 2000, .seed = 1, .frames = 5, .moving = 0.2, .teleport = 0.1});
+}
+
+/// Hashes pairs as a sequence: another order, another hash.
+class OrderHasher final : public PairSink {
+ public:
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) hash_ = hash_ * 0x9e3779b97f4a7c15U + broadside::hash(pair);
+  }
+
+  std::uint64_t hash_ = 0;
+};
+
+class GoldenHashes : public Law {};
+
+TEST_P(GoldenHashes, OfPairsAreTheSame) {
+  in_dimension([&]<int D>() {
+    for (const GoldenScene& golden : golden_scenes) {
+      if (golden.dimension != D) continue;
+      const lab::History<D> history = history_of<D>(golden.scene);
+      PairHasher hasher;
+      make_finder<D>(algorithm(), spec())->find(history.boxes, hasher);
+      EXPECT_EQ(hasher.count(), golden.pairs) << golden.scene;
+      EXPECT_EQ(hasher.hash(), golden.hash) << golden.scene;
+    }
+  });
+}
+
+TEST_P(GoldenHashes, OfEventsAreTheSame) {
+  in_dimension([&]<int D>() {
+    for (const GoldenScene& golden : golden_scenes) {
+      if (golden.dimension != D) continue;
+      lab::History<D> history = history_of<D>(golden.scene);
+      const auto tracker = make_tracker<D>(algorithm(), spec());
+      OrderHasher hasher;  // events come sorted, so that their order is golden as well
+      tracker->update({history.boxes, {}}, hasher, hasher);
+      for (const lab::Step<D>& step : history.steps) {
+        lab::apply(step, history.boxes);
+        tracker->update({history.boxes, step.changed}, hasher, hasher);
+      }
+      EXPECT_EQ(hasher.hash(), golden.events) << golden.scene;
+    }
+  });
+}
+
+TEST_P(GoldenHashes, OfOrdersAreTheSame) {
+  if (algorithm().kind != AlgorithmKind::own) GTEST_SKIP() << algorithm().name << " is not our own";
+  in_dimension([&]<int D>() {
+    OrderHasher hasher;
+    make_finder<D>(algorithm(), spec())->find(history_of<D>("integers").boxes, hasher);
+    const auto golden = std::ranges::find_if(golden_orders, [&](const GoldenOrder& order) {
+      return order.algorithm == algorithm().name && order.dimension == D;
+    });
+    ASSERT_NE(golden, golden_orders.end())
+        << "add {\"" << algorithm().name << "\", " << D << ", " << hasher.hash() << "U}";
+    EXPECT_EQ(hasher.hash(), golden->hash);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, GoldenHashes, testing::ValuesIn(law_cases()), case_name);
+
+}  // namespace
+}  // namespace broadside::laws

@@ -1,0 +1,70 @@
+// The law on every scene of the lab, still and moving.
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hard_inputs.hpp"
+#include "lab/scenes/scene.hpp"
+#include "law_case.hpp"
+#include "smallest_failure.hpp"
+
+namespace broadside::laws {
+namespace {
+
+class SceneLaw : public Law {
+ protected:
+  /// The scene's history, or nothing where it does not exist in D dimensions or is beyond the algorithm's
+  /// declared limits.
+  template <int D>
+  std::optional<lab::History<D>> history_of(const lab::Scene& scene, const lab::SceneRequest& request) const {
+    if (!scene.has_dimension(D)) return std::nullopt;
+    lab::History<D> history = lab::make_history<D>(scene, {scene.name, {}}, request);
+    bool infinite = std::ranges::any_of(history.boxes, is_infinite<D>);
+    for (const lab::Step<D>& step : history.steps)
+      infinite |= std::ranges::any_of(step.boxes, is_infinite<D>);
+    if (infinite && !algorithm().infinite_boxes) return std::nullopt;
+    return history;
+  }
+};
+
+TEST_P(SceneLaw, FindsEachOverlappingPairOnce) {
+  in_dimension([&]<int D>() {
+    for (const lab::Scene& scene : lab::scenes()) {
+      for (const std::size_t boxes : {0, 1, 2, 3, 17, 200, 1000}) {
+        const std::size_t count = boxes == 1000 ? reduced(boxes) : boxes;
+        for (const std::uint64_t seed : {1, 2}) {
+          const auto history = history_of<D>(scene, {.boxes = count, .seed = seed});
+          if (!history) continue;
+          EXPECT_TRUE(finds_the_pairs<D>(algorithm(), spec(), history->boxes))
+              << scene.name << ", " << count << " boxes, seed " << seed;
+          if (scene.fixed_count) break;
+        }
+        if (scene.fixed_count) break;
+      }
+    }
+  });
+}
+
+TEST_P(SceneLaw, TracksMovingBoxes) {
+  in_dimension([&]<int D>() {
+    for (const lab::Scene& scene : lab::scenes()) {
+      for (const lab::SceneRequest& request :
+           {lab::SceneRequest{.boxes = 200, .frames = 12, .moving = 0.1},
+            lab::SceneRequest{.boxes = 200, .seed = 2, .frames = 12, .moving = 1, .drift = 0.5},
+            lab::SceneRequest{.boxes = 200, .seed = 3, .frames = 12, .moving = 0.5, .teleport = 0.3}}) {
+        const auto history = history_of<D>(scene, request);
+        if (!history) continue;
+        EXPECT_TRUE(tracks_the_pairs<D>(algorithm(), spec(), *history))
+            << scene.name << ", seed " << request.seed;
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, SceneLaw, testing::ValuesIn(law_cases()), case_name);
+
+}  // namespace
+}  // namespace broadside::laws
