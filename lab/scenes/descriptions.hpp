@@ -16,5 +16,6 @@ Scene integers();
 Scene thin();
 Scene terdiman();
 Scene churn();
+Scene bunny();
 
 }  // namespace broadside::lab::generated

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "broadside/error.hpp"
 
+#include "lab/readers/format.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
@@ -27,6 +29,7 @@ struct SceneList {
   SceneList() {
     for (const std::vector<Scene>& more : {recordings::box2d(), recordings::bullet()})
       scenes.insert(scenes.end(), more.begin(), more.end());
+    scenes.push_back(generated::bunny());
     const auto missing =
         std::ranges::stable_partition(scenes, [](const Scene& scene) { return scene.missing.empty(); });
     there = scenes.size() - missing.size();
@@ -76,18 +79,24 @@ std::span<const Scene> scenes() { return std::span(scene_list().scenes).first(sc
 std::span<const Scene> missing_scenes() { return std::span(scene_list().scenes).subspan(scene_list().there); }
 
 NamedScene find_scene(std::string_view text) {
-  Spec spec = Spec::parse(text);
+  // A file's name may have a colon in it.
+  std::error_code ignored;
+  const bool is_file = std::filesystem::is_regular_file(text, ignored);
+  Spec spec = is_file ? Spec{std::string(text), {}} : Spec::parse(text);
   const std::vector<Scene>& list = scene_list().scenes;
   const auto found = std::ranges::find(list, spec.name, &Scene::name);
+  if (found == list.end() && is_path(spec.name)) {
+    Scene scene = file_scene(spec.name);
+    const Settings checked(spec, scene.tunables);
+    return {std::move(scene), std::move(spec)};
+  }
   if (found == list.end()) {
     std::string known;
     for (const Scene& scene : scenes()) known += (known.empty() ? "" : ", ") + scene.name;
     throw InvalidSpec("unknown scene '" + spec.name + "'; expected a file or one of: " + known);
   }
-  if (!found->missing.empty()) {
-    throw InvalidSpec("scene '" + spec.name + "' is not built: " + found->missing +
-                      " was missing; install it and configure again");
-  }
+  if (!found->missing.empty())
+    throw InvalidSpec("scene '" + spec.name + "' cannot be made: " + found->missing);
   const Settings checked(spec, found->tunables);
   return {*found, std::move(spec)};
 }

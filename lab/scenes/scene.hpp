@@ -84,12 +84,12 @@ struct Scene {
 /// The scenes there are, generated ones first, in a fixed order. Thread-safe.
 std::span<const Scene> scenes();
 
-/// The scenes that this build could have and has not: name and missing package only. Thread-safe.
+/// The scenes that there could be and are not; of those of a missing engine, only the name. Thread-safe.
 std::span<const Scene> missing_scenes();
 
 /// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
-/// file that one of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or what
-/// the reader throws.
+/// file that one of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or
+/// FileError (lab/readers/format.hpp).
 struct NamedScene {
   Scene scene;
   Spec spec;

@@ -181,6 +181,9 @@ TEST(Churn, KeepsAboutAsManyBoxesAndNeighboursAsItHadAtFirst) {
 
 TEST(Terdiman, HasExactlyThePublishedPairs) {
   EXPECT_EQ(count_pairs(boxes_of<3>("terdiman", 10000)), 11811u);
+  PairCounter counter;
+  find_pairs(boxes_of<3>("terdiman", 100000), counter, "sweep_and_prune");
+  EXPECT_EQ(counter.count(), 1144045u);
 }
 
 TEST(Power, AgreesWithTheStandardLibrarys) {

@@ -1,0 +1,12 @@
+// The descriptions in which the files of this folder end, for the list of formats.
+#pragma once
+
+#include "lab/readers/format.hpp"
+
+namespace broadside::lab::readers {
+
+Format csv();
+Format broadmark();
+Format mesh();
+
+}  // namespace broadside::lab::readers
