@@ -1,10 +1,10 @@
 // The law, checked: pairs and events against the definition, as sets, each pair exactly once.
 #include "lab/verify.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
+
+#include <fmt/format.h>
 
 #include "broadside/sinks.hpp"
 
@@ -14,18 +14,6 @@ namespace {
 template <int D>
 std::string text_of(const Box<D>& box) {
   return fmt::format("[({}), ({})]", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
-}
-
-/// Completes a divergence's text with what the bare sets do not know.
-template <int D>
-Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
-                     std::span<const Box<D>> boxes) {
-  divergence.frame = frame;
-  divergence.text = fmt::format("{}: frame {}, {} {}", name, frame, what, divergence.text);
-  for (const BoxId id : {divergence.pair.first, divergence.pair.second}) {
-    if (index(id) < boxes.size()) divergence.text += fmt::format("; box {} is {}", index(id), text_of(boxes[index(id)]));
-  }
-  return divergence;
 }
 
 }  // namespace
@@ -45,7 +33,8 @@ std::vector<Pair> reference_pairs(std::span<const Box<D>> boxes) {
 std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected) {
   std::sort(found.begin(), found.end());
   const auto diverging = [](Divergence::Kind kind, Pair pair, std::string_view how) {
-    return Divergence{kind, pair, 0, fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
+    return Divergence{kind, pair, 0,
+                      fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
   };
   std::size_t at = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -56,12 +45,26 @@ std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const
     if (expected[at] < found[i]) break;
     ++at;
   }
-  if (at < expected.size()) return diverging(Divergence::Kind::missing, expected[at], "is missing; expected to be reported");
+  if (at < expected.size())
+    return diverging(Divergence::Kind::missing, expected[at], "is missing; expected to be reported");
   return std::nullopt;
 }
 
 template <int D>
-std::optional<Divergence> check_finder(PairFinder<D>& finder, std::span<const Box<D>> boxes, std::string_view name) {
+Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
+                     std::span<const Box<D>> boxes) {
+  divergence.frame = frame;
+  divergence.text = fmt::format("{}: frame {}, {} {}", name, frame, what, divergence.text);
+  for (const BoxId id : {divergence.pair.first, divergence.pair.second}) {
+    if (index(id) < boxes.size())
+      divergence.text += fmt::format("; box {} is {}", index(id), text_of(boxes[index(id)]));
+  }
+  return divergence;
+}
+
+template <int D>
+std::optional<Divergence> check_finder(PairFinder<D>& finder, std::span<const Box<D>> boxes,
+                                       std::string_view name) {
   std::vector<Pair> found;
   PairCollector collector(found);
   finder.find(boxes, collector);
@@ -72,10 +75,12 @@ std::optional<Divergence> check_finder(PairFinder<D>& finder, std::span<const Bo
 }
 
 template <int D>
-std::optional<Divergence> check_tracker(PairTracker<D>& tracker, const History<D>& history, std::string_view name) {
+std::optional<Divergence> check_tracker(PairTracker<D>& tracker, const History<D>& history,
+                                        std::string_view name) {
   std::vector<Box<D>> boxes;
   std::vector<Pair> before;
-  const auto check_frame = [&](std::size_t frame, std::span<const BoxId> changed) -> std::optional<Divergence> {
+  const auto check_frame = [&](std::size_t frame,
+                               std::span<const BoxId> changed) -> std::optional<Divergence> {
     std::vector<Pair> begun;
     std::vector<Pair> ended;
     PairCollector begun_pairs(begun);
@@ -94,7 +99,8 @@ std::optional<Divergence> check_tracker(PairTracker<D>& tracker, const History<D
         return explained<D>(*std::move(divergence), name, what, frame, boxes);
       if (!std::ranges::is_sorted(*events)) {
         const auto unsorted = std::ranges::is_sorted_until(*events);
-        return explained<D>({Divergence::Kind::extra, *unsorted, frame, "events are not sorted by id"}, name, what, frame, boxes);
+        return explained<D>({Divergence::Kind::extra, *unsorted, frame, "events are not sorted by id"}, name,
+                            what, frame, boxes);
       }
     }
     return std::nullopt;
@@ -111,6 +117,10 @@ std::optional<Divergence> check_tracker(PairTracker<D>& tracker, const History<D
 
 template std::vector<Pair> reference_pairs(std::span<const Box<2>>);
 template std::vector<Pair> reference_pairs(std::span<const Box<3>>);
+template Divergence explained(Divergence, std::string_view, std::string_view, std::size_t,
+                              std::span<const Box<2>>);
+template Divergence explained(Divergence, std::string_view, std::string_view, std::size_t,
+                              std::span<const Box<3>>);
 template std::optional<Divergence> check_finder(PairFinder<2>&, std::span<const Box<2>>, std::string_view);
 template std::optional<Divergence> check_finder(PairFinder<3>&, std::span<const Box<3>>, std::string_view);
 template std::optional<Divergence> check_tracker(PairTracker<2>&, const History<2>&, std::string_view);

@@ -32,6 +32,11 @@ std::vector<Pair> reference_pairs(std::span<const Box<D>> boxes);
 /// sets and each pair of `found` is there once.
 std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected);
 
+/// The same divergence, with the algorithm's name, what was looked at, the frame and both boxes in its text.
+template <int D>
+Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
+                     std::span<const Box<D>> boxes);
+
 /// Whether `finder` gives the reference's pairs on `boxes`. `name` is for the divergence's text.
 template <int D>
 std::optional<Divergence> check_finder(PairFinder<D>& finder, std::span<const Box<D>> boxes,

@@ -1,0 +1,55 @@
+// The command-line program: reads the verb and its options, runs it, and turns what it throws into an exit
+// status and a message.
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "broadside/version.hpp"
+
+#include "cli/verbs.hpp"
+
+namespace {
+
+using broadside::cli::Exit;
+
+Exit run(const std::vector<std::string>& arguments) {
+  CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
+                   "broadside");
+  program.set_version_flag("--version", "broadside " BROADSIDE_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Exit status: 0 fine, 1 a verification failed, 2 unusable arguments or input, 130 interrupted.");
+  const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
+      {"compare", broadside::cli::add_compare(program, arguments)},
+      {"scene", broadside::cli::add_scene(program)},
+      {"list", broadside::cli::add_list(program)},
+  };
+  try {
+    // CLI11 takes the arguments in reverse and without the program.
+    program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
+  } catch (const CLI::ParseError& error) {
+    // Help and version end here as well, with status 0.
+    return program.exit(error) == 0 ? Exit::fine : Exit::unusable;
+  }
+  for (const auto& [name, verb] : verbs) {
+    if (program.got_subcommand(name)) return verb();
+  }
+  return Exit::unusable;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  const std::vector<std::string> arguments(values, values + count);
+  try {
+    return static_cast<int>(run(arguments));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "broadside: {}\n", error.what());
+    return static_cast<int>(Exit::unusable);
+  }
+}

@@ -1,0 +1,24 @@
+// The program's verbs. Each adds its subcommand and options to the parser and, where it was asked for, runs.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include <CLI/App.hpp>
+
+namespace broadside::cli {
+
+/// The program's exit status. Success is 0 and a signal 130, as shells have it.
+enum class Exit { fine = 0, failed = 1, unusable = 2, interrupted = 130 };
+
+/// Runs a verb once all its options are read. Throws, with a message that names thing, found and expected,
+/// where arguments or input cannot be used.
+using Verb = std::function<Exit()>;
+
+/// `arguments` are the program's, itself first, for what reports say of it; they outlive the verb.
+Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
+Verb add_scene(CLI::App& program);
+Verb add_list(CLI::App& program);
+
+}  // namespace broadside::cli

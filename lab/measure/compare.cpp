@@ -1,0 +1,147 @@
+// The comparison: algorithms against each other on many cases, every result checked.
+#include "lab/measure/compare.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lab/measure/find_case.hpp"
+#include "lab/measure/track_case.hpp"
+#include "lab/numbers.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// On how many seeds a case is run in rotation: a small input that is repeated teaches the branch predictor
+/// what no user's boxes would.
+std::size_t seeds_for(std::size_t boxes, Mode mode) {
+  const std::size_t seeds = boxes <= 2'000 ? 16 : boxes <= 20'000 ? 8 : boxes < 500'000 ? 3 : 1;
+  // Frames differ among themselves.
+  return mode == Mode::find ? seeds : std::max<std::size_t>(seeds / 4, 1);
+}
+
+template <int D>
+std::size_t most_boxes(const History<D>& history) {
+  std::size_t most = history.boxes.size();
+  for (const Step<D>& step : history.steps) most = std::max(most, step.size);
+  return most;
+}
+
+template <int D>
+double moving_fraction(const History<D>& history) {
+  double sum = 0;
+  for (const Step<D>& step : history.steps)
+    sum +=
+        static_cast<double>(step.changed.size()) / static_cast<double>(std::max<std::size_t>(step.size, 1));
+  return history.steps.empty() ? 0 : sum / static_cast<double>(history.steps.size());
+}
+
+class Runner {
+ public:
+  Runner(const Catalogue& catalogue, const CompareOptions& options)
+      : catalogue_(catalogue), options_(options), contenders_(catalogue.select(options.algorithms)) {}
+
+  Comparison run() {
+    for (const CaseRequest& request : options_.plan) resolve(request);
+    try {
+      for (std::size_t i = 0; i < scenes_.size(); ++i) {
+        if (!scenes_[i]) continue;
+        place_ = fmt::format("[{}/{}] ", i + 1, scenes_.size());
+        const CaseRequest& request = options_.plan[i];
+        request.dimension == 2 ? run<2>(*scenes_[i], request) : run<3>(*scenes_[i], request);
+      }
+    } catch (const Stopped&) {
+      comparison_.stopped = true;
+    }
+    return std::move(comparison_);
+  }
+
+ private:
+  /// Finds the scene and checks its values before anything is measured.
+  void resolve(const CaseRequest& request) {
+    scenes_.emplace_back();
+    try {
+      NamedScene named = find_scene(request.scene);
+      const Settings checked(named.spec, named.scene.tunables);
+      scenes_.back() = std::move(named);
+    } catch (const std::exception& thrown) {
+      if (request.required) throw;
+      comparison_.not_compared.push_back({request, thrown.what()});
+    }
+  }
+
+  template <int D>
+  void run(const NamedScene& named, const CaseRequest& request) {
+    const std::string name =
+        fmt::format("{}{} {}D, {} boxes: ", place_, request.scene, D, grouped(request.boxes));
+    const Watch watch{options_.watch.stop, [&](std::string_view what) {
+                        if (options_.watch.progress) options_.watch.progress(name + std::string(what));
+                      }};
+    Case of;
+    std::vector<History<D>> inputs;
+    try {
+      make_inputs(named, request, watch, of, inputs);
+    } catch (const Stopped&) {
+      throw;
+    } catch (const std::exception& thrown) {
+      if (request.required) throw;
+      comparison_.not_compared.push_back({request, thrown.what()});
+      return;
+    }
+    const Contest contest{contenders_, catalogue_.algorithms(), options_.effort, watch};
+    std::vector<Measurement> measurements =
+        of.mode == Mode::find ? measure_find<D>(of, inputs, contest) : measure_track<D>(of, inputs, contest);
+    comparison_.cases.push_back({std::move(of), std::move(measurements)});
+    if (options_.finished) options_.finished(comparison_.cases.back());
+  }
+
+  template <int D>
+  void make_inputs(const NamedScene& named, const CaseRequest& request, const Watch& watch, Case& of,
+                   std::vector<History<D>>& inputs) {
+    watch.at("making the boxes");
+    const auto make = [&](std::uint64_t seed) {
+      of.seeds.push_back(seed);
+      inputs.push_back(make_history<D>(
+          named.scene, named.spec,
+          {.boxes = request.boxes, .seed = seed, .frames = request.frames, .moving = request.moving}));
+    };
+    make(options_.seed);
+    of.scene = named.spec.text();
+    const Settings settings(named.spec, named.scene.tunables);
+    for (const Tunable& tunable : named.scene.tunables)
+      of.parameters.emplace_back(tunable.name, settings.text(tunable.name));
+    of.dimension = D;
+    of.boxes = most_boxes(inputs[0]);
+    of.frames = inputs[0].steps.size();
+    of.moving = moving_fraction(inputs[0]);
+    of.mode = of.frames == 0 ? Mode::find : Mode::track;
+    const std::size_t seeds = named.scene.fixed_seed ? 1 : seeds_for(of.boxes, of.mode);
+    for (std::size_t i = 1; i < seeds; ++i) make(options_.seed + i);
+  }
+
+  const Catalogue& catalogue_;
+  const CompareOptions& options_;
+  std::vector<Contender> contenders_;
+  std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty where there is none
+  std::string place_;                              // of the case that is going on, in the plan
+  Comparison comparison_;
+};
+
+}  // namespace
+
+bool Comparison::all_verified() const {
+  return std::ranges::all_of(cases, [](const CaseResult& result) {
+    return std::ranges::none_of(result.measurements, [](const Measurement& measurement) {
+      return measurement.outcome == Outcome::failed;
+    });
+  });
+}
+
+Comparison compare(const Catalogue& catalogue, const CompareOptions& options) {
+  return Runner(catalogue, options).run();
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,51 @@
+// The comparison: algorithms against each other on many cases, every result checked.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/catalogue.hpp"
+#include "lab/measure/contest.hpp"
+#include "lab/measure/measurement.hpp"
+#include "lab/measure/plan.hpp"
+
+namespace broadside::lab {
+
+/// What to compare, and who follows it.
+struct CompareOptions {
+  std::string algorithms = "all";  ///< as Catalogue::select reads it
+  std::vector<CaseRequest> plan = quick_plan();
+  std::uint64_t seed = 1;  ///< of a scene's first input; the others count up from it
+  Effort effort{};
+  Watch watch{};
+  std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nobody asks
+};
+
+/// A case that could not be made.
+struct NotCompared {
+  CaseRequest request;
+  std::string reason;
+};
+
+/// All that came of it.
+struct Comparison {
+  std::vector<CaseResult> cases;
+  std::vector<NotCompared> not_compared;
+  bool stopped = false;  ///< by the watch; the case that was going on is left out
+
+  /// Whether nothing broke the law.
+  bool all_verified() const;
+};
+
+/// Compares the algorithms of the catalogue that the options name on each case of the plan, one after the
+/// other, in this thread. Time and memory: those of the algorithms, and of the boxes and pairs of one case.
+///
+/// Throws before anything is measured: InvalidSpec if an algorithm or a required scene is unknown or a value
+/// in a spec is wrong. Later: what making a required scene's boxes throws. A required case counts as one that
+/// a user asked for by name; any other that cannot be made is reported in not_compared.
+Comparison compare(const Catalogue& catalogue, const CompareOptions& options);
+
+}  // namespace broadside::lab

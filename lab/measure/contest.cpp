@@ -1,0 +1,77 @@
+// What measuring a search and measuring a history have in common.
+#include "lab/measure/contest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "broadside/version.hpp"
+
+#include "lab/numbers.hpp"
+
+namespace broadside::lab {
+
+void Watch::at(std::string_view what) const {
+  if (stop && stop()) throw Stopped();
+  if (progress) progress(what);
+}
+
+Measurement entry_of(const Contender& contender) {
+  const Algorithm& algorithm = *contender.algorithm;
+  Measurement entry;
+  entry.algorithm = contender.spec.text();
+  entry.version = algorithm.version.empty() ? BROADSIDE_VERSION : algorithm.version;
+  entry.kind = algorithm.kind;
+  return entry;
+}
+
+std::string fault_of(const Measurement& entry, const std::function<std::string()>& run) {
+  try {
+    return run();
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::exception& thrown) {
+    return fmt::format("{} threw: {}", entry.algorithm, thrown.what());
+  }
+}
+
+void fail(Measurement& entry, const std::string& fault) {
+  entry.outcome = Outcome::failed;
+  entry.reason = fault;
+  entry.samples_ms.clear();
+}
+
+void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, double budget) {
+  entry.outcome = Outcome::skipped;
+  entry.reason = text(estimate);
+  if (calls > 1) entry.reason += fmt::format(", for each of {} frames", grouped(calls));
+  entry.reason += fmt::format("; budget {:g} s", budget);
+  entry.estimated_ms = estimate.seconds * 1e3;
+}
+
+void count_memory(Measurement& entry, const std::optional<Allocation>& allocation) {
+  if (!allocation) return;
+  entry.own_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->kept, 0));
+  entry.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->peak, 0));
+}
+
+std::string unfit(const Algorithm& algorithm, int dimension, bool infinite) {
+  if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
+  if (infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
+  return {};
+}
+
+template <int D>
+bool any_infinite(std::span<const Box<D>> boxes) {
+  return std::ranges::any_of(boxes, [](const Box<D>& box) {
+    const auto infinite = [](float coordinate) { return std::isinf(coordinate); };
+    return is_present(box) &&
+           (std::ranges::any_of(box.min, infinite) || std::ranges::any_of(box.max, infinite));
+  });
+}
+
+template bool any_infinite(std::span<const Box<2>>);
+template bool any_infinite(std::span<const Box<3>>);
+
+}  // namespace broadside::lab

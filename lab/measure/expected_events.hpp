@@ -1,0 +1,51 @@
+// The events that a history must give, frame by frame, and their hash.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/measure/reference.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+/// Pairs begun and ended in one frame, each sorted.
+struct Events {
+  std::vector<Pair> begun;
+  std::vector<Pair> ended;
+
+  friend bool operator==(const Events&, const Events&) = default;
+};
+
+/// What tracking a history must give.
+struct ExpectedEvents {
+  std::vector<Events> frames;  ///< the first frame's, then one for each step
+  std::string fault;           ///< what is wrong with the reference itself; empty if nothing is
+};
+
+/// The events of `history` by the reference: the definition's pairs in each frame and what differs from one
+/// to the next, or those of a DiffTracker over the reference's finder, whose pairs after the last frame are
+/// then sampled.
+template <int D>
+ExpectedEvents expected_events(const Reference& reference, const History<D>& history);
+
+/// Hashes the events of frame after frame: the same for any order within a frame, different for another
+/// frame, and for a pair that ends instead of beginning.
+class EventHasher {
+ public:
+  void add(const Events& events) noexcept;
+  std::uint64_t hash() const noexcept { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0;
+};
+
+/// What differs first, with `name`, the frame and the boxes in its text; empty if the events are equal and
+/// sorted.
+template <int D>
+std::string difference(const Events& found, const Events& expected, std::string_view name, std::size_t frame,
+                       std::span<const Box<D>> boxes);
+
+}  // namespace broadside::lab

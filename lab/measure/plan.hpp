@@ -1,0 +1,48 @@
+// Which cases a comparison consists of: the quick plan, the long one, and those a user asks for.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/measure/measurement.hpp"
+
+namespace broadside::lab {
+
+/// A case that is wanted.
+struct CaseRequest {
+  std::string scene;  ///< as a spec, or the path of a file
+  int dimension = 2;
+  std::size_t boxes = 0;   ///< ignored by a scene that has a count of its own
+  double moving = 0;       ///< the fraction that moves, ignored by a scene that moves by itself
+  std::size_t frames = 0;  ///< 0: still
+  bool required = true;    ///< whether it is an error if the scene is not there
+};
+
+/// The cases of `make compare`: at most two minutes on two cores, with all algorithms.
+std::vector<CaseRequest> quick_plan();
+
+/// The cases of `make bench`, and the effort each is worth.
+std::vector<CaseRequest> long_plan();
+Effort long_effort();
+
+/// What a user asks for; a list that is empty stands for its standard: every generated scene, 10,000 boxes,
+/// both dimensions, still.
+struct Wishes {
+  std::vector<std::string> scenes;
+  std::vector<std::size_t> boxes;
+  std::vector<int> dimensions;
+  std::vector<double> moving;
+  std::size_t frames = 0;  ///< 0: 20 where the boxes move
+};
+
+/// Every combination, but for those that do not exist: a dimension that a scene does not have, a count or a
+/// moving fraction where the scene has its own. Throws InvalidSpec if a scene is unknown or has none of the
+/// dimensions, and what a file's reader throws.
+std::vector<CaseRequest> plan_of(const Wishes& wishes);
+
+/// Those of `plan` that are in one of the dimensions.
+std::vector<CaseRequest> in_dimensions(std::vector<CaseRequest> plan, std::span<const int> dimensions);
+
+}  // namespace broadside::lab

@@ -1,0 +1,91 @@
+// What the pairs of an algorithm under measurement are compared with.
+#include "lab/measure/reference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <numeric>
+#include <random>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "broadside/sinks.hpp"
+
+namespace broadside::lab {
+
+Reference::Reference(const Algorithm& contender, std::span<const Algorithm> known, std::size_t boxes,
+                     std::size_t most_by_definition) {
+  if (boxes <= most_by_definition) return;
+  constexpr std::array<std::string_view, 3> names = {"quadtree", "sweep_and_prune", "grid"};
+  for (const std::string_view name : names) {
+    if (contender.name.find(name) != std::string::npos) continue;
+    algorithm_ = find_algorithm(name, known);
+    if (algorithm_ != nullptr) return;
+  }
+}
+
+std::string Reference::text() const {
+  if (is_definition()) return "brute_force";
+  return fmt::format("{} + {} sampled boxes", algorithm_->name, sampled_boxes);
+}
+
+template <int D>
+std::unique_ptr<PairFinder<D>> Reference::finder() const {
+  return is_definition() ? nullptr : make_finder<D>(*algorithm_, Spec{algorithm_->name, {}});
+}
+
+template <int D>
+std::vector<Pair> Reference::pairs(std::span<const Box<D>> boxes) const {
+  if (is_definition()) return reference_pairs(boxes);
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  finder<D>()->find(boxes, collector);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+template <int D>
+std::optional<Divergence> check_sample(std::span<const Box<D>> boxes, std::span<const Pair> pairs) {
+  std::vector<bool> sampled(boxes.size(), false);
+  std::vector<Pair> expected;
+  for (const std::size_t i : sample_of(boxes.size(), sampled_boxes)) {
+    sampled[i] = true;
+    if (!is_present(boxes[i])) continue;
+    for (std::size_t j = 0; j < boxes.size(); ++j) {
+      // A pair of two sampled boxes is met twice.
+      if ((sampled[j] && j <= i) || !is_present(boxes[j]) || !overlap(boxes[i], boxes[j])) continue;
+      expected.push_back({BoxId(std::min(i, j)), BoxId(std::max(i, j))});
+    }
+  }
+  std::sort(expected.begin(), expected.end());
+  std::vector<Pair> found;
+  std::ranges::copy_if(pairs, std::back_inserter(found),
+                       [&](Pair pair) { return sampled[index(pair.first)] || sampled[index(pair.second)]; });
+  return compare_pairs(std::move(found), expected);
+}
+
+std::uint64_t hash_of(std::span<const Pair> pairs) noexcept {
+  std::uint64_t sum = 0;
+  for (const Pair pair : pairs) sum += hash(pair);
+  return sum;
+}
+
+std::vector<std::size_t> sample_of(std::size_t size, std::size_t count) {
+  std::vector<std::size_t> all(size);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (size <= count) return all;
+  std::vector<std::size_t> chosen;
+  std::mt19937_64 random(1);
+  std::ranges::sample(all, std::back_inserter(chosen), static_cast<std::ptrdiff_t>(count), random);
+  return chosen;
+}
+
+template std::unique_ptr<PairFinder<2>> Reference::finder() const;
+template std::unique_ptr<PairFinder<3>> Reference::finder() const;
+template std::vector<Pair> Reference::pairs(std::span<const Box<2>>) const;
+template std::vector<Pair> Reference::pairs(std::span<const Box<3>>) const;
+template std::optional<Divergence> check_sample(std::span<const Box<2>>, std::span<const Pair>);
+template std::optional<Divergence> check_sample(std::span<const Box<3>>, std::span<const Pair>);
+
+}  // namespace broadside::lab

@@ -1,0 +1,66 @@
+// What the pairs of an algorithm under measurement are compared with: the definition where the boxes are few
+// enough, beyond that an algorithm of another structure whose own pairs are sampled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+
+#include "lab/verify.hpp"
+
+namespace broadside::lab {
+
+/// The most boxes on which a search, and each frame of a history, is compared with the definition.
+inline constexpr std::size_t most_boxes_by_definition = 20'000;
+inline constexpr std::size_t most_tracked_boxes_by_definition = 5'000;
+
+/// How many boxes are compared with all others where a reference is not the definition.
+inline constexpr std::size_t sampled_boxes = 200;
+
+/// Where expected pairs come from.
+class Reference {
+ public:
+  /// For pairs of `contender` on at most `boxes` boxes: the definition if these are at most
+  /// `most_by_definition`; otherwise the first among quadtree, sweep_and_prune and grid that is in `known`,
+  /// and whose name is no part of the contender's name; if there is none, the definition again.
+  Reference(const Algorithm& contender, std::span<const Algorithm> known, std::size_t boxes,
+            std::size_t most_by_definition);
+
+  /// "brute_force", or as in "quadtree + 200 sampled boxes".
+  std::string text() const;
+
+  bool is_definition() const noexcept { return algorithm_ == nullptr; }
+
+  /// The expected pairs, sorted. Nothing but the definition can be relied on before check_sample().
+  template <int D>
+  std::vector<Pair> pairs(std::span<const Box<D>> boxes) const;
+
+  /// A finder of the expected pairs; null if they come from the definition.
+  template <int D>
+  std::unique_ptr<PairFinder<D>> finder() const;
+
+  friend bool operator==(const Reference&, const Reference&) = default;
+
+ private:
+  const Algorithm* algorithm_ = nullptr;
+};
+
+/// Compares sampled boxes with all others by the definition: what differs first from `pairs`, or empty. Where
+/// the boxes are no more than the sample all are compared. Cost: the sample times the boxes.
+template <int D>
+std::optional<Divergence> check_sample(std::span<const Box<D>> boxes, std::span<const Pair> pairs);
+
+/// The hash of a set of pairs, as PairHasher computes it.
+std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;
+
+/// `count` of the numbers below `size`, or all if they are fewer, chosen at random but always the same;
+/// ascending.
+std::vector<std::size_t> sample_of(std::size_t size, std::size_t count);
+
+}  // namespace broadside::lab

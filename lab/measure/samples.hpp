@@ -1,0 +1,18 @@
+// What a list of measured times comes to.
+#pragma once
+
+#include <span>
+
+namespace broadside::lab {
+
+/// The middle sample, or the mean of the middle two. Throws std::invalid_argument if there are none.
+double median(std::span<const double> samples);
+
+/// The smallest sample that at least `fraction` of all are not above: 0.99 for p99. Throws
+/// std::invalid_argument if there are none.
+double percentile(std::span<const double> samples, double fraction);
+
+/// The geometric mean of positive numbers. Throws std::invalid_argument if there are none.
+double geometric_mean(std::span<const double> numbers);
+
+}  // namespace broadside::lab

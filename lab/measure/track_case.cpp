@@ -1,0 +1,267 @@
+// Measures trackers: every contender over the same histories, frame by frame in turns, all events checked.
+#include "lab/measure/track_case.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/expected_events.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// The expected events of one input.
+struct Expectation {
+  Reference reference;
+  std::size_t input;
+  ExpectedEvents events;
+};
+
+template <int D>
+struct Contestant {
+  const Contender* contender;
+  Measurement* entry;
+  std::unique_ptr<PairTracker<D>> tracker{};  // of this pass
+  const ExpectedEvents* expected = nullptr;   // of this pass
+  EventHasher hasher{};
+  std::vector<double> frames_ms{};  // of this pass
+  double pass_ms = 0;               // of this pass, the first frame too
+  double spent_ms = 0;              // in frames, of all passes
+  std::uint64_t tests = 0;
+  std::uint64_t references = 0;
+  std::int64_t pairs = 0;
+  Allocation memory{0, 0};  // taken by the tracker since it was made
+  bool done = false;
+};
+
+/// Some of the boxes of a history and its first steps, as a history of their own.
+template <int D>
+History<D> thinned(const History<D>& history, std::size_t count, std::size_t most_steps) {
+  constexpr std::size_t left_out = static_cast<std::size_t>(-1);
+  std::size_t size = history.boxes.size();
+  for (const Step<D>& step : history.steps) size = std::max(size, step.size);
+  std::vector<std::size_t> place(size, left_out);
+  History<D> thin;
+  std::size_t next = 0;
+  for (const std::size_t i : sample_of(size, count)) {
+    place[i] = next++;
+    thin.boxes.push_back(i < history.boxes.size() ? history.boxes[i] : absent_box<D>());
+  }
+  for (std::size_t s = 0; s < std::min(most_steps, history.steps.size()); ++s) {
+    const Step<D>& step = history.steps[s];
+    Step<D> few{thin.boxes.size(), {}, {}};
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      if (place[index(step.changed[i])] == left_out) continue;
+      few.changed.push_back(BoxId(place[index(step.changed[i])]));
+      few.boxes.push_back(step.boxes[i]);
+    }
+    thin.steps.push_back(std::move(few));
+  }
+  return thin;
+}
+
+template <int D>
+class TrackCase {
+ public:
+  TrackCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
+      : case_(of), inputs_(inputs), contest_(contest) {}
+
+  std::vector<Measurement> run() {
+    std::vector<Measurement> entries;
+    for (const Contender& contender : contest_.contenders) entries.push_back(entry_of(contender));
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (let_in(contest_.contenders[i], entries[i]))
+        contestants_.push_back({&contest_.contenders[i], &entries[i]});
+    }
+    // The first pass sees what memory is taken; where it takes too long to be done again, it is timed as
+    // well.
+    pass(0, true);
+    for (Contestant<D>& contestant : contestants_) close_first_pass(contestant);
+    for (std::size_t round = 1; std::ranges::any_of(contestants_, is_on); ++round) {
+      pass(round % inputs_.size(), false);
+      for (Contestant<D>& contestant : contestants_) close_pass(contestant);
+    }
+    return entries;
+  }
+
+ private:
+  static bool is_on(const Contestant<D>& contestant) { return !contestant.done; }
+
+  /// Fills in why not, if the contender is not let in.
+  bool let_in(const Contender& contender, Measurement& entry) {
+    const History<D>& history = inputs_[0];
+    const bool infinite =
+        any_infinite<D>(history.boxes) ||
+        std::ranges::any_of(history.steps, [](const Step<D>& step) { return any_infinite<D>(step.boxes); });
+    entry.reason = unfit(*contender.algorithm, D, infinite);
+    if (!entry.reason.empty()) return false;
+    const double frames = static_cast<double>(case_.frames + 1);
+    const double budget = contest_.effort.budget_seconds;
+    const auto frame_seconds = [&](std::size_t count) {
+      contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
+      return slowest_frame(contender, thinned(history, count, 2)) / 1e3;
+    };
+    const std::string fault = fault_of(entry, [&]() -> std::string {
+      // A history cannot be left half way, so that its frames share the budget.
+      if (const auto estimate = estimate_above(budget / frames, case_.boxes, frame_seconds))
+        skip(entry, *estimate, case_.frames + 1, budget);
+      return {};
+    });
+    if (!fault.empty()) fail(entry, fault);
+    return entry.reason.empty();
+  }
+
+  double slowest_frame(const Contender& contender, const History<D>& history) {
+    const auto tracker = make_tracker<D>(*contender.algorithm, contender.spec);
+    std::vector<Box<D>> boxes = history.boxes;
+    double slowest = update(*tracker, {boxes, {}});
+    for (const Step<D>& step : history.steps) {
+      apply(step, boxes);
+      slowest = std::max(slowest, update(*tracker, {boxes, step.changed}));
+    }
+    return slowest;
+  }
+
+  /// Milliseconds for one frame, whose events are then in events_.
+  double update(PairTracker<D>& tracker, const Frame<D>& frame) {
+    events_.begun.clear();
+    events_.ended.clear();
+    PairCollector begun(events_.begun);
+    PairCollector ended(events_.ended);
+    const Stopwatch watch;
+    tracker.update(frame, begun, ended);
+    return watch.milliseconds();
+  }
+
+  /// Lets all that are not done track an input from its first frame to its last.
+  void pass(std::size_t input, bool is_first) {
+    const History<D>& history = inputs_[input];
+    std::vector<Box<D>> boxes = history.boxes;
+    for (Contestant<D>& contestant : contestants_) {
+      if (contestant.done) continue;
+      contest_.watch.at(contestant.entry->algorithm + ", checking");
+      contestant.expected = &expectation(contestant, input);
+      contestant.tracker.reset();
+      contestant.frames_ms.clear();
+      contestant.pass_ms = 0;
+    }
+    for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
+      if (frame > 0) apply(history.steps[frame - 1], boxes);
+      const Frame<D> now{boxes, frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
+      for (std::size_t turn = 0; turn < contestants_.size(); ++turn) {
+        Contestant<D>& contestant = contestants_[(turn + frame) % contestants_.size()];
+        if (contestant.done) continue;
+        contest_.watch.at(fmt::format("{}, frame {}", contestant.entry->algorithm, frame));
+        const std::string fault =
+            fault_of(*contestant.entry, [&] { return take(contestant, now, frame, is_first); });
+        if (fault.empty()) continue;
+        fail(*contestant.entry, fault);
+        contestant.done = true;
+      }
+    }
+  }
+
+  /// One frame of one contestant; what is wrong with its events.
+  std::string take(Contestant<D>& contestant, const Frame<D>& now, std::size_t frame, bool is_first) {
+    const ExpectedEvents& expected = *contestant.expected;
+    if (!expected.fault.empty()) return expected.fault;
+    events_.begun.reserve(expected.frames[frame].begun.size());
+    events_.ended.reserve(expected.frames[frame].ended.size());
+    const auto make_and_update = [&] {
+      if (!contestant.tracker)
+        contestant.tracker = make_tracker<D>(*contestant.contender->algorithm, contestant.contender->spec);
+      return update(*contestant.tracker, now);
+    };
+    const double milliseconds = is_first ? counted(contestant, make_and_update) : make_and_update();
+    contestant.pass_ms += milliseconds;
+    if (frame > 0) contestant.frames_ms.push_back(milliseconds);
+    if (is_first) note(contestant, frame);
+    return difference(events_, expected.frames[frame], contestant.entry->algorithm, frame, now.boxes);
+  }
+
+  /// Runs one frame and adds the memory it takes to the contestant's.
+  template <typename Run>
+  double counted(Contestant<D>& contestant, const Run& run) {
+    const AllocationMeter meter;
+    const double milliseconds = run();
+    if (const auto allocation = meter.read()) {
+      Allocation& memory = contestant.memory;
+      memory.peak = std::max(memory.peak, memory.kept + allocation->peak);
+      memory.kept += allocation->kept;
+      count_memory(*contestant.entry, memory);
+    }
+    return milliseconds;
+  }
+
+  /// Notes what is counted in the first pass.
+  void note(Contestant<D>& contestant, std::size_t frame) {
+    contestant.hasher.add(events_);
+    contestant.pairs +=
+        static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
+    const auto& statistics = contestant.tracker->statistics();
+    if (frame == 0 || !statistics) return;
+    contestant.tests += statistics->tests;
+    contestant.references += statistics->references;
+    contestant.entry->statistics = Statistics{contestant.tests / frame, contestant.references / frame};
+  }
+
+  void close_first_pass(Contestant<D>& contestant) {
+    if (contestant.done) return;
+    Measurement& entry = *contestant.entry;
+    entry.outcome = Outcome::verified;
+    entry.pairs = static_cast<std::uint64_t>(contestant.pairs);
+    entry.pair_hash = contestant.hasher.hash();
+    if (contestant.pass_ms > contest_.effort.single_sample_seconds * 1e3) {
+      entry.samples_ms = contestant.frames_ms;
+      contestant.done = true;
+    }
+  }
+
+  void close_pass(Contestant<D>& contestant) {
+    if (contestant.done) return;
+    Measurement& entry = *contestant.entry;
+    entry.samples_ms.insert(entry.samples_ms.end(), contestant.frames_ms.begin(), contestant.frames_ms.end());
+    contestant.spent_ms += contestant.pass_ms;
+    const std::size_t samples = entry.samples_ms.size();
+    contestant.done = samples >= contest_.effort.most_samples ||
+                      (samples >= contest_.effort.least_samples &&
+                       contestant.spent_ms >= contest_.effort.share_seconds * 1e3);
+  }
+
+  /// What the contestant must report on the input; computed when first asked for.
+  const ExpectedEvents& expectation(Contestant<D>& contestant, std::size_t input) {
+    const Reference reference(*contestant.contender->algorithm, contest_.known, case_.boxes,
+                              most_tracked_boxes_by_definition);
+    contestant.entry->verified_by = reference.text();
+    for (const auto& known : expectations_) {
+      if (known->reference == reference && known->input == input) return known->events;
+    }
+    expectations_.push_back(std::make_unique<Expectation>(
+        Expectation{reference, input, expected_events(reference, inputs_[input])}));
+    return expectations_.back()->events;
+  }
+
+  const Case& case_;
+  std::span<const History<D>> inputs_;
+  const Contest& contest_;
+  std::vector<Contestant<D>> contestants_;
+  std::vector<std::unique_ptr<Expectation>> expectations_;
+  Events events_;  // of the last update; its memory serves all
+};
+
+}  // namespace
+
+template <int D>
+std::vector<Measurement> measure_track(const Case& of, std::span<const History<D>> inputs,
+                                       const Contest& contest) {
+  return TrackCase<D>(of, inputs, contest).run();
+}
+
+template std::vector<Measurement> measure_track(const Case&, std::span<const History<2>>, const Contest&);
+template std::vector<Measurement> measure_track(const Case&, std::span<const History<3>>, const Contest&);
+
+}  // namespace broadside::lab

@@ -1,0 +1,21 @@
+// Numbers as people read them: thousands apart, few digits, bytes and seconds with a unit.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace broadside::lab {
+
+/// "1,234,567".
+std::string grouped(std::uint64_t number);
+
+/// About three significant digits and no exponent: "0.0712", "4.21", "41.2", "41,200".
+std::string rounded(double number);
+
+/// A duration with the unit that suits it: "71.2 us", "4.21 ms", "41.2 s".
+std::string duration(double seconds);
+
+/// A size with the unit that suits it: "512 B", "71.2 kB", "4.21 MB", "1.30 GB"; 1 kB is 1,000 bytes.
+std::string bytes(std::uint64_t count);
+
+}  // namespace broadside::lab

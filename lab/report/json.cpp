@@ -1,0 +1,108 @@
+// A comparison as JSON, by the schema "broadside.results/1".
+#include "lab/report/json.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "lab/measure/samples.hpp"
+#include "lab/report/machine.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+std::string text_of(const Json& json) {
+  // A path need not be UTF-8, which JSON must be.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json machine_json() {
+  const Machine machine = this_machine();
+  return {{"cpu", or_null(machine.cpu)},
+          {"cores", machine.cores == 0 ? Json() : Json(machine.cores)},
+          {"memory_bytes", machine.memory_bytes == 0 ? Json() : Json(machine.memory_bytes)},
+          {"os", or_null(machine.os)}};
+}
+
+Json build_json() {
+  const Build build = this_build();
+  return {{"version", build.version},
+          {"revision", or_null(build.revision)},
+          {"compiler", build.compiler},
+          {"type", or_null(build.type)},
+          {"flags", or_null(build.flags)}};
+}
+
+Json measurement_json(const Case& of, const Measurement& measurement) {
+  const std::vector<double>& samples = measurement.samples_ms;
+  const bool timed = !samples.empty();
+  const auto& statistics = measurement.statistics;
+  Json parameters = Json::object();
+  for (const auto& [name, value] : of.parameters) parameters[name] = value;
+  Json json;
+  json["scene"] = of.scene;
+  json["scene_parameters"] = std::move(parameters);
+  json["seeds"] = of.seeds;
+  json["dimension"] = of.dimension;
+  json["boxes"] = of.boxes;
+  json["frames"] = of.frames;
+  json["moving"] = of.moving;
+  json["algorithm"] = measurement.algorithm;
+  json["version"] = measurement.version;
+  json["kind"] = name(measurement.kind);
+  json["mode"] = of.mode == Mode::find ? "find" : "track";
+  json["threads"] = 1;
+  json["target"] = nullptr;
+  json["pairs"] = or_null(measurement.pairs);
+  json["pair_hash"] = measurement.pair_hash ? Json(fmt::format("{:016x}", *measurement.pair_hash)) : Json();
+  json["verified"] =
+      measurement.outcome == Outcome::skipped ? Json() : Json(measurement.outcome == Outcome::verified);
+  json["verified_by"] = or_null(measurement.verified_by);
+  json["skipped"] = or_null(measurement.reason);
+  json["median_ms"] = timed ? Json(median(samples)) : Json();
+  json["min_ms"] = timed ? Json(std::ranges::min(samples)) : Json();
+  json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
+  json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
+  json["samples_ms"] = timed ? Json(samples) : Json();
+  json["build_ms"] = nullptr;
+  json["search_ms"] = nullptr;
+  json["ns_per_box"] =
+      timed && of.boxes > 0 ? Json(median(samples) * 1e6 / static_cast<double>(of.boxes)) : Json();
+  json["tests"] = statistics ? Json(statistics->tests) : Json();
+  json["references"] = statistics ? Json(statistics->references) : Json();
+  json["own_bytes"] = or_null(measurement.own_bytes);
+  json["peak_bytes"] = or_null(measurement.peak_bytes);
+  return json;
+}
+
+}  // namespace
+
+std::string json_of(const Comparison& comparison, std::span<const std::string> command) {
+  // One measurement a line: short, and readable where two results are compared.
+  std::string text =
+      fmt::format("{{\n\"schema\": \"broadside.results/1\",\n\"machine\": {},\n\"build\": {},\n",
+                  text_of(machine_json()), text_of(build_json()));
+  text += fmt::format("\"command\": {},\n\"measurements\": [",
+                      text_of(std::vector<std::string>(command.begin(), command.end())));
+  std::string_view separator = "\n";
+  for (const CaseResult& result : comparison.cases) {
+    for (const Measurement& measurement : result.measurements) {
+      text += separator;
+      text += text_of(measurement_json(result.of, measurement));
+      separator = ",\n";
+    }
+  }
+  return text + "\n]\n}\n";
+}
+
+}  // namespace broadside::lab

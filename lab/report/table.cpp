@@ -1,0 +1,197 @@
+// A comparison as tables that a person likes to read.
+#include "lab/report/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// The unit of one table's times.
+struct Unit {
+  std::string name;
+  double per_ms;
+
+  std::string text(double milliseconds) const { return rounded(milliseconds * per_ms); }
+};
+
+Unit unit_for(double fastest_ms) {
+  if (fastest_ms < 0.1) return {"us", 1e3};
+  if (fastest_ms < 1e3) return {"ms", 1};
+  return {"s", 1e-3};
+}
+
+bool is_timed(const Measurement& measurement) { return !measurement.samples_ms.empty(); }
+
+/// The median, or what it is thought to be; infinite where nothing is known.
+double time_of(const Measurement& measurement) {
+  return is_timed(measurement) ? median(measurement.samples_ms) : measurement.estimated_ms.value_or(INFINITY);
+}
+
+/// The best median of the case; 0 where nothing was timed.
+double fastest_of(const CaseResult& result) {
+  double fastest = INFINITY;
+  for (const Measurement& measurement : result.measurements) {
+    if (is_timed(measurement)) fastest = std::min(fastest, time_of(measurement));
+  }
+  return std::isfinite(fastest) ? fastest : 0;
+}
+
+std::string ratio_text(double ratio) { return ratio < 99.95 ? fmt::format("{:.2f}", ratio) : rounded(ratio); }
+
+std::vector<const Measurement*> in_order(const CaseResult& result) {
+  std::vector<const Measurement*> order;
+  for (const Measurement& measurement : result.measurements) order.push_back(&measurement);
+  std::ranges::stable_sort(order, {}, [](const Measurement* measurement) {
+    return std::tuple(!is_timed(*measurement), measurement->outcome == Outcome::skipped,
+                      time_of(*measurement));
+  });
+  return order;
+}
+
+std::string name_of(const Case& of) {
+  return fmt::format("{}, {}D, {} boxes", of.scene, of.dimension, grouped(of.boxes));
+}
+
+std::string heading(const CaseResult& result) {
+  const Case& of = result.of;
+  std::string text = name_of(of);
+  if (of.mode == Mode::track)
+    text += fmt::format(", {} % moving, {} frames", rounded(of.moving * 100), grouped(of.frames));
+  std::vector<std::string> references;
+  const Measurement* counted = nullptr;
+  for (const Measurement& measurement : result.measurements) {
+    if (measurement.outcome == Outcome::verified && counted == nullptr) counted = &measurement;
+    const std::string& by = measurement.verified_by;
+    if (!by.empty() && std::ranges::find(references, by) == references.end()) references.push_back(by);
+  }
+  if (counted != nullptr && counted->pairs) text += fmt::format(", {} pairs", grouped(*counted->pairs));
+  if (counted != nullptr && of.mode == Mode::track) text += " at the end";
+  if (!references.empty()) text += fmt::format(", checked against {}", fmt::join(references, " or "));
+  return text + "\n";
+}
+
+std::string verdict(const Measurement& measurement) {
+  switch (measurement.outcome) {
+    case Outcome::verified:
+      return "verified";
+    case Outcome::failed:
+      return "FAILED";
+    case Outcome::skipped:
+      break;
+  }
+  return "skipped: " + measurement.reason;
+}
+
+struct Standing {
+  std::string algorithm;
+  std::size_t fastest = 0;
+  std::vector<double> ratios;
+
+  double mean() const { return ratios.empty() ? INFINITY : geometric_mean(ratios); }
+};
+
+std::vector<Standing> standings(const Comparison& comparison) {
+  std::vector<Standing> all;
+  for (const CaseResult& result : comparison.cases) {
+    const double fastest = fastest_of(result);
+    for (const Measurement& measurement : result.measurements) {
+      auto standing = std::ranges::find(all, measurement.algorithm, &Standing::algorithm);
+      if (standing == all.end()) standing = all.insert(all.end(), {measurement.algorithm, 0, {}});
+      if (!is_timed(measurement)) continue;
+      standing->ratios.push_back(time_of(measurement) / fastest);
+      if (time_of(measurement) == fastest) ++standing->fastest;
+    }
+  }
+  std::ranges::stable_sort(all, {}, &Standing::mean);
+  return all;
+}
+
+}  // namespace
+
+std::string table_of(const CaseResult& result) {
+  const Case& of = result.of;
+  const double fastest = fastest_of(result);
+  const double boxes = static_cast<double>(std::max<std::size_t>(of.boxes, 1));
+  const Unit unit = unit_for(fastest);
+  const bool any_estimate = std::ranges::any_of(
+      result.measurements, [](const Measurement& m) { return m.estimated_ms.has_value(); });
+  const std::string no_mark = any_estimate ? "     " : "";  // as wide as " est."
+  const bool tracked = of.mode == Mode::track;
+
+  Columns columns("<>>>>><<");
+  columns.add({"algorithm", (tracked ? unit.name + " a frame" : unit.name) + no_mark, "ratio", "ns a box",
+               "tests a box", "memory", tracked ? "min..p99" : "min..max", ""});
+  for (const Measurement* const measurement : in_order(result)) {
+    const auto& statistics = measurement->statistics;
+    const bool timed = is_timed(*measurement);
+    const double time = time_of(*measurement);
+    const std::vector<double>& samples = measurement->samples_ms;
+    const bool estimated = measurement->estimated_ms.has_value();
+    const double ratio = fastest > 0 ? time / fastest : INFINITY;
+    columns.add({
+        measurement->algorithm,
+        timed       ? unit.text(time) + no_mark
+        : estimated ? "~" + unit.text(time) + " est."
+                    : "-" + no_mark,
+        !std::isfinite(ratio) ? "-"
+        : timed               ? ratio_text(ratio)
+                              : "~" + ratio_text(ratio),
+        timed ? rounded(time * 1e6 / boxes) : "-",
+        timed && statistics ? rounded(static_cast<double>(statistics->tests) / boxes) : "-",
+        timed && measurement->own_bytes ? bytes(*measurement->own_bytes) : "-",
+        timed ? unit.text(std::ranges::min(samples)) + ".." +
+                    unit.text(tracked ? percentile(samples, 0.99) : std::ranges::max(samples))
+              : "-",
+        verdict(*measurement),
+    });
+  }
+  return heading(result) + columns.text("  ");
+}
+
+std::string summary_of(const Comparison& comparison) {
+  std::size_t measured = 0;
+  std::size_t skipped = 0;
+  std::vector<std::string> failures;
+  for (const CaseResult& result : comparison.cases) {
+    for (const Measurement& measurement : result.measurements) {
+      ++(measurement.outcome == Outcome::skipped ? skipped : measured);
+      if (measurement.outcome == Outcome::failed)
+        failures.push_back(name_of(result.of) + ": " + measurement.reason);
+    }
+  }
+  const auto plural = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+  };
+
+  std::string text;
+  if (comparison.cases.size() > 1) {
+    text += fmt::format("All {}\n", plural(comparison.cases.size(), "case"));
+    Columns columns("<>>><");
+    columns.add({"algorithm", "cases", "fastest", "ratio to the fastest, geometric mean", ""});
+    for (const Standing& standing : standings(comparison)) {
+      columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
+                   standing.ratios.empty() ? "-" : ratio_text(standing.mean()), ""});
+    }
+    text += columns.text("  ") + "\n";
+  }
+  for (const NotCompared& missing : comparison.not_compared)
+    text += fmt::format("not compared: {} {}D: {}\n", missing.request.scene, missing.request.dimension,
+                        missing.reason);
+  text += plural(measured, "measurement");
+  text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
+  if (skipped > 0) text += fmt::format("; {} skipped", grouped(skipped));
+  if (comparison.stopped) text += "; stopped before the end";
+  text += "\n";
+  for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
+  return text;
+}
+
+}  // namespace broadside::lab
