@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "lab/measure/find_case.hpp"
+#include "lab/measure/reference.hpp"
 #include "lab/measure/track_case.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
@@ -37,6 +39,23 @@ double moving_fraction(const History<D>& history) {
     sum +=
         static_cast<double>(step.changed.size()) / static_cast<double>(std::max<std::size_t>(step.size, 1));
   return history.steps.empty() ? 0 : sum / static_cast<double>(history.steps.size());
+}
+
+/// Refuses boxes with so many pairs that keeping them would fill the machine: about how many there are shows
+/// in a sample.
+template <int D>
+void check_pair_count(std::span<const Box<D>> boxes) {
+  constexpr double most = 250e6;  // 2 GB
+  std::vector<Box<D>> some;
+  for (const std::size_t i : sample_of(boxes.size(), 1'000)) some.push_back(boxes[i]);
+  const double scale =
+      static_cast<double>(boxes.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
+  const double pairs = static_cast<double>(reference_pairs<D>(some).size()) * scale * scale;
+  if (pairs > most) {
+    throw std::runtime_error(fmt::format(
+        "{} boxes with about {:.1e} pairs; expected at most {:.1e}, since pairs are kept to be checked",
+        grouped(boxes.size()), pairs, most));
+  }
 }
 
 class Runner {
@@ -109,6 +128,7 @@ class Runner {
           {.boxes = request.boxes, .seed = seed, .frames = request.frames, .moving = request.moving}));
     };
     make(options_.seed);
+    check_pair_count<D>(inputs[0].boxes);
     of.scene = named.spec.text();
     const Settings settings(named.spec, named.scene.tunables);
     for (const Tunable& tunable : named.scene.tunables)

@@ -30,10 +30,10 @@ Effort long_effort();
 /// What a user asks for; a list that is empty stands for its standard: every generated scene, 10,000 boxes,
 /// both dimensions, still.
 struct Wishes {
-  std::vector<std::string> scenes;
-  std::vector<std::size_t> boxes;
-  std::vector<int> dimensions;
-  std::vector<double> moving;
+  std::vector<std::string> scenes{};
+  std::vector<std::size_t> boxes{};
+  std::vector<int> dimensions{};
+  std::vector<double> moving{};
   std::size_t frames = 0;  ///< 0: 20 where the boxes move
 };
 

@@ -60,21 +60,33 @@ std::string name_of(const Case& of) {
   return fmt::format("{}, {}D, {} boxes", of.scene, of.dimension, grouped(of.boxes));
 }
 
+/// What the results were compared with: "quadtree or sweep_and_prune + 200 sampled boxes".
+std::string references_of(const CaseResult& result) {
+  std::vector<std::string> names;
+  std::string addition;
+  for (const Measurement& measurement : result.measurements) {
+    const std::string& by = measurement.verified_by;
+    const std::size_t end = std::min(by.find(' '), by.size());
+    if (by.empty() || std::ranges::find(names, by.substr(0, end)) != names.end()) continue;
+    names.push_back(by.substr(0, end));
+    addition = by.substr(end);
+  }
+  return fmt::format("{}{}", fmt::join(names, " or "), addition);
+}
+
 std::string heading(const CaseResult& result) {
   const Case& of = result.of;
   std::string text = name_of(of);
   if (of.mode == Mode::track)
-    text += fmt::format(", {} % moving, {} frames", rounded(of.moving * 100), grouped(of.frames));
-  std::vector<std::string> references;
-  const Measurement* counted = nullptr;
+    text += fmt::format(", {:.3g} % moving, {} frames", of.moving * 100, grouped(of.frames));
   for (const Measurement& measurement : result.measurements) {
-    if (measurement.outcome == Outcome::verified && counted == nullptr) counted = &measurement;
-    const std::string& by = measurement.verified_by;
-    if (!by.empty() && std::ranges::find(references, by) == references.end()) references.push_back(by);
+    if (measurement.outcome != Outcome::verified || !measurement.pairs) continue;
+    text +=
+        fmt::format(", {} pairs{}", grouped(*measurement.pairs), of.mode == Mode::track ? " at the end" : "");
+    break;
   }
-  if (counted != nullptr && counted->pairs) text += fmt::format(", {} pairs", grouped(*counted->pairs));
-  if (counted != nullptr && of.mode == Mode::track) text += " at the end";
-  if (!references.empty()) text += fmt::format(", checked against {}", fmt::join(references, " or "));
+  const std::string references = references_of(result);
+  if (!references.empty()) text += ", checked against " + references;
   return text + "\n";
 }
 

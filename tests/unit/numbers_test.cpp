@@ -1,0 +1,46 @@
+// Numbers as people read them.
+#include "lab/numbers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace broadside::lab {
+namespace {
+
+TEST(Grouped, PutsACommaBetweenThousands) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1'000), "1,000");
+  EXPECT_EQ(grouped(1'234'567), "1,234,567");
+}
+
+TEST(Rounded, KeepsThreeDigits) {
+  EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(0.071234), "0.0712");
+  EXPECT_EQ(rounded(4.2149), "4.21");
+  EXPECT_EQ(rounded(41.24), "41.2");
+  EXPECT_EQ(rounded(412.4), "412");
+  EXPECT_EQ(rounded(41234.5), "41,235");
+}
+
+TEST(Rounded, LosesADigitWhereRoundingAddsOne) {
+  EXPECT_EQ(rounded(0.99996), "1.00");
+  EXPECT_EQ(rounded(9.9996), "10.0");
+  EXPECT_EQ(rounded(99.96), "100");
+}
+
+TEST(Duration, HasTheUnitThatSuitsIt) {
+  EXPECT_EQ(duration(71.2e-6), "71.2 us");
+  EXPECT_EQ(duration(4.21e-3), "4.21 ms");
+  EXPECT_EQ(duration(0.9999), "1.00 s");
+  EXPECT_EQ(duration(4100), "4,100 s");
+}
+
+TEST(Bytes, HaveTheUnitThatSuitsThem) {
+  EXPECT_EQ(bytes(512), "512 B");
+  EXPECT_EQ(bytes(71'234), "71.2 kB");
+  EXPECT_EQ(bytes(999'600), "1.00 MB");
+  EXPECT_EQ(bytes(1'300'000'000), "1.30 GB");
+}
+
+}  // namespace
+}  // namespace broadside::lab

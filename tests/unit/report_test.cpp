@@ -1,0 +1,221 @@
+// Reports: the table's shape, the summary's verdict, the JSON's fields.
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "lab/report/columns.hpp"
+#include "lab/report/json.hpp"
+#include "lab/report/table.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+Measurement timed(std::string algorithm, std::vector<double> samples_ms) {
+  Measurement measurement;
+  measurement.algorithm = std::move(algorithm);
+  measurement.version = "0.1.0";
+  measurement.outcome = Outcome::verified;
+  measurement.verified_by = "brute_force";
+  measurement.samples_ms = std::move(samples_ms);
+  measurement.pairs = 1'234;
+  measurement.pair_hash = 0xfedcba9876543210U;
+  measurement.statistics = Statistics{50'000, 10'000};
+  measurement.own_bytes = 64'000;
+  measurement.peak_bytes = 65'000;
+  return measurement;
+}
+
+Measurement failed(std::string algorithm) {
+  Measurement measurement;
+  measurement.algorithm = std::move(algorithm);
+  measurement.outcome = Outcome::failed;
+  measurement.verified_by = "brute_force";
+  measurement.reason = "mine: frame 0, search of seed 1: pair (3, 7) is missing; expected to be reported";
+  return measurement;
+}
+
+Measurement skipped(std::string algorithm) {
+  Measurement measurement;
+  measurement.algorithm = std::move(algorithm);
+  measurement.reason = "estimated 41.0 s from 20,000 boxes, scaled by n^2.00; budget 10 s";
+  measurement.estimated_ms = 41'000;
+  return measurement;
+}
+
+CaseResult still_case(std::vector<Measurement> measurements) {
+  Case of;
+  of.scene = "uniform";
+  of.parameters = {{"neighbours", "4"}};
+  of.seeds = {1, 2};
+  of.dimension = 2;
+  of.boxes = 10'000;
+  return {of, std::move(measurements)};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Columns, AlignsEachAsItIsToldAndLeavesNoSpaceAtTheEnd) {
+  Columns columns("<>>");
+  columns.add({"a", "1", ""});
+  columns.add({"bbb", "1,000", "x"});
+  EXPECT_EQ(columns.text("  "), "  a        1\n  bbb  1,000  x\n");
+  EXPECT_THROW(columns.add({"too few"}), std::invalid_argument);
+}
+
+TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
+  const auto lines = lines_of(table_of(still_case(
+      {skipped("slow"), timed("second", {8, 9, 10}), failed("wrong"), timed("first", {4, 4.5, 5})})));
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_EQ(lines[0], "uniform, 2D, 10,000 boxes, 1,234 pairs, checked against brute_force");
+  EXPECT_THAT(lines[2], StartsWith("  first "));
+  EXPECT_THAT(lines[3], StartsWith("  second "));
+  EXPECT_THAT(lines[4], StartsWith("  wrong "));
+  EXPECT_THAT(lines[5], StartsWith("  slow "));
+}
+
+TEST(Table, ShowsMedianRatioAndTheRestOfALine) {
+  const auto lines =
+      lines_of(table_of(still_case({timed("first", {4, 4.5, 5}), timed("second", {8, 9, 10})})));
+  EXPECT_EQ(lines[1], "  algorithm    ms  ratio  ns a box  tests a box   memory  min..max");
+  EXPECT_EQ(lines[2], "  first      4.50   1.00       450         5.00  64.0 kB  4.00..5.00  verified");
+  EXPECT_EQ(lines[3], "  second     9.00   2.00       900         5.00  64.0 kB  8.00..10.0  verified");
+}
+
+TEST(Table, LabelsAnEstimateAndKeepsTheColumnsAligned) {
+  const auto lines = lines_of(table_of(still_case({timed("first", {4.5}), skipped("slow")})));
+  EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,111 "));
+  EXPECT_THAT(lines[3],
+              HasSubstr("  skipped: estimated 41.0 s from 20,000 boxes, scaled by n^2.00; budget 10 s"));
+  EXPECT_EQ(lines[2].find("4.50") + 4, lines[3].find("41,000") + 6);
+  EXPECT_EQ(lines[2].find("1.00") + 4, lines[3].find("9,111") + 5);
+  EXPECT_EQ(lines[2].find("verified"), lines[3].find("skipped"));
+}
+
+TEST(Table, ShowsAFailureAndNoTimeForIt) {
+  const std::string table = table_of(still_case({timed("first", {4.5}), failed("wrong")}));
+  const std::string line = lines_of(table)[3];
+  EXPECT_THAT(line, HasSubstr("FAILED"));
+  EXPECT_THAT(line, Not(testing::ContainsRegex("[0-9]")));
+}
+
+TEST(Table, TellsHowAHistoryMoves) {
+  CaseResult result = still_case({timed("first", {4.5, 4.6})});
+  result.of.mode = Mode::track;
+  result.of.frames = 20;
+  result.of.moving = 0.1;
+  const auto lines = lines_of(table_of(result));
+  EXPECT_THAT(lines[0], HasSubstr("10,000 boxes, 10 % moving, 20 frames, 1,234 pairs at the end"));
+  EXPECT_THAT(lines[1], HasSubstr("ms a frame"));
+  EXPECT_THAT(lines[1], HasSubstr("min..p99"));
+}
+
+TEST(Table, NamesEachReferenceOnce) {
+  CaseResult result = still_case({timed("grid", {1}), timed("quadtree", {2}), timed("brute_force", {3})});
+  result.measurements[0].verified_by = "quadtree + 200 sampled boxes";
+  result.measurements[1].verified_by = "sweep_and_prune + 200 sampled boxes";
+  result.measurements[2].verified_by = "quadtree + 200 sampled boxes";
+  EXPECT_THAT(lines_of(table_of(result))[0],
+              HasSubstr("checked against quadtree or sweep_and_prune + 200 sampled boxes"));
+}
+
+TEST(Summary, MeansTheRatiosAndCountsTheWins) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("a", {1}), timed("b", {4})}),
+                      still_case({timed("a", {9}), timed("b", {1})})};
+  const auto lines = lines_of(summary_of(comparison));
+  EXPECT_EQ(lines[0], "All 2 cases");
+  EXPECT_THAT(lines[2], testing::ContainsRegex("b +2 +1 +2.00"));
+  EXPECT_THAT(lines[3], testing::ContainsRegex("a +2 +1 +3.00"));
+  EXPECT_EQ(lines.back(), "4 measurements, all verified");
+}
+
+TEST(Summary, NamesEveryFailureAndWhatWasSkipped) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("a", {1}), failed("wrong"), skipped("slow")})};
+  comparison.not_compared = {{{.scene = "box2d_rain", .dimension = 2}, "unknown scene"}};
+  const std::string summary = summary_of(comparison);
+  EXPECT_THAT(summary, HasSubstr("not compared: box2d_rain 2D: unknown scene\n"));
+  EXPECT_THAT(summary, HasSubstr("2 measurements, 1 FAILED; 1 skipped\n"));
+  EXPECT_THAT(
+      summary,
+      HasSubstr(
+          "FAILED: uniform, 2D, 10,000 boxes: mine: frame 0, search of seed 1: pair (3, 7) is missing"));
+}
+
+using Json = nlohmann::ordered_json;
+
+Json parsed(const std::vector<Measurement>& measurements) {
+  Comparison comparison;
+  comparison.cases = {still_case(measurements)};
+  return Json::parse(json_of(comparison, std::vector<std::string>{"broadside", "compare"}));
+}
+
+TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
+  const Json json = parsed({timed("grid", {1, 2, 3})});
+  EXPECT_EQ(json["schema"], "broadside.results/1");
+  EXPECT_EQ(json["command"], (Json{"broadside", "compare"}));
+  for (const char* const field : {"cpu", "cores", "memory_bytes", "os"})
+    EXPECT_TRUE(json["machine"].contains(field));
+  for (const char* const field : {"version", "revision", "compiler", "type", "flags"})
+    EXPECT_TRUE(json["build"].contains(field));
+  std::vector<std::string> fields;
+  for (const auto& item : json["measurements"][0].items()) fields.push_back(item.key());
+  EXPECT_THAT(fields,
+              testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes", "frames",
+                                   "moving", "algorithm", "version", "kind", "mode", "threads", "target",
+                                   "pairs", "pair_hash", "verified", "verified_by", "skipped", "median_ms",
+                                   "min_ms", "p99_ms", "max_ms", "samples_ms", "build_ms", "search_ms",
+                                   "ns_per_box", "tests", "references", "own_bytes", "peak_bytes"));
+}
+
+TEST(JsonResults, HoldWhatWasMeasured) {
+  const Json measurement = parsed({timed("grid:cell=2", {1, 2, 6})})["measurements"][0];
+  EXPECT_EQ(measurement["scene_parameters"], (Json{{"neighbours", "4"}}));
+  EXPECT_EQ(measurement["seeds"], (Json{1, 2}));
+  EXPECT_EQ(measurement["algorithm"], "grid:cell=2");
+  EXPECT_EQ(measurement["kind"], "own");
+  EXPECT_EQ(measurement["mode"], "find");
+  EXPECT_EQ(measurement["pair_hash"], "fedcba9876543210");
+  EXPECT_EQ(measurement["verified"], true);
+  EXPECT_TRUE(measurement["skipped"].is_null());
+  EXPECT_EQ(measurement["median_ms"], 2);
+  EXPECT_EQ(measurement["max_ms"], 6);
+  EXPECT_EQ(measurement["samples_ms"], (Json{1.0, 2.0, 6.0}));
+  EXPECT_EQ(measurement["ns_per_box"], 200);
+  EXPECT_EQ(measurement["tests"], 50'000);
+}
+
+TEST(JsonResults, SayWhyThereIsNoTimeAndLeaveNullWhatIsNotKnown) {
+  const Json json = parsed({failed("wrong"), skipped("slow")});
+  const Json& wrong = json["measurements"][0];
+  EXPECT_EQ(wrong["verified"], false);
+  EXPECT_THAT(wrong["skipped"].get<std::string>(), HasSubstr("pair (3, 7) is missing"));
+  const Json& slow = json["measurements"][1];
+  EXPECT_TRUE(slow["verified"].is_null());
+  EXPECT_TRUE(slow["verified_by"].is_null());
+  EXPECT_THAT(slow["skipped"].get<std::string>(), HasSubstr("estimated 41.0 s"));
+  for (const char* const field :
+       {"median_ms", "samples_ms", "ns_per_box", "pairs", "pair_hash", "own_bytes", "tests"})
+    EXPECT_TRUE(slow[field].is_null()) << field;
+}
+
+TEST(JsonResults, StandTextThatIsNotUtf8) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("grid", {1})})};
+  comparison.cases[0].of.scene = "caf\xe9.csv";
+  EXPECT_NO_THROW(Json::parse(json_of(comparison, std::vector<std::string>{"caf\xe9"})));
+}
+
+}  // namespace
+}  // namespace broadside::lab

@@ -1,0 +1,67 @@
+// Algorithms that are wrong on purpose, for tests of what must not go unseen.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+namespace broadside::lab {
+
+/// Changes the sorted pairs of a search, given how many searches there were before; or throws.
+using Spoil = std::function<void(std::vector<Pair>&, std::size_t searches)>;
+
+/// Brute force, spoilt.
+template <int D>
+class SpoiltFinder final : public PairFinder<D> {
+ public:
+  explicit SpoiltFinder(Spoil spoil) : spoil_(std::move(spoil)) {}
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& sink) override {
+    std::vector<Pair> pairs;
+    PairCollector collector(pairs);
+    make_finder<D>("brute_force")->find(boxes, collector);
+    spoil_(pairs, searches_++);
+    for (const Pair pair : pairs) sink.add(pair.first, pair.second);
+  }
+
+  Spoil spoil_;
+  std::size_t searches_ = 0;
+};
+
+/// Brute force under another name, spoilt.
+inline Algorithm spoilt(std::string name, const Spoil& spoil) {
+  Algorithm algorithm;
+  algorithm.name = std::move(name);
+  algorithm.finder_2d = [spoil](const Settings&) { return std::make_unique<SpoiltFinder<2>>(spoil); };
+  algorithm.finder_3d = [spoil](const Settings&) { return std::make_unique<SpoiltFinder<3>>(spoil); };
+  return algorithm;
+}
+
+inline Algorithm misses_a_pair() {
+  return spoilt("misses", [](std::vector<Pair>& pairs, std::size_t) { pairs.pop_back(); });
+}
+
+inline Algorithm repeats_a_pair() {
+  return spoilt("repeats", [](std::vector<Pair>& pairs, std::size_t) { pairs.push_back(pairs.front()); });
+}
+
+/// Reports a pair that does not overlap instead of one that does, so that their number is right.
+inline Algorithm mistakes_a_pair() {
+  return spoilt("mistakes", [](std::vector<Pair>& pairs, std::size_t) {
+    const auto last = static_cast<std::uint32_t>(pairs.size());
+    for (std::uint32_t j = 1; j <= last; ++j) {
+      if (pairs[j - 1] != Pair{BoxId{0}, BoxId{j}}) {
+        pairs.back() = {BoxId{0}, BoxId{j}};
+        return;
+      }
+    }
+  });
+}
+
+}  // namespace broadside::lab
