@@ -40,6 +40,7 @@ constexpr std::array quick_rows = {
     Row{"terdiman", 10'000},
     Row{"uniform", 10'000, 0.1, 20},
     Row{"clustered", 10'000, 0.1, 20},
+    Row{"churn", 1'000, 0, 20},
 };
 
 constexpr std::array long_rows = {
@@ -90,6 +91,8 @@ constexpr std::array long_rows = {
     Row{"clustered", 100'000, 0.1, 20},
     Row{"clustered", 100'000, 0.5, 20},
     Row{"clustered", 100'000, 1, 20},
+    Row{"churn", 1'000, 0, 50},
+    Row{"churn", 10'000, 0, 50},
 };
 
 /// What a scene is known to have, before it is made. A scene that is not there is thought to have both

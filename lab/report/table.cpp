@@ -138,9 +138,9 @@ std::string table_of(const CaseResult& result) {
   const std::string no_mark = any_estimate ? "     " : "";  // as wide as " est."
   const bool tracked = of.mode == Mode::track;
 
-  Columns columns("<>>>>><<");
+  Columns columns("<>>>>>><<");
   columns.add({"algorithm", (tracked ? unit.name + " a frame" : unit.name) + no_mark, "ratio", "ns a box",
-               "tests a box", "memory", tracked ? "min..p99" : "min..max", ""});
+               "tests a box", "memory", "peak", tracked ? "min..p99" : "min..max", ""});
   for (const Measurement* const measurement : in_order(result)) {
     const auto& statistics = measurement->statistics;
     const bool timed = is_timed(*measurement);
@@ -159,6 +159,7 @@ std::string table_of(const CaseResult& result) {
         timed ? rounded(time * 1e6 / boxes) : "-",
         timed && statistics ? rounded(static_cast<double>(statistics->tests) / boxes) : "-",
         timed && measurement->own_bytes ? bytes(*measurement->own_bytes) : "-",
+        timed && measurement->peak_bytes ? bytes(*measurement->peak_bytes) : "-",
         timed ? unit.text(std::ranges::min(samples)) + ".." +
                     unit.text(tracked ? percentile(samples, 0.99) : std::ranges::max(samples))
               : "-",

@@ -51,7 +51,9 @@ TEST(PlanOf, IsEveryGeneratedSceneStillWhereNothingIsSaid) {
   for (const CaseRequest& request : plan_of({})) {
     names.insert(request.scene);
     EXPECT_EQ(request.boxes, 10'000u);
-    EXPECT_EQ(request.frames, 0u);
+    if (request.scene != "churn") {
+      EXPECT_EQ(request.frames, 0u) << request.scene;
+    }
   }
   EXPECT_GE(names.size(), 8u);
 }

@@ -12,7 +12,8 @@
 
 namespace broadside::lab {
 
-/// Changes the sorted pairs of a search, given how many searches there were before; or throws.
+/// Changes the sorted pairs of a search, which are not none, given how many such there were before; or
+/// throws.
 using Spoil = std::function<void(std::vector<Pair>&, std::size_t searches)>;
 
 /// Brute force, spoilt.
@@ -26,7 +27,7 @@ class SpoiltFinder final : public PairFinder<D> {
     std::vector<Pair> pairs;
     PairCollector collector(pairs);
     make_finder<D>("brute_force")->find(boxes, collector);
-    spoil_(pairs, searches_++);
+    if (!pairs.empty()) spoil_(pairs, searches_++);
     for (const Pair pair : pairs) sink.add(pair.first, pair.second);
   }
 
