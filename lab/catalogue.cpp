@@ -34,7 +34,8 @@ Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside:
 
 void Catalogue::add(Algorithm algorithm) {
   if (!is_name(algorithm.name))
-    throw InvalidSpec("algorithm name '" + algorithm.name + "'; expected lower-case letters, digits and underscores");
+    throw InvalidSpec("algorithm name '" + algorithm.name +
+                      "'; expected lower-case letters, digits and underscores");
   if (is_group(algorithm.name) || find_algorithm(algorithm.name, algorithms_) != nullptr)
     throw InvalidSpec("algorithm name '" + algorithm.name + "' is taken; expected another one");
   algorithms_.push_back(std::move(algorithm));
