@@ -26,8 +26,8 @@ double most_auto_references(double boxes) { return 16 * boxes; }
 /// The number of the cell, of `count` cells, in which `x` lies. Rises with x, and is defined for every x:
 /// what lies outside the world is in the cell at its border.
 std::size_t cell_of(double x, double begin, double size, double count) {
-  const double cell = std::floor((x - begin) / size);                       // Errata 2c and 3d
-  return static_cast<std::size_t>(std::clamp<double>(cell, 0, count - 1));  // Errata 3e and 3f
+  const double cell = std::floor((x - begin) / size);                       // Errata 2b and 3e
+  return static_cast<std::size_t>(std::clamp<double>(cell, 0, count - 1));  // Errata 3f and 3g
 }
 
 /// Twice the mean finite extent; where the boxes have none, what gives each a cell of its own.
@@ -72,20 +72,20 @@ class Grid final : public PairFinder<2> {
       y_grids_ = std::max(1.0, std::ceil(height / by));
     };
     divide(size);
-    while (too_large()) divide(2 * size_);                     // Errata 2d and 3h
-    g_.resize(static_cast<std::size_t>(x_grids_ * y_grids_));  // Errata 2a and 2b
+    while (too_large()) divide(2 * size_);                     // Errata 2c and 3i
+    g_.resize(static_cast<std::size_t>(x_grids_ * y_grids_));  // Erratum 2a
     for (std::vector<BoxId>& cell : g_) cell.clear();
   }
 
   /// Algorithm 3, "Spanning Add Element".
   void algorithm_3_spanning_add_element() {
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {  // Erratum 3i
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {  // Erratum 3a
       const Box2& e = boxes_[i];
       const std::size_t last_row = row(e.max[1]);
       const std::size_t last_col = column(e.max[0]);
-      for (std::size_t r = row(e.min[1]); r <= last_row; ++r) {       // Errata 3b, 3c and 3g
-        for (std::size_t c = column(e.min[0]); c <= last_col; ++c) {  // Errata 3b, 3c and 3g
-          g(c, r).push_back(BoxId(i));                                // Erratum 3a
+      for (std::size_t r = row(e.min[1]); r <= last_row; ++r) {       // Errata 3b, 3c and 3d
+        for (std::size_t c = column(e.min[0]); c <= last_col; ++c) {  // Errata 3b, 3c and 3d
+          g(c, r).push_back(BoxId(i));                                // Erratum 3h
           ++statistics_.references;
         }
       }
@@ -146,7 +146,7 @@ Algorithm grid() {
   std::vector<Tunable> tunables = {{
       .name = "cell",
       .summary = "side of a cell, in the coordinates' unit; doubled while the grid would be too large for "
-                 "memory (errata 2d, 3h)",
+                 "memory (errata 2c and 3i)",
       .standard = "auto",
       .least = std::numeric_limits<float>::min(),
       .most = std::numeric_limits<float>::max(),
