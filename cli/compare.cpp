@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@
 #include <unistd.h>
 
 #include "cli/interruption.hpp"
-#include "cli/output_file.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/readers/write_file.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/table.hpp"
 
@@ -79,16 +80,11 @@ void check(const CompareArguments& arguments) {
   if (arguments.threads != 1)
     throw Unusable(fmt::format("--threads is {}; expected 1: the algorithms of this version use one thread",
                                arguments.threads));
-  for (const int dimension : arguments.dimensions) {
-    if (dimension != 2 && dimension != 3)
-      throw Unusable(fmt::format("--dimension is {}; expected 2 or 3", dimension));
-  }
-  for (const double moving : arguments.moving) {
-    if (!(moving >= 0 && moving <= 1))
-      throw Unusable(fmt::format("--moving is {}; expected a fraction from 0 to 1", moving));
-  }
+  for (const int dimension : arguments.dimensions) check_dimension(dimension);
+  for (const double moving : arguments.moving) check_fraction("--moving", moving);
   if (arguments.budget && !(*arguments.budget > 0))
     throw Unusable(fmt::format("--budget is {}; expected a number of seconds above 0", *arguments.budget));
+  if (!arguments.json.empty()) check_writable("--json", arguments.json);
 }
 
 Exit run(const CompareArguments& arguments, std::span<const std::string> command) {
@@ -108,17 +104,16 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
     std::fflush(stdout);
   };
 
-  stop_when_interrupted();
-  std::optional<OutputFile> json;
-  if (!arguments.json.empty()) json.emplace(arguments.json);
+  on_signal(OnSignal::note_then_end);
   const lab::Catalogue catalogue;
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
   fmt::print("{}", lab::summary_of(comparison));
   if (comparison.stopped) return Exit::interrupted;
-  if (json) {
-    json->write(lab::json_of(comparison, command));
-    json->keep();
+  if (!arguments.json.empty()) {
+    on_signal(OnSignal::note);
+    const std::string text = lab::json_of(comparison, command);
+    lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
   }
   return comparison.all_verified() ? Exit::fine : Exit::failed;
 }

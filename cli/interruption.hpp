@@ -1,21 +1,20 @@
-// What the program does at Ctrl-C (SIGINT) and at SIGTERM: it leaves no half-written file behind.
+// What the program does at Ctrl-C (SIGINT) and at SIGTERM.
 #pragma once
-
-#include <filesystem>
 
 namespace broadside::cli {
 
-/// From here on, the first signal is noted for interrupted() to tell, and a second ends the program; for work
-/// that asks between its steps.
-void stop_when_interrupted();
+/// What a signal does.
+enum class OnSignal {
+  end,  ///< it ends the program at once: for work that never asks and has nothing to leave half done
+  note_then_end,  ///< the first is noted for interrupted() to tell, the second ends the program: for work
+                  ///< that asks
+  note            ///< it is only noted: while a file is being written, which would be left half-written
+};
 
-/// Whether a signal came.
+/// From here on, signals do this.
+void on_signal(OnSignal what);
+
+/// Whether a signal was noted.
 bool interrupted() noexcept;
-
-/// From here on, the first signal ends the program at once; for work that never asks.
-void end_when_interrupted();
-
-/// The file that a signal that ends the program removes first; an empty path for none.
-void remove_on_signal(const std::filesystem::path& file);
 
 }  // namespace broadside::cli

@@ -1,67 +1,107 @@
-// broadside list: the algorithms and the scenes there are, and what can be set.
+// broadside list: the algorithms, scenes and file formats there are, and what can be set.
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/readers/format.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
 namespace {
 
-std::string values_of(const Tunable& tunable) {
-  switch (tunable.type) {
-    case Tunable::Type::choice:
-      return fmt::format("{}", fmt::join(tunable.choices, " | "));
-    case Tunable::Type::number:
-    case Tunable::Type::integer:
-      break;
-  }
-  const bool whole = tunable.type == Tunable::Type::integer;
-  if (tunable.most == std::numeric_limits<double>::max())
-    return fmt::format("{} from {:g}", whole ? "whole number" : "number", tunable.least);
-  return fmt::format("{} from {:g} to {:g}", whole ? "whole number" : "number", tunable.least, tunable.most);
+std::string range_of(const Tunable& tunable) {
+  const std::string least = fmt::format("from {:g}", tunable.least);
+  // Bounds that only keep a value a float say nothing to a reader.
+  constexpr double largest = std::numeric_limits<float>::max();
+  constexpr double smallest = std::numeric_limits<float>::min();
+  std::string range = tunable.least <= -largest ? "" : tunable.least == smallest ? "above 0" : least;
+  if (tunable.most < largest) range += fmt::format(" to {:g}", tunable.most);
+  return range;
 }
 
-std::string dimensions_of(const auto& described) {
+std::string values_of(const Tunable& tunable) {
+  if (tunable.type == Tunable::Type::choice) return fmt::format("{}", fmt::join(tunable.choices, ", "));
+  const std::string kind = tunable.type == Tunable::Type::integer ? "whole number" : "number";
+  const std::string range = range_of(tunable);
+  return range.empty() ? kind : kind + " " + range;
+}
+
+/// An algorithm or a scene: a line for itself and one for each of its tunables.
+struct Entry {
+  std::string name;
+  std::string kind;
+  std::string dimensions;
+  std::string summary;
+  std::span<const Tunable> tunables;
+};
+
+Entry entry_of(const auto& described) {
   const bool two = described.has_dimension(2);
   const bool three = described.has_dimension(3);
-  return two && three ? "2D 3D" : two ? "2D" : three ? "   3D" : "";
+  return {described.name, std::string(name(described.kind)),
+          two && three ? "2D 3D"
+          : two        ? "2D"
+          : three      ? "   3D"
+                       : "",
+          described.summary, described.tunables};
 }
 
-void add_tunables(lab::Columns& columns, std::span<const Tunable> tunables) {
-  for (const Tunable& tunable : tunables) {
-    columns.add({"  :" + tunable.name + "=", "", "",
-                 fmt::format("{} ({}; standard {})", tunable.summary, values_of(tunable), tunable.standard)});
+void print(std::string_view title, const std::vector<Entry>& entries) {
+  std::size_t name_width = 0;
+  std::size_t kind_width = 0;
+  for (const Entry& entry : entries) {
+    name_width = std::max(name_width, entry.name.size());
+    kind_width = std::max(kind_width, entry.kind.size());
   }
+  fmt::print("{}\n", title);
+  for (const Entry& entry : entries) {
+    fmt::print("  {:<{}}  {:<{}}  {:<5}  {}\n", entry.name, name_width, entry.kind, kind_width,
+               entry.dimensions, entry.summary);
+    for (const Tunable& tunable : entry.tunables) {
+      fmt::print("      :{}=  {} ({}; standard {})\n", tunable.name, tunable.summary, values_of(tunable),
+                 tunable.standard);
+    }
+  }
+  fmt::print("\n");
 }
 
 Exit run() {
   const lab::Catalogue catalogue;
-  lab::Columns algorithms("<<<<");
-  for (const Algorithm& algorithm : catalogue.algorithms()) {
-    algorithms.add(
-        {algorithm.name, std::string(name(algorithm.kind)), dimensions_of(algorithm), algorithm.summary});
-    add_tunables(algorithms, algorithm.tunables);
+  std::vector<Entry> algorithms;
+  for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
+  print("Algorithms", algorithms);
+
+  std::vector<Entry> scenes;
+  for (const lab::Scene& scene : lab::scenes()) scenes.push_back(entry_of(scene));
+  for (const lab::Scene& scene : lab::missing_scenes())
+    scenes.push_back({scene.name, std::string(name(scene.kind)), "", "not there: " + scene.missing, {}});
+  print("Scenes", scenes);
+
+  lab::Columns formats("<<<<");
+  for (const lab::Format& format : lab::formats()) {
+    const bool written = format.write_2d || format.write_3d;
+    formats.add({format.name, written ? "read, written" : "read",
+                 fmt::format("{}", fmt::join(format.extensions, " ")),
+                 format.missing.empty() ? format.summary : "not there: " + format.missing});
   }
-  lab::Columns scenes("<<<<");
-  for (const lab::Scene& scene : lab::scenes()) {
-    scenes.add({scene.name, std::string(name(scene.kind)), dimensions_of(scene), scene.summary});
-    add_tunables(scenes, scene.tunables);
-  }
-  fmt::print("Algorithms\n{}\nScenes\n{}", algorithms.text("  "), scenes.text("  "));
+  fmt::print("File formats\n{}", formats.text("  "));
   return Exit::fine;
 }
 
 }  // namespace
 
 Verb add_list(CLI::App& program) {
-  program.add_subcommand("list", "Lists the algorithms and the scenes, and what can be set in their specs.");
+  program.add_subcommand(
+      "list", "Lists the algorithms, the scenes and what can be set in their specs, and the file formats.");
   return run;
 }
 

@@ -1,5 +1,6 @@
 // The command-line program: reads the verb and its options, runs it, and turns what it throws into an exit
 // status and a message.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -11,11 +12,23 @@
 
 #include "broadside/version.hpp"
 
+#include "cli/unusable.hpp"
 #include "cli/verbs.hpp"
 
 namespace {
 
 using broadside::cli::Exit;
+
+/// CLI11 says of a verb that it does not know only that one is required.
+void check_verb(const std::vector<std::string>& arguments, const CLI::App& program) {
+  std::vector<std::string> known;
+  for (const CLI::App* const verb : program.get_subcommands({})) known.push_back(verb->get_name());
+  const std::string expected = fmt::format("expected one of: {}; --help tells more", fmt::join(known, ", "));
+  if (arguments.size() < 2) throw broadside::cli::Unusable("no verb; " + expected);
+  const std::string& verb = arguments[1];
+  if (!verb.starts_with('-') && std::ranges::find(known, verb) == known.end())
+    throw broadside::cli::Unusable("unknown verb '" + verb + "'; " + expected);
+}
 
 Exit run(const std::vector<std::string>& arguments) {
   CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
@@ -29,6 +42,7 @@ Exit run(const std::vector<std::string>& arguments) {
       {"scene", broadside::cli::add_scene(program)},
       {"list", broadside::cli::add_list(program)},
   };
+  check_verb(arguments, program);
   try {
     // CLI11 takes the arguments in reverse and without the program.
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));

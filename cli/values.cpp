@@ -3,6 +3,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "cli/unusable.hpp"
 
@@ -28,6 +32,30 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
   std::vector<std::size_t> counts;
   for (const std::string& text : texts) counts.push_back(read_count(option, text));
   return counts;
+}
+
+void check_fraction(const std::string& option, double value) {
+  if (!(value >= 0 && value <= 1))
+    throw Unusable(fmt::format("{} is {}; expected a fraction from 0 to 1", option, value));
+}
+
+void check_dimension(int dimension) {
+  if (dimension != 2 && dimension != 3)
+    throw Unusable(fmt::format("--dimension is {}; expected 2 or 3", dimension));
+}
+
+void check_writable(const std::string& option, const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
+  if (path.empty() || path.back() == '/' || std::filesystem::is_directory(path, ignored))
+    throw Unusable(fmt::format("{} is '{}', which is a folder; expected a file", option, path));
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw Unusable(fmt::format("{} is '{}', but there is no folder '{}'; expected one that is there", option,
+                               path, folder.string()));
+  if (!std::filesystem::exists(path, ignored) && access(folder.c_str(), W_OK) != 0)
+    throw Unusable(
+        fmt::format("{} is '{}', but nothing can be written to '{}'; expected a folder that is ours", option,
+                    path, folder.string()));
 }
 
 }  // namespace broadside::cli

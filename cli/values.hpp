@@ -14,4 +14,11 @@ std::size_t read_count(const std::string& option, const std::string& text);
 /// Likewise each of a list.
 std::vector<std::size_t> read_counts(const std::string& option, const std::vector<std::string>& texts);
 
+/// Throw Unusable if the value is no fraction from 0 to 1, or no dimension.
+void check_fraction(const std::string& option, double value);
+void check_dimension(int dimension);
+
+/// Throws Unusable if no file can be made at `path`, so that this is known before hours of work.
+void check_writable(const std::string& option, const std::string& path);
+
 }  // namespace broadside::cli

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <limits>
 #include <string_view>
 
 #include "broadside/error.hpp"
@@ -41,6 +42,10 @@ constexpr std::array quick_rows = {
     Row{"uniform", 10'000, 0.1, 20},
     Row{"clustered", 10'000, 0.1, 20},
     Row{"churn", 1'000, 0, 20},
+    Row{"box2d_rain", 1'000, 0, 30},
+    Row{"box2d_pyramid", 1'000, 0, 30},
+    Row{"bullet_free_fall", 1'000, 0, 30},
+    Row{"bunny", 0},
 };
 
 constexpr std::array long_rows = {
@@ -93,6 +98,19 @@ constexpr std::array long_rows = {
     Row{"clustered", 100'000, 1, 20},
     Row{"churn", 1'000, 0, 50},
     Row{"churn", 10'000, 0, 50},
+    Row{"box2d_rain", 1'000, 0, 60},
+    Row{"box2d_rain", 5'000, 0, 60},
+    Row{"box2d_tumbler", 1'000, 0, 60},
+    Row{"box2d_tumbler", 5'000, 0, 60},
+    Row{"box2d_pyramid", 1'000, 0, 60},
+    Row{"box2d_pyramid", 5'000, 0, 60},
+    Row{"bullet_free_fall", 1'000, 0, 60},
+    Row{"bullet_free_fall", 5'000, 0, 60},
+    Row{"bullet_brownian", 1'000, 0, 60},
+    Row{"bullet_brownian", 5'000, 0, 60},
+    Row{"bullet_moving_gravity", 1'000, 0, 60},
+    Row{"bullet_moving_gravity", 5'000, 0, 60},
+    Row{"bunny", 0},
 };
 
 /// What a scene is known to have, before it is made. A scene that is not there is thought to have both
@@ -151,7 +169,6 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
   const auto counts = or_standard(wishes.boxes, {standard_boxes});
   const auto dimensions = or_standard(wishes.dimensions, {2, 3});
   const auto fractions = or_standard(wishes.moving, {wishes.frames > 0 ? standard_moving : 0.0});
-  const std::size_t frames = wishes.frames > 0 ? wishes.frames : standard_frames;
 
   std::vector<CaseRequest> plan;
   for (const std::string& name : scenes) {
@@ -160,6 +177,9 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
     for (const int dimension : dimensions) {
       if (!scene.has_dimension(dimension)) continue;
       const bool moves = moves_by_itself(scene, dimension);
+      const std::size_t all =
+          scene.kind == SceneKind::file && moves ? std::numeric_limits<std::size_t>::max() : standard_frames;
+      const std::size_t frames = wishes.frames > 0 ? wishes.frames : all;
       for (const std::size_t count : counts) {
         for (const double moving : fractions) {
           plan.push_back({name, dimension, scene.fixed_count ? 0 : count, moves ? 0 : moving,

@@ -15,7 +15,7 @@ struct CaseRequest {
   std::string scene;  ///< as a spec, or the path of a file
   int dimension = 2;
   std::size_t boxes = 0;   ///< ignored by a scene that has a count of its own
-  double moving = 0;       ///< the fraction that moves, ignored by a scene that moves by itself
+  double moving = 0;       ///< the fraction that moves, 0 for a scene that moves by itself
   std::size_t frames = 0;  ///< 0: still
   bool required = true;    ///< whether it is an error if the scene is not there
 };
@@ -34,7 +34,7 @@ struct Wishes {
   std::vector<std::size_t> boxes{};
   std::vector<int> dimensions{};
   std::vector<double> moving{};
-  std::size_t frames = 0;  ///< 0: 20 where the boxes move
+  std::size_t frames = 0;  ///< 0: 20 where boxes move, all where they move in a file
 };
 
 /// Every combination, but for those that do not exist: a dimension that a scene does not have, a count or a

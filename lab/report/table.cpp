@@ -196,8 +196,7 @@ std::string summary_of(const Comparison& comparison) {
     text += columns.text("  ") + "\n";
   }
   for (const NotCompared& missing : comparison.not_compared)
-    text += fmt::format("not compared: {} {}D: {}\n", missing.request.scene, missing.request.dimension,
-                        missing.reason);
+    text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);
   text += plural(measured, "measurement");
   text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
   if (skipped > 0) text += fmt::format("; {} skipped", grouped(skipped));

@@ -149,7 +149,7 @@ TEST(Summary, NamesEveryFailureAndWhatWasSkipped) {
   rain.scene = "box2d_rain";
   comparison.not_compared.push_back({rain, "unknown scene"});
   const std::string summary = summary_of(comparison);
-  EXPECT_THAT(summary, HasSubstr("not compared: box2d_rain 2D: unknown scene\n"));
+  EXPECT_THAT(summary, HasSubstr("not compared: box2d_rain: unknown scene\n"));
   EXPECT_THAT(summary, HasSubstr("2 measurements, 1 FAILED; 1 skipped\n"));
   EXPECT_THAT(
       summary,

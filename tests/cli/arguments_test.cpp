@@ -1,0 +1,95 @@
+// What the program says of itself, and of arguments that it cannot use.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/version.hpp"
+
+#include "lab/readers/format.hpp"
+#include "lab/scenes/scene.hpp"
+#include "process.hpp"
+
+namespace broadside::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Help, NamesEveryVerbAndEveryOption) {
+  const Ended help = run({"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.output, AllOf(HasSubstr("compare"), HasSubstr("scene"), HasSubstr("list"),
+                                 HasSubstr("--version"), HasSubstr("Exit status: 0 fine")));
+  const Ended compare = run({"compare", "--help"});
+  EXPECT_EQ(compare.status, 0);
+  for (const char* const option : {"--algorithms", "--scenes", "-n", "--dimension", "--moving", "--frames",
+                                   "--threads", "--seed", "--json", "--budget", "--long"})
+    EXPECT_THAT(compare.output, HasSubstr(option));
+}
+
+TEST(Version, IsTheLibrarys) {
+  const Ended ended = run({"--version"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "broadside " BROADSIDE_VERSION "\n");
+}
+
+TEST(List, NamesEveryAlgorithmSceneAndFormat) {
+  const Ended ended = run({"list"});
+  EXPECT_EQ(ended.status, 0);
+  for (const Algorithm& algorithm : algorithms()) {
+    EXPECT_THAT(ended.output, HasSubstr("\n  " + algorithm.name + " "));
+    for (const Tunable& tunable : algorithm.tunables)
+      EXPECT_THAT(ended.output, HasSubstr(":" + tunable.name + "="));
+  }
+  for (const lab::Scene& scene : lab::scenes())
+    EXPECT_THAT(ended.output, HasSubstr("\n  " + scene.name + " "));
+  for (const lab::Format& format : lab::formats())
+    EXPECT_THAT(ended.output, HasSubstr("\n  " + format.name + " "));
+}
+
+struct Refusal {
+  std::vector<std::string> arguments;
+  std::vector<std::string> message;  // parts of it: the thing, the value found, what is expected
+};
+
+TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
+  const std::vector<Refusal> refusals = {
+      {{}, {"no verb", "expected one of: compare, scene, list"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, scene, list"}},
+      {{"compare", "--sceens", "uniform"}, {"--sceens"}},
+      {{"compare", "--algorithms", "gird"}, {"'gird'", "expected one of: ", "grid"}},
+      {{"compare", "--algorithms", "grid:cell=-1"}, {"grid: cell is '-1'", "expected a number"}},
+      {{"compare", "--scenes", "unifrom"}, {"'unifrom'", "expected a file or one of: ", "uniform"}},
+      {{"compare", "--scenes", "uniform:neighbours=no"}, {"neighbours is 'no'", "expected a number"}},
+      {{"compare", "--scenes", "/nowhere/boxes.csv"}, {"/nowhere/boxes.csv"}},
+      {{"compare", "-n", "12x"}, {"-n is '12x'", "expected a whole number"}},
+      {{"compare", "-n", "0"}, {"-n is '0'", "expected a whole number from 1"}},
+      {{"compare", "-n", "1.5"}, {"-n is '1.5'"}},
+      {{"compare", "--frames", "-3"}, {"--frames is '-3'"}},
+      {{"compare", "--dimension", "4"}, {"--dimension is 4", "expected 2 or 3"}},
+      {{"compare", "--moving", "1.5"}, {"--moving is 1.5", "expected a fraction from 0 to 1"}},
+      {{"compare", "--threads", "2"}, {"--threads is 2", "expected 1"}},
+      {{"compare", "--budget", "0"}, {"--budget is 0", "expected a number of seconds above 0"}},
+      {{"compare", "--long", "-n", "100"}, {"--long", "expected it without"}},
+      {{"compare", "--json", "/nowhere/out.json"},
+       {"--json", "'/nowhere/out.json'", "expected one that is there"}},
+      {{"compare", "--json", "/"}, {"--json is '/'", "expected a file"}},
+      {{"scene", "uniform"}, {"--output"}},
+      {{"scene", "unifrom", "-o", "boxes.csv"}, {"'unifrom'"}},
+      {{"scene", "uniform", "-o", "boxes.unknown"}, {"'.unknown'", ".csv"}},
+      {{"scene", "uniform", "-o", "/nowhere/boxes.csv"}, {"-o", "'/nowhere'"}},
+      {{"scene", "uniform", "--dimension", "5", "-o", "boxes.csv"}, {"--dimension is 5"}},
+  };
+  for (const Refusal& refusal : refusals) {
+    const Ended ended = run(refusal.arguments);
+    EXPECT_EQ(ended.status, 2) << ended.errors;
+    EXPECT_EQ(ended.output, "");
+    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace broadside::cli

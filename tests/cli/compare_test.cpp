@@ -1,0 +1,147 @@
+// broadside compare: its table, its JSON, its exit status, and that an interruption leaves nothing behind.
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "process.hpp"
+
+namespace broadside::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using Json = nlohmann::json;
+
+const std::vector<std::string> small = {"compare",      "--scenes", "uniform,lattice", "-n", "200,300",
+                                        "--algorithms", "own"};
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(CompareVerb, PrintsATableForEachCaseAndASummary) {
+  const Ended ended = run(small);
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output,
+              AllOf(HasSubstr("uniform, 2D, 200 boxes, "), HasSubstr("lattice, 3D, 300 boxes, "),
+                    HasSubstr("checked against brute_force"), HasSubstr("All 8 cases"),
+                    HasSubstr("measurements, all verified\n")));
+}
+
+TEST(CompareVerb, WritesPlainTextAndNoProgressWhereThereIsNoTerminal) {
+  const Ended ended = run(small);
+  EXPECT_THAT(ended.output, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(ended.errors, IsEmpty());
+}
+
+TEST(CompareVerb, WritesJsonWithAMeasurementForEachLineOfTheTable) {
+  const TemporaryFolder folder;
+  const Ended ended = run(with(small, {"--json", folder.file("out.json")}));
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
+  const Json json = Json::parse(text_of(folder.file("out.json")));
+  EXPECT_EQ(json["schema"], "broadside.results/1");
+  EXPECT_EQ(json["command"][1], "compare");
+  EXPECT_EQ(json["measurements"].size(), 8u * 4);
+  for (const Json& measurement : json["measurements"]) {
+    EXPECT_EQ(measurement["verified"], true);
+    EXPECT_EQ(measurement["mode"], "find");
+    EXPECT_GT(measurement["median_ms"], 0);
+  }
+}
+
+TEST(CompareVerb, TracksWhatMovesAndReadsNumbersAsPeopleWriteThem) {
+  const TemporaryFolder folder;
+  const Ended ended =
+      run({"compare", "--scenes", "uniform:neighbours=2", "-n", "0.2k", "--moving", "0,0.5", "--frames", "4",
+           "--dimension", "3", "--algorithms", "grid:cell=2.5,paper_sweep_and_prune", "--seed", "7", "--json",
+           folder.file("out.json")});
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  const Json measurements = Json::parse(text_of(folder.file("out.json")))["measurements"];
+  ASSERT_EQ(measurements.size(), 4u);
+  EXPECT_EQ(measurements[0]["mode"], "find");
+  EXPECT_EQ(measurements[0]["seeds"][0], 7);
+  EXPECT_EQ(measurements[0]["algorithm"], "grid:cell=2.5");
+  EXPECT_EQ(measurements[0]["scene"], "uniform:neighbours=2");
+  EXPECT_EQ(measurements[0]["scene_parameters"]["neighbours"], "2");
+  EXPECT_EQ(measurements[3]["mode"], "track");
+  EXPECT_EQ(measurements[3]["frames"], 4);
+  EXPECT_EQ(measurements[3]["moving"], 0.5);
+  EXPECT_EQ(measurements[3]["boxes"], 200);
+}
+
+TEST(CompareVerb, ComparesOnAFileThatSceneWrote) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("boxes.csv");
+  EXPECT_EQ(run({"scene", "lattice", "-n", "100", "-o", file}).status, 0);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.csv"});
+  const Ended ended = run({"compare", "--scenes", file, "--algorithms", "own"});
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("boxes.csv, 2D, 100 boxes, "));
+}
+
+TEST(CompareVerb, RefusesAFileThatIsNone) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.file("bad.csv")) << "not,a,number,here\n1,2,3,4\n";
+  const Ended ended = run({"compare", "--scenes", folder.file("bad.csv")});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("bad.csv"));
+}
+
+/// Interrupts a comparison that would take minutes once its first case is done.
+Ended interrupted(int signal, const std::string& json) {
+  Process process({"compare", "--scenes", "uniform", "-n", "200,100k", "--algorithms", "brute_force",
+                   "--budget", "600", "--json", json});
+  for (int i = 0; i < 600 && process.output().empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  process.signal(signal);
+  return process.wait();
+}
+
+TEST(CompareVerb, LeavesNoFileBehindWhenItIsInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    const Ended ended = interrupted(signal, folder.file("out.json"));
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_THAT(folder.names(), IsEmpty());
+    EXPECT_THAT(ended.output, HasSubstr("stopped before the end"));
+  }
+}
+
+TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenItIsInterrupted) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.file("out.json")) << "older";
+  EXPECT_EQ(interrupted(SIGINT, folder.file("out.json")).status, 130);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
+  EXPECT_EQ(text_of(folder.file("out.json")), "older");
+}
+
+TEST(SceneVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {
+  for (const int milliseconds : {1, 30, 100, 200, 400}) {
+    const TemporaryFolder folder;
+    Process process({"scene", "uniform", "-n", "100k", "--moving", "0.1", "--frames", "10", "--dimension",
+                     "3", "-o", folder.file("boxes.aabbs")});
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    process.signal(SIGINT);
+    const Ended ended = process.wait();
+    if (folder.names().empty()) {
+      EXPECT_EQ(ended.status, 130);
+    } else {
+      EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.aabbs"});
+      EXPECT_EQ(std::filesystem::file_size(folder.file("boxes.aabbs")), 304u + 32 * 100'000 * 11);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace broadside::cli

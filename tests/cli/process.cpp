@@ -1,0 +1,87 @@
+// Runs the program as a process of its own.
+#include "process.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace broadside::cli {
+namespace {
+
+std::filesystem::path new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "broadside_cli_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder can be made");
+  return name;
+}
+
+[[noreturn]] void become_program(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+  const auto redirect = [](int stream, const std::filesystem::path& file) {
+    dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), stream);
+  };
+  redirect(STDOUT_FILENO, folder / "output");
+  redirect(STDERR_FILENO, folder / "errors");
+  arguments.insert(arguments.begin(), BROADSIDE_PROGRAM);
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  execv(BROADSIDE_PROGRAM, pointers.data());
+  _exit(127);
+}
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& arguments) : folder_(new_folder()), id_(fork()) {
+  if (id_ < 0) throw std::runtime_error("no process can be made");
+  if (id_ == 0) become_program(arguments, folder_);
+}
+
+Process::~Process() {
+  if (running_) {
+    kill(id_, SIGKILL);
+    waitpid(id_, nullptr, 0);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Process::signal(int number) const { kill(id_, number); }
+
+std::string Process::output() const { return text_of(folder_ / "output"); }
+
+Ended Process::wait() {
+  int status = 0;
+  waitpid(id_, &status, 0);
+  running_ = false;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), output(),
+          text_of(folder_ / "errors")};
+}
+
+Ended run(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
+
+TemporaryFolder::TemporaryFolder() : path_(new_folder()) {}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace broadside::cli

@@ -1,0 +1,63 @@
+// Runs the program as a process of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace broadside::cli {
+
+/// What a process came to.
+struct Ended {
+  int status;  ///< the exit status; 128 + the signal where one ended it
+  std::string output;
+  std::string errors;
+};
+
+/// The program with these arguments, running, its output and errors going to files.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& arguments);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number) const;
+
+  /// What it has written to its output up to now.
+  std::string output() const;
+
+  Ended wait();
+
+ private:
+  std::filesystem::path folder_;  // for the two files; removed at the end
+  pid_t id_;
+  bool running_ = true;
+};
+
+/// Runs the program to its end.
+Ended run(const std::vector<std::string>& arguments);
+
+/// A folder that is there as long as this object is.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+  /// The names of what is in it.
+  std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A file's text; empty if there is none.
+std::string text_of(const std::filesystem::path& file);
+
+}  // namespace broadside::cli
