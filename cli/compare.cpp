@@ -148,8 +148,9 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--seed", arguments->seed, "Seed of a scene's first input; the others count up from it")
       ->capture_default_str();
   verb->add_option("--budget", arguments->budget,
-                   "Seconds that one search, or one history, may take; a slower algorithm is skipped and its "
-                   "time estimated (standard: 10, with --long 60)");
+                   fmt::format("Seconds that one search, or one history, may take; a slower algorithm is "
+                               "skipped and its time estimated (standard: {}, with --long {})",
+                               lab::Effort{}.budget_seconds, lab::long_effort().budget_seconds));
   verb->add_option("--json", arguments->json, "Write the results to this file as well");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   return [arguments, command] { return run(*arguments, command); };
