@@ -34,7 +34,8 @@ const std::vector<Rule>& rules() {
       {"lab/readers/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"examples/", lab},
+      // As a user writes it.
+      {"examples/", lab + R"(|<broadside/[a-z_]+\.hpp>)"},
       // Tests look into every room but the faces, and at the engines through the lab alone.
       {"tests/", R"((?!["<](cli/|box2d|bullet|bt[A-Z]|Bullet[A-Z]|assimp)).*)"},
   };
