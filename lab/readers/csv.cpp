@@ -227,8 +227,10 @@ std::vector<std::pair<BoxId, Box<D>>> rows_of(const Step<D>& step, std::span<con
   // Of two rows for a box the later one, from the list of changes, holds.
   std::ranges::reverse(rows);
   std::ranges::stable_sort(rows, {}, &std::pair<BoxId, Box<D>>::first);
-  const auto repeated = std::ranges::unique(rows, {}, &std::pair<BoxId, Box<D>>::first);
-  rows.erase(repeated.begin(), repeated.end());
+  // Not std::ranges' version: clang 14 cannot compile what it returns.
+  rows.erase(
+      std::unique(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+      rows.end());
   return rows;
 }
 

@@ -130,9 +130,11 @@ class Tumbler : public Box2dWorld {
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(wanted()))));
     const float spacing = 2 * half / static_cast<float>(columns + 1);
     for (std::size_t i = 0; wanted() > 0; ++i) {
-      const b2Vec2 place{spacing * static_cast<float>(1 + i % columns) - half,
-                         spacing * static_cast<float>(1 + i / columns) - half};
-      add_box(*add_body(b2_dynamicBody, place), between(0.3, 0.5), between(0.3, 0.5));
+      const std::size_t column = 1 + i % columns;
+      const std::size_t row = 1 + i / columns;
+      const b2Vec2 corner{-half, -half};
+      const b2Vec2 way{static_cast<float>(column), static_cast<float>(row)};
+      add_box(*add_body(b2_dynamicBody, corner + spacing * way), between(0.3, 0.5), between(0.3, 0.5));
     }
   }
 };
@@ -146,8 +148,9 @@ class Pyramid : public Box2dWorld {
     constexpr int rows = 10;
     constexpr std::size_t bodies = 1 + rows * (rows + 1) / 2;
     constexpr float distance = 20;
-    const auto pyramids = static_cast<float>(request.boxes / bodies + 1);
-    add_box(*add_body(b2_staticBody, {0, 0}), distance * pyramids, 1, {distance * pyramids / 2, -1});
+    const std::size_t pyramids = request.boxes / bodies + 1;
+    const float length = distance * static_cast<float>(pyramids);
+    add_box(*add_body(b2_staticBody, {0, 0}), length, 1, {length / 2, -1});
     for (float x = 0; wanted() > 0; x += distance) {
       const b2Vec2 home{x, 0.5F};
       b2Body* const ball = add_body(b2_dynamicBody, home);

@@ -34,12 +34,13 @@ struct History {
 template <int D>
 void apply(const Step<D>& step, std::vector<Box<D>>& boxes);
 
-/// How many boxes, from which seed, and how they move.
+/// How many boxes, from which seed, and how they move; the last three concern only scenes that do not move on
+/// their own.
 struct SceneRequest {
   std::size_t boxes = 1000;  ///< ignored by a scene that has a count of its own
   std::uint64_t seed = 1;    ///< the same seed gives the same boxes on every machine
   std::size_t frames = 0;    ///< steps after the first frame; 0: a still scene
-  double moving = 0.1;       ///< the fraction of boxes that move, 0 to 1; ignored by recordings
+  double moving = 0.1;       ///< the fraction of boxes that move, 0 to 1; see set_moving()
   double drift = 0.2;        ///< how far a mover goes in a frame, in units of its own size
   double teleport = 0;       ///< the fraction of movers that jump to another place, in each frame
 };

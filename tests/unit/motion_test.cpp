@@ -95,6 +95,20 @@ TEST(Motion, StaysWithinTheBoundsAndKeepsEveryBoxPresent) {
   }
 }
 
+TEST(Motion, TurnsBackAtTheBoundsAndCrossesTheWorldAgainAndAgain) {
+  const std::vector<Box2> boxes = {{{0, 0}, {20, 20}}, {{9, 9}, {11, 11}}};
+  const History<2> history = set_moving<2>(boxes, {.frames = 400, .moving = 1, .drift = 0.5}, false);
+  int crossings = 0;
+  float before = boxes[1].min[0];
+  for (const Step<2>& step : history.steps) {
+    ASSERT_EQ(step.boxes.size(), 1u);
+    const float now = step.boxes[0].min[0];
+    crossings += (before < 9) != (now < 9) ? 1 : 0;
+    before = now;
+  }
+  EXPECT_GT(crossings, 5);
+}
+
 TEST(Motion, KeepsIntegersIntegersAndSizesAsTheyWere) {
   for (const char* name : {"integers", "lattice", "terdiman"}) {
     SCOPED_TRACE(name);

@@ -222,7 +222,7 @@ TEST_F(Broadmark, RefusesWhatIsWrong) {
   write_scene(History<3>{{{{1, 2, 3}, {4, 5, 6}}}, {{1, {BoxId{0}}, {{{1, 2, 3}, {4, 5, 7}}}}}},
               path("good.aabbs"));
   const std::string good = text_of("good.aabbs");
-  const auto refusal_of = [&](std::string text) { return refusal(put("bad.aabbs", text)); };
+  const auto refusal_of = [&](const std::string& text) { return refusal(put("bad.aabbs", text)); };
   const auto with = [&](std::size_t at, const std::string& bytes) {
     return std::string(good).replace(at, bytes.size(), bytes);
   };
@@ -232,6 +232,7 @@ TEST_F(Broadmark, RefusesWhatIsWrong) {
   EXPECT_THAT(refusal_of(good + "x"),
               AllOf(HasSubstr("has 369 bytes and claims 1 boxes and 1 steps"), HasSubstr("expected 304 +")));
   EXPECT_THAT(refusal_of(good.substr(0, good.size() - 32)), HasSubstr("has 336 bytes"));
+  EXPECT_THAT(refusal_of(good + std::string(32, '\0')), HasSubstr("has 400 bytes"));
   EXPECT_THAT(refusal_of(with(256, "\xff\xff\xff\x7f\xff\xff\xff\x7f")),
               HasSubstr("claims 2147483647 boxes and 2147483647 steps"));
   EXPECT_THAT(refusal_of(with(256, "\xff\xff\xff\xff")), HasSubstr("claims -1 boxes"));
