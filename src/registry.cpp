@@ -6,6 +6,7 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "core/double_finder.hpp"
 #include "paper/descriptions.hpp"
 
 namespace broadside {
@@ -71,21 +72,45 @@ std::unique_ptr<PairTracker<3>> make_tracker(const Algorithm& algorithm, const S
   return std::make_unique<DiffTracker<3>>(make_finder<3>(algorithm, spec));
 }
 
-template <int D>
-std::unique_ptr<PairFinder<D>> make_finder(std::string_view spec) {
-  const Spec parsed = Spec::parse(spec);
-  return make_finder<D>(require_algorithm(parsed.name), parsed);
+template <>
+std::unique_ptr<PairFinder<2, double>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<core::DoubleFinder<2>>(make_finder<2>(algorithm, spec));
 }
 
-template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(std::string_view spec) {
+template <>
+std::unique_ptr<PairFinder<3, double>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<core::DoubleFinder<3>>(make_finder<3>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairTracker<2, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<DiffTracker<2, double>>(make_finder<2, double>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairTracker<3, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<DiffTracker<3, double>>(make_finder<3, double>(algorithm, spec));
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec) {
   const Spec parsed = Spec::parse(spec);
-  return make_tracker<D>(require_algorithm(parsed.name), parsed);
+  return make_finder<D, Real>(require_algorithm(parsed.name), parsed);
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec) {
+  const Spec parsed = Spec::parse(spec);
+  return make_tracker<D, Real>(require_algorithm(parsed.name), parsed);
 }
 
 template std::unique_ptr<PairFinder<2>> make_finder(std::string_view);
 template std::unique_ptr<PairFinder<3>> make_finder(std::string_view);
+template std::unique_ptr<PairFinder<2, double>> make_finder(std::string_view);
+template std::unique_ptr<PairFinder<3, double>> make_finder(std::string_view);
 template std::unique_ptr<PairTracker<2>> make_tracker(std::string_view);
 template std::unique_ptr<PairTracker<3>> make_tracker(std::string_view);
+template std::unique_ptr<PairTracker<2, double>> make_tracker(std::string_view);
+template std::unique_ptr<PairTracker<3, double>> make_tracker(std::string_view);
 
 }  // namespace broadside

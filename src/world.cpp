@@ -16,8 +16,8 @@ namespace broadside {
 namespace {
 
 /// A box for add() and move(): an absent one is what remove() is for.
-template <int D>
-void check_present(const Box<D>& box, std::size_t slot) {
+template <int D, typename Real>
+void check_present(const Box<D, Real>& box, std::size_t slot) {
   core::check_box(box, slot);
   if (is_absent(box))
     throw InvalidInput(slot, "the box for slot " + std::to_string(slot) + " is absent; expected a box");
@@ -25,22 +25,22 @@ void check_present(const Box<D>& box, std::size_t slot) {
 
 }  // namespace
 
-template <int D>
-World<D>::World(std::string_view spec) : World(make_tracker<D>(spec)) {}
+template <int D, typename Real>
+World<D, Real>::World(std::string_view spec) : World(make_tracker<D, Real>(spec)) {}
 
-template <int D>
-World<D>::World(std::unique_ptr<PairTracker<D>> tracker) : tracker_(std::move(tracker)) {
+template <int D, typename Real>
+World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker) : tracker_(std::move(tracker)) {
   if (!tracker_) throw std::invalid_argument("World was given a null tracker; expected a tracker");
 }
 
-template <int D>
-Handle World<D>::add(const Box<D>& box) {
-  const Box<D> added = box;  // the caller's may be one of ours, and those move when the arrays grow
+template <int D, typename Real>
+Handle World<D, Real>::add(const Box<D, Real>& box) {
+  const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
   const auto slot = free_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_.back();
   check_present(box, slot);
   if (free_.empty()) {
     core::check_count(slots_.size() + 1);
-    boxes_.resize(slots_.size() + 1, absent_box<D>());
+    boxes_.resize(slots_.size() + 1, absent_box<D, Real>());
     slots_.emplace_back();
   } else {
     free_.pop_back();
@@ -52,27 +52,27 @@ Handle World<D>::add(const Box<D>& box) {
   return {slot, slots_[slot].generation};
 }
 
-template <int D>
-void World<D>::move(Handle handle, const Box<D>& box) {
+template <int D, typename Real>
+void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
   if (!contains(handle)) refuse(handle, "move");
   check_present(box, handle.slot);
   mark_changed(handle.slot);
   boxes_[handle.slot] = box;
 }
 
-template <int D>
-void World<D>::remove(Handle handle) {
+template <int D, typename Real>
+void World<D, Real>::remove(Handle handle) {
   if (!contains(handle)) refuse(handle, "remove");
   mark_changed(handle.slot);
   last_boxes_.insert_or_assign(handle.slot, boxes_[handle.slot]);
   removed_.push_back(handle.slot);
-  boxes_[handle.slot] = absent_box<D>();
+  boxes_[handle.slot] = absent_box<D, Real>();
   slots_[handle.slot].state = SlotState::removed;
   --size_;
 }
 
-template <int D>
-Events World<D>::update() {
+template <int D, typename Real>
+Events World<D, Real>::update() {
   begun_ids_.clear();
   ended_ids_.clear();
   PairCollector begun(begun_ids_);
@@ -104,14 +104,14 @@ Events World<D>::update() {
   return {begun_, ended_};
 }
 
-template <int D>
-bool World<D>::contains(Handle handle) const noexcept {
+template <int D, typename Real>
+bool World<D, Real>::contains(Handle handle) const noexcept {
   return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
          slots_[handle.slot].state == SlotState::live;
 }
 
-template <int D>
-const Box<D>& World<D>::box(Handle handle) const {
+template <int D, typename Real>
+const Box<D, Real>& World<D, Real>::box(Handle handle) const {
   if (contains(handle)) return boxes_[handle.slot];
   if (handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation) {
     if (const auto last = last_boxes_.find(handle.slot); last != last_boxes_.end()) return last->second;
@@ -119,15 +119,15 @@ const Box<D>& World<D>::box(Handle handle) const {
   refuse(handle, "read");
 }
 
-template <int D>
-void World<D>::mark_changed(std::uint32_t slot) {
+template <int D, typename Real>
+void World<D, Real>::mark_changed(std::uint32_t slot) {
   if (slots_[slot].changed) return;
   changed_.push_back(BoxId{slot});
   slots_[slot].changed = true;
 }
 
-template <int D>
-void World<D>::refuse(Handle handle, const char* action) const {
+template <int D, typename Real>
+void World<D, Real>::refuse(Handle handle, const char* action) const {
   const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
                             std::to_string(handle.generation) + ")";
   // A slot that is free has not yet issued a handle of its own generation.
@@ -140,14 +140,16 @@ void World<D>::refuse(Handle handle, const char* action) const {
                       "; expected a box in the world");
 }
 
-template <int D>
-void World<D>::collect(std::span<const Pair> pairs, std::vector<HandlePair>& handles) const {
+template <int D, typename Real>
+void World<D, Real>::collect(std::span<const Pair> pairs, std::vector<HandlePair>& handles) const {
   handles.clear();
   const auto handle = [this](BoxId id) { return Handle{index(id), slots_[index(id)].generation}; };
   for (const Pair pair : pairs) handles.push_back({handle(pair.first), handle(pair.second)});
 }
 
-template class World<2>;
-template class World<3>;
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
 
 }  // namespace broadside

@@ -58,20 +58,23 @@ std::span<const Algorithm> algorithms();
 /// The algorithm called `name` among `among`, or a null pointer.
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
 
-/// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at.
-/// Throws InvalidSpec if a value is wrong or the algorithm does not do D dimensions.
-template <int D>
-std::unique_ptr<PairFinder<D>> make_finder(const Algorithm& algorithm, const Spec& spec);
+/// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec
+/// if a value is wrong or the algorithm does not do D dimensions.
+///
+/// Algorithms work on floats. A finder of boxes of doubles is one of floats about a local origin, or several
+/// where the extent demands it, and a last test in double: its pairs are exact.
+template <int D, typename Real = float>
+std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm, const Spec& spec);
 
 /// Likewise a tracker: the algorithm's own, or a DiffTracker over its finder.
-template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Algorithm& algorithm, const Spec& spec);
+template <int D, typename Real = float>
+std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm, const Spec& spec);
 
 /// Makes a finder or a tracker of one of the library's algorithms, from a spec such as "grid:cell=2.5".
 /// Throws InvalidSpec, naming the algorithms there are, if there is none of that name.
-template <int D>
-std::unique_ptr<PairFinder<D>> make_finder(std::string_view spec);
-template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(std::string_view spec);
+template <int D, typename Real = float>
+std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
+template <int D, typename Real = float>
+std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec);
 
 }  // namespace broadside

@@ -9,45 +9,47 @@ namespace broadside {
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
 /// Boxes are closed: two that only touch overlap, and a degenerate box (min = max) is a point and counts.
-/// Coordinates are in the caller's unit; infinite ones are allowed and mean what they say.
-template <int D>
+/// Coordinates are in the caller's unit, float or double; infinite ones are allowed and mean what they say.
+template <int D, typename Real = float>
 struct Box {
-  std::array<float, D> min;
-  std::array<float, D> max;
+  std::array<Real, D> min;
+  std::array<Real, D> max;
 
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
 
 using Box2 = Box<2>;
 using Box3 = Box<3>;
+using DoubleBox2 = Box<2, double>;
+using DoubleBox3 = Box<3, double>;
 
 /// The box that is not there: min = +inf and max = -inf on every axis. It overlaps nothing, not even an
 /// infinite box, and stands in an array for a box that has been removed.
-template <int D>
-constexpr Box<D> absent_box() noexcept {
-  Box<D> box{};
-  box.min.fill(std::numeric_limits<float>::infinity());
-  box.max.fill(-std::numeric_limits<float>::infinity());
+template <int D, typename Real = float>
+constexpr Box<D, Real> absent_box() noexcept {
+  Box<D, Real> box{};
+  box.min.fill(std::numeric_limits<Real>::infinity());
+  box.max.fill(-std::numeric_limits<Real>::infinity());
   return box;
 }
 
 /// Whether `box` is exactly the absent box.
-template <int D>
-constexpr bool is_absent(const Box<D>& box) noexcept {
-  return box == absent_box<D>();
+template <int D, typename Real>
+constexpr bool is_absent(const Box<D, Real>& box) noexcept {
+  return box == absent_box<D, Real>();
 }
 
 /// Whether `box` has min <= max on every axis; false for the absent box and for a box with a NaN.
-template <int D>
-constexpr bool is_present(const Box<D>& box) noexcept {
+template <int D, typename Real>
+constexpr bool is_present(const Box<D, Real>& box) noexcept {
   bool present = true;
   for (int axis = 0; axis < D; ++axis) present &= box.min[axis] <= box.max[axis];
   return present;
 }
 
 /// Whether two present boxes share a point. For an absent box the answer means nothing: ask is_absent first.
-template <int D>
-constexpr bool overlap(const Box<D>& a, const Box<D>& b) noexcept {
+template <int D, typename Real>
+constexpr bool overlap(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   bool touching = true;
   for (int axis = 0; axis < D; ++axis) {
     touching &= a.min[axis] <= b.max[axis];

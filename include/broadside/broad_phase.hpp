@@ -26,7 +26,7 @@ struct Statistics {
 ///
 /// A finder keeps its scratch memory between calls, and nothing else that can be observed. One thread at a
 /// time.
-template <int D>
+template <int D, typename Real = float>
 class PairFinder {
  public:
   PairFinder() = default;
@@ -39,7 +39,12 @@ class PairFinder {
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
   /// max without being absent; and what the sink throws.
-  void find(std::span<const Box<D>> boxes, PairSink& pairs);
+  void find(std::span<const Box<D, Real>> boxes, PairSink& pairs);
+
+  /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
+  /// is a place in `left` and its second one in `right`, so the two may be equal. No pair within a set is
+  /// ever written; the library's own algorithms do not even look for one. Throws as find() does.
+  void find_between(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right, PairSink& pairs);
 
   /// What the last find() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
@@ -48,23 +53,31 @@ class PairFinder {
   /// For find_valid: what this search did.
   void count(const Statistics& statistics) { statistics_ = statistics; }
 
+  /// For find_valid: 0 if every overlapping pair is asked for. Else the boxes before this place are the left
+  /// set and the others the right one, and pairs within a set need not be written: they will be dropped.
+  std::size_t left_count() const noexcept { return left_count_; }
+
  private:
   /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
   /// places in `boxes`. No need to flush.
-  virtual void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) = 0;
+  virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
 
-  std::vector<Box<D>> present_;  // the boxes without the absent ones; unused while there are none
-  std::vector<BoxId> ids_;       // and their places in the caller's array
+  /// Appends the present ones of `boxes` to present_ and their places to ids_.
+  void take_present(std::span<const Box<D, Real>> boxes);
+
+  std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
+  std::vector<BoxId> ids_;             // and their places in the caller's array
+  std::size_t left_count_ = 0;
   std::optional<Statistics> statistics_;
 };
 
 /// The boxes of one frame, and which of them changed since the frame before.
-template <int D>
+template <int D, typename Real = float>
 struct Frame {
   /// All boxes. A box is added, moved or removed by changing its place in the array (an absent box is no
   /// box). An array longer than before adds boxes, which need not be listed; a shorter one makes the missing
   /// ones absent.
-  std::span<const Box<D>> boxes;
+  std::span<const Box<D, Real>> boxes;
 
   /// The places whose boxes may differ from the frame before, in any order; one listed twice is harmless. A
   /// change that is not listed is not seen. In a tracker's first frame everything has changed.
@@ -72,11 +85,11 @@ struct Frame {
 };
 
 /// What changed from one frame to the next, as a tracker's algorithm sees it.
-template <int D>
+template <int D, typename Real = float>
 struct Change {
-  std::span<const Box<D>>
-      before;                   ///< boxes of the frame before; as long as `now`, filled up with absent boxes
-  std::span<const Box<D>> now;  ///< boxes of this frame, likewise; each one present or absent
+  std::span<const Box<D, Real>>
+      before;  ///< boxes of the frame before; as long as `now`, filled up with absent boxes
+  std::span<const Box<D, Real>> now;    ///< boxes of this frame, likewise; each one present or absent
   std::span<const BoxId> changed;       ///< places where the two may differ, each once
   std::span<const std::uint8_t> flags;  ///< for each place, 1 if it is in `changed`
   bool rebuild;  ///< nothing kept from earlier frames can be relied on; every place is in `changed`
@@ -85,7 +98,7 @@ struct Change {
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps.
-template <int D>
+template <int D, typename Real = float>
 class PairTracker {
  public:
   PairTracker() = default;
@@ -100,7 +113,7 @@ class PairTracker {
   /// lies beyond both this frame's array and the last one's. If a sink throws, the frame counts as not taken:
   /// the next update rebuilds, takes every box for changed and delivers the events since the last whole
   /// update.
-  void update(const Frame<D>& frame, PairSink& begun, PairSink& ended);
+  void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
   /// What the last update() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
@@ -111,10 +124,10 @@ class PairTracker {
 
  private:
   /// What an algorithm writes: the events of `change`, each once, in any order.
-  virtual void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
+  virtual void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) = 0;
 
-  std::vector<Box<D>> before_;  // the boxes of the last whole update
-  std::vector<Box<D>> now_;
+  std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
+  std::vector<Box<D, Real>> now_;
   std::vector<BoxId> changed_;
   std::vector<std::uint8_t> flags_;
   std::vector<Pair> begun_;
@@ -126,15 +139,15 @@ class PairTracker {
 /// Makes any finder a tracker: finds all pairs in each frame and tells what differs from the frame before.
 ///
 /// Cost a frame: one find() and one pass over the pairs of both frames; the pairs are stored.
-template <int D>
-class DiffTracker final : public PairTracker<D> {
+template <int D, typename Real = float>
+class DiffTracker final : public PairTracker<D, Real> {
  public:
-  explicit DiffTracker(std::unique_ptr<PairFinder<D>> finder);
+  explicit DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder);
 
  private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
 
-  std::unique_ptr<PairFinder<D>> finder_;
+  std::unique_ptr<PairFinder<D, Real>> finder_;
   std::vector<Pair> pairs_;  // those of the frame before
   std::vector<Pair> found_;
 };

@@ -1,26 +1,77 @@
-// find_pairs: all overlapping pairs of an array of boxes, in one call.
+// find_pairs: all overlapping pairs of an array of boxes, or of one array with another, in one call.
 #pragma once
 
+#include <ranges>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
 
 namespace broadside {
 
-/// Every pair of overlapping boxes, once, as places in `boxes`; in an order fixed by the spec and the boxes.
-///
-/// Boxes are closed: touching counts. Throws InvalidInput naming the first box with a NaN or with min > max,
-/// and InvalidSpec. Thread-safe. A finder kept from make_finder() saves the memory's allocation when calls
-/// are many.
-std::vector<Pair> find_pairs(std::span<const Box2> boxes, std::string_view spec = default_algorithm);
-std::vector<Pair> find_pairs(std::span<const Box3> boxes, std::string_view spec = default_algorithm);
+namespace detail {
+template <typename T>
+struct BoxTraits;
+template <int D_, typename Real_>
+struct BoxTraits<Box<D_, Real_>> {
+  static constexpr int D = D_;
+  using Real = Real_;
+};
+}  // namespace detail
 
-/// The same into a sink, for pairs that are not to be stored. Flushes it.
-void find_pairs(std::span<const Box2> boxes, PairSink& pairs, std::string_view spec = default_algorithm);
-void find_pairs(std::span<const Box3> boxes, PairSink& pairs, std::string_view spec = default_algorithm);
+/// An array of boxes: std::vector, std::array, std::span ... of Box<2>, Box<3>, DoubleBox2 or DoubleBox3.
+template <typename T>
+concept BoxArray = std::ranges::contiguous_range<const T> && std::ranges::sized_range<const T> && requires {
+  detail::BoxTraits<std::ranges::range_value_t<T>>::D;
+};
+
+/// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
+/// spec and the boxes.
+///
+/// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
+/// first box with a NaN or with min > max, and InvalidSpec. Thread-safe. A finder kept from make_finder()
+/// saves the memory's allocation when calls are many.
+template <BoxArray Boxes>
+void find_pairs(const Boxes& boxes, PairSink& pairs, std::string_view spec = default_algorithm) {
+  using Box = std::ranges::range_value_t<Boxes>;
+  using Traits = detail::BoxTraits<Box>;
+  make_finder<Traits::D, typename Traits::Real>(spec)->find(std::span<const Box>(boxes), pairs);
+}
+
+/// The same pairs in a vector.
+template <BoxArray Boxes>
+std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default_algorithm) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  find_pairs(boxes, collector, spec);
+  return pairs;
+}
+
+/// Writes every pair of a box of `left` and an overlapping one of `right`, once, and flushes: a pair's first
+/// is a place in `left` and its second one in `right`. The rest as for one array.
+template <BoxArray Left, BoxArray Right>
+requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>>
+void find_pairs(const Left& left, const Right& right, PairSink& pairs,
+                std::string_view spec = default_algorithm) {
+  using Box = std::ranges::range_value_t<Left>;
+  using Traits = detail::BoxTraits<Box>;
+  make_finder<Traits::D, typename Traits::Real>(spec)->find_between(std::span<const Box>(left),
+                                                                    std::span<const Box>(right), pairs);
+}
+
+/// The same pairs in a vector.
+template <BoxArray Left, BoxArray Right>
+requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>> std::vector<Pair>
+find_pairs(const Left& left, const Right& right, std::string_view spec = default_algorithm) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  find_pairs(left, right, collector, spec);
+  return pairs;
+}
 
 }  // namespace broadside

@@ -16,7 +16,8 @@ enum class BoxId : std::uint32_t {};
 /// The array index that `id` stands for.
 constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
 
-/// Two different boxes; first < second.
+/// Two different boxes; first < second. Where two sets are joined, a box of the left one and a box of the
+/// right one.
 struct Pair {
   BoxId first;
   BoxId second;

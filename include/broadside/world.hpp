@@ -42,22 +42,22 @@ struct Events {
 
 /// A set of boxes that changes, and its overlapping pairs.
 ///
-/// add(), move() and remove() cost O(1) and show their effect on pairs at the next update(). One thread at a
-/// time; several may read between updates.
-template <int D>
+/// Of boxes of floats or of doubles. add(), move() and remove() cost O(1) and show their effect on pairs at
+/// the next update(). One thread at a time; several may read between updates.
+template <int D, typename Real = float>
 class World {
  public:
   /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec.
   explicit World(std::string_view spec = default_algorithm);
 
   /// A world over a tracker of the caller's.
-  explicit World(std::unique_ptr<PairTracker<D>> tracker);
+  explicit World(std::unique_ptr<PairTracker<D, Real>> tracker);
 
   /// Adds a box and names it. Throws InvalidInput if the box has a NaN or min > max.
-  Handle add(const Box<D>& box);
+  Handle add(const Box<D, Real>& box);
 
   /// Replaces a box. Throws InvalidHandle if it is not in the world, InvalidInput as add() does.
-  void move(Handle handle, const Box<D>& box);
+  void move(Handle handle, const Box<D, Real>& box);
 
   /// Takes a box out. Its pairs end at the next update. Throws InvalidHandle if it is not in the world.
   void remove(Handle handle);
@@ -75,7 +75,7 @@ class World {
   /// The box as it was last set. A removed one stays readable until the update after the one that reported
   /// its removal, so that whoever handles its ended pairs can look at it. The reference holds until the next
   /// add(), remove() or update(). Throws InvalidHandle.
-  const Box<D>& box(Handle handle) const;
+  const Box<D, Real>& box(Handle handle) const;
 
   /// The number of boxes in the world.
   std::size_t size() const noexcept { return size_; }
@@ -93,13 +93,13 @@ class World {
   [[noreturn]] void refuse(Handle handle, const char* action) const;
   void collect(std::span<const Pair> pairs, std::vector<HandlePair>& handles) const;
 
-  std::unique_ptr<PairTracker<D>> tracker_;
-  std::vector<Box<D>> boxes_;  // by slot; absent where nothing lives
+  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  std::vector<Box<D, Real>> boxes_;  // by slot; absent where nothing lives
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> removed_;                    // since the last update
-  std::vector<std::uint32_t> reported_;                   // whose removal the last update reported
-  std::unordered_map<std::uint32_t, Box<D>> last_boxes_;  // of those two
+  std::vector<std::uint32_t> removed_;                          // since the last update
+  std::vector<std::uint32_t> reported_;                         // whose removal the last update reported
+  std::unordered_map<std::uint32_t, Box<D, Real>> last_boxes_;  // of those two
   std::vector<BoxId> changed_;
   std::vector<Pair> begun_ids_;
   std::vector<Pair> ended_ids_;
@@ -112,5 +112,7 @@ class World {
 
 using World2 = World<2>;
 using World3 = World<3>;
+using DoubleWorld2 = World<2, double>;
+using DoubleWorld3 = World<3, double>;
 
 }  // namespace broadside

@@ -13,13 +13,27 @@ template <int D>
 class BruteForce final : public PairFinder<D> {
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    run_.clear();
-    run_.reserve(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) run_.append(boxes[i], BoxId(i));
-    this->count({.tests = kernels::compare_all(run_.view(), pairs), .references = boxes.size()});
+    const std::size_t left = this->left_count();
+    gather(boxes, left, boxes.size(), run_);
+    Statistics statistics{.tests = 0, .references = boxes.size()};
+    if (left == 0) {
+      statistics.tests = kernels::compare_all(run_.view(), pairs);
+    } else {
+      gather(boxes, 0, left, left_run_);
+      statistics.tests = kernels::compare_all(left_run_.view(), run_.view(), pairs);
+    }
+    this->count(statistics);
   }
 
-  kernels::RunBuffer<D> run_;
+  static void gather(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end,
+                     kernels::RunBuffer<D>& run) {
+    run.clear();
+    run.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) run.append(boxes[i], BoxId(i));
+  }
+
+  kernels::RunBuffer<D> run_;  // all boxes, or the right set
+  kernels::RunBuffer<D> left_run_;
 };
 
 }  // namespace

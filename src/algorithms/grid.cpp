@@ -229,7 +229,7 @@ class Grid final : public PairFinder<D> {
       std::uint32_t before = 0;
       for (int axis = 0; axis < gridded; ++axis)
         before |= static_cast<std::uint32_t>(places_[i].first[axis] >> shift < cell[axis]) << axis;
-      run.append(sorted[i].box, sorted[i].id, before);
+      run.append(sorted[i].box, sorted[i].id, before | kernels::side_bit(sorted[i].id, this->left_count()));
     }
   }
 

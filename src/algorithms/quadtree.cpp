@@ -32,10 +32,11 @@ constexpr std::size_t node_samples = 31;
 template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 
-/// A box in a node. Bit a of `before` is set if the box starts before the node's region on axis a.
+/// A box in a node. Bit a of `apart` is set if the box starts before the node's region on axis a; the rest
+/// as in a run.
 struct Reference {
   std::uint32_t place;
-  std::uint32_t before;
+  std::uint32_t apart;
 };
 
 template <int D>
@@ -60,7 +61,8 @@ class Quadtree final : public PairFinder<D> {
     sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap());
     statistics_ = {};
     stack_.clear();
-    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) stack_.push_back({i, 0});
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
+      stack_.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
     search(0, stack_.size(), pairs);
     this->count(statistics_);
   }
@@ -171,12 +173,12 @@ class Quadtree final : public PairFinder<D> {
       const Reference reference = stack_[i];
       for (std::uint32_t mask = children_[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
         if ((mask & 1U) == 0) continue;
-        std::uint32_t before = reference.before;
+        std::uint32_t apart = reference.apart;
         for (int at = 0; at < split.axis_count; ++at) {
           const int axis = split.axes[at];
-          if ((child >> at & 1U) != 0 && box(reference).min[axis] < split.at[axis]) before |= 1U << axis;
+          if ((child >> at & 1U) != 0 && box(reference).min[axis] < split.at[axis]) apart |= 1U << axis;
         }
-        stack_[next[child]++] = {reference.place, before};
+        stack_[next[child]++] = {reference.place, apart};
       }
     }
   }
@@ -198,7 +200,7 @@ class Quadtree final : public PairFinder<D> {
     for (std::size_t i = begin; i < end; ++i) {
       if (!wanted(i - begin)) continue;
       const core::SortedBox<D>& sorted = sorted_boxes_[stack_[i].place];
-      run.append(sorted.box, sorted.id, stack_[i].before);
+      run.append(sorted.box, sorted.id, stack_[i].apart);
     }
   }
 

@@ -75,7 +75,8 @@ class SweepAndPrune final : public PairFinder<D> {
   void sweep_all(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
     run_.clear();
     run_.reserve(sorted.size());
-    for (const core::SortedBox<D>& box : sorted) run_.append(box.box, box.id);
+    for (const core::SortedBox<D>& box : sorted)
+      run_.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
     this->count({.tests = kernels::sweep(run_.view(), pairs), .references = sorted.size()});
   }
 
@@ -99,8 +100,11 @@ class SweepAndPrune final : public PairFinder<D> {
       const std::span<const std::uint32_t> list = stripes_.list(stripe);
       run_.clear();
       run_.reserve(list.size());
-      for (const std::uint32_t i : list)
-        run_.append(sorted[i].box, sorted[i].id, static_cast<std::uint32_t>(places_[i].first < stripe));
+      for (const std::uint32_t i : list) {
+        const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
+        run_.append(sorted[i].box, sorted[i].id,
+                    before | kernels::side_bit(sorted[i].id, this->left_count()));
+      }
       statistics.tests += kernels::sweep(run_.view(), pairs);
     }
     this->count(statistics);

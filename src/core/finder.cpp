@@ -1,5 +1,6 @@
 // PairFinder: what every finder does before its algorithm sees the boxes.
 #include <algorithm>
+#include <string>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
@@ -9,52 +10,51 @@
 namespace broadside {
 namespace {
 
-/// Passes pairs on under other ids. The ids must rise with the places they stand for, so that pairs stay
-/// ordered.
+/// Passes pairs on under other ids, and of those between two sets only the ones that do cross. The ids rise
+/// with the places they stand for within a set, so that pairs of one set stay ordered.
 class RenamingSink final : public PairSink {
  public:
-  RenamingSink(std::span<const BoxId> ids, PairSink& target) : ids_(ids), target_(&target) {}
+  RenamingSink(std::span<const BoxId> ids, std::size_t left_count, PairSink& target)
+      : ids_(ids), left_count_(left_count), target_(&target) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
       Pair* const out = target_->room(count);
-      for (std::size_t i = 0; i < count; ++i)
-        out[i] = {ids_[index(pairs[i].first)], ids_[index(pairs[i].second)]};
-      target_->commit(count);
+      std::size_t written = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t first = index(pairs[i].first);
+        const std::uint32_t second = index(pairs[i].second);
+        out[written] = {ids_[first], ids_[second]};
+        written +=
+            static_cast<std::size_t>(left_count_ == 0 || (first < left_count_ && second >= left_count_));
+      }
+      target_->commit(written);
       pairs = pairs.subspan(count);
     }
   }
 
   std::span<const BoxId> ids_;
+  std::size_t left_count_;
   PairSink* target_;
 };
 
-}  // namespace
-
-template <int D>
-void PairFinder<D>::find(std::span<const Box<D>> boxes, PairSink& pairs) {
-  core::check_count(boxes.size());
-  const std::size_t absent = core::check_boxes(boxes);
-  statistics_.reset();
+/// Checks one of two sets; a box at fault is named as one of `side`.
+template <int D, typename Real>
+void check_side(std::span<const Box<D, Real>> boxes, const char* side) {
   try {
-    if (absent == 0) {
-      find_valid(boxes, pairs);
-    } else {
-      present_.clear();
-      ids_.clear();
-      present_.reserve(boxes.size() - absent);
-      ids_.reserve(boxes.size() - absent);
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (!is_present(boxes[i])) continue;
-        present_.push_back(boxes[i]);
-        ids_.push_back(BoxId(i));
-      }
-      RenamingSink renamed(ids_, pairs);
-      find_valid(present_, renamed);
-      renamed.flush();
-    }
+    core::check_boxes(boxes);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.index(), std::string(side) + " " + error.what());
+  }
+}
+
+/// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
+template <typename Search>
+void deliver(PairSink& pairs, Search search) {
+  try {
+    search();
     pairs.flush();
   } catch (...) {
     pairs.discard();
@@ -62,7 +62,62 @@ void PairFinder<D>::find(std::span<const Box<D>> boxes, PairSink& pairs) {
   }
 }
 
-template class PairFinder<2>;
-template class PairFinder<3>;
+}  // namespace
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
+  core::check_count(boxes.size());
+  const std::size_t absent = core::check_boxes(boxes);
+  statistics_.reset();
+  left_count_ = 0;
+  deliver(pairs, [&] {
+    if (absent == 0) {
+      find_valid(boxes, pairs);
+      return;
+    }
+    present_.clear();
+    ids_.clear();
+    take_present(boxes);
+    RenamingSink renamed(ids_, left_count_, pairs);
+    find_valid(present_, renamed);
+    renamed.flush();
+  });
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
+                                       std::span<const Box<D, Real>> right, PairSink& pairs) {
+  core::check_count(left.size() + right.size());
+  check_side(left, "left");
+  check_side(right, "right");
+  statistics_.reset();
+  present_.clear();
+  ids_.clear();
+  take_present(left);
+  left_count_ = present_.size();
+  take_present(right);
+  deliver(pairs, [&] {
+    if (left_count_ == 0 || left_count_ == present_.size()) return;
+    RenamingSink crossing(ids_, left_count_, pairs);
+    find_valid(present_, crossing);
+    crossing.flush();
+  });
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
+  present_.reserve(present_.size() + boxes.size());
+  ids_.reserve(ids_.size() + boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_present(boxes[i])) continue;
+    present_.push_back(boxes[i]);
+    ids_.push_back(BoxId(i));
+  }
+}
+
+template class PairFinder<2, float>;
+template class PairFinder<2, double>;
+template class PairFinder<3, float>;
+template class PairFinder<3, double>;
 
 }  // namespace broadside

@@ -11,12 +11,12 @@
 namespace broadside::core {
 namespace {
 
-template <int D>
-[[noreturn]] void refuse(const Box<D>& box, std::size_t index) {
+template <int D, typename Real>
+[[noreturn]] void refuse(const Box<D, Real>& box, std::size_t index) {
   std::ostringstream message;
   message.imbue(std::locale::classic());  // whatever the program has made of the global one
-  message.precision(std::numeric_limits<float>::max_digits10);
-  const auto print = [&message](const std::array<float, D>& point) {
+  message.precision(std::numeric_limits<Real>::max_digits10);
+  const auto print = [&message](const std::array<Real, D>& point) {
     for (int axis = 0; axis < D; ++axis) message << (axis == 0 ? "(" : ", ") << point[axis];
     message << ')';
   };
@@ -30,13 +30,13 @@ template <int D>
 
 }  // namespace
 
-template <int D>
-void check_box(const Box<D>& box, std::size_t index) {
+template <int D, typename Real>
+void check_box(const Box<D, Real>& box, std::size_t index) {
   if (!is_present(box) && !is_absent(box)) refuse(box, index);
 }
 
-template <int D>
-std::size_t check_boxes(std::span<const Box<D>> boxes, std::size_t from) {
+template <int D, typename Real>
+std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from) {
   std::size_t absent = 0;
   for (std::size_t i = from; i < boxes.size(); ++i) {
     if (is_present(boxes[i])) continue;
@@ -54,7 +54,11 @@ void check_count(std::size_t count) {
 
 template void check_box(const Box<2>&, std::size_t);
 template void check_box(const Box<3>&, std::size_t);
+template void check_box(const DoubleBox2&, std::size_t);
+template void check_box(const DoubleBox3&, std::size_t);
 template std::size_t check_boxes(std::span<const Box<2>>, std::size_t);
 template std::size_t check_boxes(std::span<const Box<3>>, std::size_t);
+template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t);
+template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t);
 
 }  // namespace broadside::core

@@ -21,9 +21,9 @@ void deliver(std::vector<Pair>& events, PairSink& sink) {
 
 }  // namespace
 
-template <int D>
-void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& ended) {
-  const std::span<const Box<D>> boxes = frame.boxes;
+template <int D, typename Real>
+void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t known = before_.size();
   const std::size_t size = std::max(boxes.size(), known);
 
@@ -43,15 +43,15 @@ void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& en
   core::check_boxes(boxes, first);
 
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
-  before_.resize(size, absent_box<D>());
-  now_.resize(size, absent_box<D>());
+  before_.resize(size, absent_box<D, Real>());
+  now_.resize(size, absent_box<D, Real>());
   changed_.clear();
   flags_.assign(size, 0);
   const auto take = [&](std::size_t i) {
     if (flags_[i] != 0) return;
     flags_[i] = 1;
     changed_.push_back(BoxId(i));
-    now_[i] = i < boxes.size() ? boxes[i] : absent_box<D>();
+    now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
   };
   if (rebuild) {
     for (std::size_t i = 0; i < size; ++i) take(i);
@@ -85,14 +85,14 @@ void PairTracker<D>::update(const Frame<D>& frame, PairSink& begun, PairSink& en
   dirty_ = false;
 }
 
-template <int D>
-DiffTracker<D>::DiffTracker(std::unique_ptr<PairFinder<D>> finder) : finder_(std::move(finder)) {
+template <int D, typename Real>
+DiffTracker<D, Real>::DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder) : finder_(std::move(finder)) {
   if (!finder_) throw std::invalid_argument("DiffTracker was given a null finder; expected a finder");
 }
 
-template <int D>
-void DiffTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  const auto find = [this](std::span<const Box<D>> boxes, std::vector<Pair>& pairs) {
+template <int D, typename Real>
+void DiffTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  const auto find = [this](std::span<const Box<D, Real>> boxes, std::vector<Pair>& pairs) {
     pairs.clear();
     PairCollector collector(pairs);
     finder_->find(boxes, collector);
@@ -100,7 +100,7 @@ void DiffTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pair
   // Events need no search in the stored pairs: a pair of this frame began unless its boxes overlapped before,
   // and one of the frame before ended unless they overlap now; and neither can be said of two boxes that
   // rested.
-  const auto differs = [&change](Pair pair, std::span<const Box<D>> boxes) {
+  const auto differs = [&change](Pair pair, std::span<const Box<D, Real>> boxes) {
     const std::uint32_t a = index(pair.first);
     const std::uint32_t b = index(pair.second);
     if ((change.flags[a] | change.flags[b]) == 0) return false;
@@ -118,9 +118,13 @@ void DiffTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pair
   this->count(finder_->statistics());
 }
 
-template class PairTracker<2>;
-template class PairTracker<3>;
-template class DiffTracker<2>;
-template class DiffTracker<3>;
+template class PairTracker<2, float>;
+template class PairTracker<2, double>;
+template class PairTracker<3, float>;
+template class PairTracker<3, double>;
+template class DiffTracker<2, float>;
+template class DiffTracker<2, double>;
+template class DiffTracker<3, float>;
+template class DiffTracker<3, double>;
 
 }  // namespace broadside

@@ -19,13 +19,20 @@ struct Run {
   std::array<const float*, D> max;
   const BoxId* id;
 
-  /// Bit b of a box's `before` is set if the box starts before the run's cell on the cell's axis b. Two boxes
-  /// of which both start before it on the same axis share an earlier cell, and it is there that their pair is
-  /// reported.
-  const std::uint32_t* before;
+  /// Two boxes with a bit of `apart` in common are not reported. Bit b is set if the box starts before the
+  /// run's cell on the cell's axis b: two that both do share an earlier cell, and their pair is reported
+  /// there. The topmost bits are those of side_bit().
+  const std::uint32_t* apart;
 
   std::size_t size;
 };
+
+/// What to set of `apart` for a box of a search between two sets, of which the first `left_count` boxes are
+/// the left one: boxes of one set have it in common. Nothing if `left_count` is 0.
+constexpr std::uint32_t side_bit(BoxId id, std::size_t left_count) noexcept {
+  if (left_count == 0) return 0;
+  return index(id) < left_count ? 1U << 30 : 1U << 31;
+}
 
 /// The memory of a run that grows box by box; it keeps what it has allocated.
 template <int D>
@@ -43,17 +50,17 @@ class RunBuffer {
       max_[axis].resize(count);
     }
     id_.resize(count);
-    before_.resize(count);
+    apart_.resize(count);
   }
 
   /// Adds a box whose axes are already in the run's order. reserve() must have made the room.
-  void append(const Box<D>& box, BoxId id, std::uint32_t before = 0) {
+  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) {
     for (int axis = 0; axis < D; ++axis) {
       min_[axis][size_] = box.min[axis];
       max_[axis][size_] = box.max[axis];
     }
     id_[size_] = id;
-    before_[size_] = before;
+    apart_[size_] = apart;
     ++size_;
   }
 
@@ -64,7 +71,7 @@ class RunBuffer {
       run.max[axis] = max_[axis].data();
     }
     run.id = id_.data();
-    run.before = before_.data();
+    run.apart = apart_.data();
     run.size = size_;
     return run;
   }
@@ -73,7 +80,7 @@ class RunBuffer {
   std::array<std::vector<float>, D> min_;
   std::array<std::vector<float>, D> max_;
   std::vector<BoxId> id_;
-  std::vector<std::uint32_t> before_;
+  std::vector<std::uint32_t> apart_;
   std::size_t size_ = 0;
 };
 

@@ -27,7 +27,7 @@ TEST(InputCheck, TakesPresentInfiniteAndAbsentBoxes) {
       {{infinity, -infinity}, {infinity, -infinity}},
       absent_box<2>(),
   };
-  EXPECT_EQ(core::check_boxes<2>(boxes), 1u);
+  EXPECT_EQ(core::check_boxes(std::span<const Box2>(boxes)), 1u);
 }
 
 TEST(InputCheck, RefusesANanInAnyCoordinate) {
@@ -57,11 +57,11 @@ TEST(InputCheck, NamesIndexAndValuesAndWhatIsExpected) {
   const std::vector<Box2> boxes = {
       absent_box<2>(), {{0, 0}, {1, 1}}, {{0.5f, 2}, {nan, -infinity}}, {{1, 1}, {0, 0}}};
   EXPECT_EQ(
-      message_of<InvalidInput>([&] { core::check_boxes<2>(boxes); }),
+      message_of<InvalidInput>([&] { core::check_boxes(std::span<const Box2>(boxes)); }),
       "box 2 has min (0.5, 2) and max (nan, -inf); expected numbers with min <= max on every axis, or the "
       "absent box (min = +inf, max = -inf)");
   try {
-    core::check_boxes<2>(boxes, 3);
+    core::check_boxes(std::span<const Box2>(boxes), 3);
     FAIL() << "nothing was thrown";
   } catch (const InvalidInput& error) {
     EXPECT_EQ(error.index(), 3u);
