@@ -1,0 +1,203 @@
+// The law for boxes of doubles: the pairs of brute force in double, through every algorithm.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "dice.hpp"
+#include "hard_inputs.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+template <int D>
+using Boxes = std::vector<Box<D, double>>;
+
+template <int D>
+std::vector<Pair> reference(const Boxes<D>& boxes) {
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      if (is_present(boxes[i]) && is_present(boxes[j]) && overlap(boxes[i], boxes[j]))
+        pairs.push_back({BoxId(i), BoxId(j)});
+    }
+  }
+  return pairs;
+}
+
+template <int D>
+struct DoubleInput {
+  std::string name;
+  Boxes<D> boxes;
+};
+
+/// Boxes of about `extent` whose centres lie within `range` of one of `sites`, on every axis.
+template <int D>
+Boxes<D> boxes_at(Dice& dice, std::size_t count, const std::vector<double>& sites, double range,
+                  double extent) {
+  Boxes<D> boxes(count);
+  for (Box<D, double>& box : boxes) {
+    const double site = sites[dice.below(sites.size())];
+    for (int axis = 0; axis < D; ++axis) {
+      // 24 random bits and, far below them, others: more than a float holds.
+      const double centre = site + range * (dice.unit() + dice.unit() * 0x1p-24);
+      box.min[axis] = centre - extent * (dice.unit() + dice.unit() * 0x1p-24);
+      box.max[axis] = centre + extent * (dice.unit() + dice.unit() * 0x1p-24);
+    }
+  }
+  return boxes;
+}
+
+template <int D>
+std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
+  Dice dice(21);
+  const std::size_t count = reduced(1500);
+  const double side = std::pow(static_cast<double>(count), 1.0 / D);
+  std::vector<DoubleInput<D>> inputs = {
+      {"none", {}},
+      {"one", boxes_at<D>(dice, 1, {0}, 1, 1)},
+      {"near the origin", boxes_at<D>(dice, count, {0}, side, 0.6)},
+      {"a millimetre, at 5,000,000 m", boxes_at<D>(dice, count, {5e6}, side * 1e-3, 0.6e-3)},
+      {"a millimetre, at sites 100 km apart",
+       boxes_at<D>(dice, count, {500'000, 600'000, 5'000'000}, side * 1e-3, 0.6e-3)},
+      {"below a float's range", boxes_at<D>(dice, count, {0, 1e-300}, side * 1e-300, 0.6e-300)},
+      {"beyond a float's range", boxes_at<D>(dice, count, {-1e300, 1e300}, side * 1e299, 0.6e299)},
+      {"all at one point", boxes_at<D>(dice, 300, {1e9}, 1e-3, 1)},
+      {"points far apart", boxes_at<D>(dice, count, {0, 1e6, 1e12}, 1, 0)},
+  };
+  // Integers above 2^24 that touch: the last unit decides.
+  Boxes<D> integers(count);
+  for (Box<D, double>& box : integers) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = 1'000'000'000.0 + dice.whole(0, static_cast<int>(side) * 4);
+      box.max[axis] = box.min[axis] + dice.whole(0, 3);
+    }
+  }
+  inputs.push_back({"integers above 2^24", integers});
+  // Neighbours that touch, or miss each other by the last bit of a double.
+  Boxes<D> lattice;
+  for (int i = 0; i < 200; ++i) {
+    Box<D, double> box;
+    for (int axis = 0; axis < D; ++axis) {
+      const double at = 4.0e6 / 3 + (axis == 0 ? i : dice.whole(0, 2)) * 0.1;
+      box.min[axis] = at;
+      box.max[axis] = dice.one_in(2) ? at + 0.1 : std::nextafter(at + 0.1, 0.0);
+    }
+    lattice.push_back(box);
+  }
+  inputs.push_back({"touching to the last bit", lattice});
+  if (algorithm.infinite_boxes) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Boxes<D> boxes = boxes_at<D>(dice, 400, {1e6}, side, 1);
+    for (std::size_t i = 0; i < boxes.size(); i += 13) boxes[i] = absent_box<D, double>();
+    for (std::size_t i = 0; i < boxes.size(); i += 40)
+      boxes[i].min.fill(-infinity), boxes[i].max.fill(infinity);
+    boxes[5].min.fill(infinity), boxes[5].max.fill(infinity);
+    boxes[6].min[0] = -infinity;
+    boxes[7].max.fill(std::numeric_limits<double>::max());
+    inputs.push_back({"infinite and absent boxes together", boxes});
+  }
+  return inputs;
+}
+
+class DoubleLaw : public Law {};
+
+TEST_P(DoubleLaw, FindsThePairsOfBruteForceInDouble) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D, double>(algorithm(), spec());
+    for (const DoubleInput<D>& input : double_inputs<D>(algorithm())) {
+      std::vector<Pair> pairs;
+      PairCollector collector(pairs);
+      finder->find(input.boxes, collector);
+      std::ranges::sort(pairs);
+      EXPECT_EQ(pairs, reference<D>(input.boxes)) << input.name;
+    }
+  });
+}
+
+TEST_P(DoubleLaw, FindsThePairsBetweenTwoSetsOfDoubles) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D, double>(algorithm(), spec());
+    for (const DoubleInput<D>& input : double_inputs<D>(algorithm())) {
+      const std::size_t half = input.boxes.size() / 2;
+      const std::span<const Box<D, double>> boxes = input.boxes;
+      std::vector<Pair> pairs;
+      PairCollector collector(pairs);
+      finder->find_between(boxes.first(half), boxes.subspan(half), collector);
+      std::ranges::sort(pairs);
+      std::vector<Pair> expected;
+      for (const Pair pair : reference<D>(input.boxes)) {
+        if (index(pair.first) < half && index(pair.second) >= half)
+          expected.push_back({pair.first, BoxId(index(pair.second) - half)});
+      }
+      EXPECT_EQ(pairs, expected) << input.name;
+    }
+  });
+}
+
+TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
+  in_dimension([&]<int D>() {
+    Dice dice(22);
+    Boxes<D> boxes = boxes_at<D>(dice, 200, {5e6}, 0.02, 1e-3);
+    const auto tracker = make_tracker<D, double>(algorithm(), spec());
+    std::vector<Pair> current;
+    for (int frame = 0; frame < 10; ++frame) {
+      std::vector<BoxId> changed;
+      for (std::size_t i = frame == 0 ? boxes.size() : 0; i < boxes.size(); i += 3) {
+        changed.push_back(BoxId(i));
+        for (int axis = 0; axis < D; ++axis) {
+          const double step = 1e-4 * (dice.unit() - 0.5);
+          boxes[i].min[axis] += step;
+          boxes[i].max[axis] += step;
+        }
+      }
+      std::vector<Pair> begun;
+      std::vector<Pair> ended;
+      PairCollector begun_pairs(begun);
+      PairCollector ended_pairs(ended);
+      tracker->update({boxes, changed}, begun_pairs, ended_pairs);
+      std::vector<Pair> kept;
+      std::ranges::set_difference(current, ended, std::back_inserter(kept));
+      current.clear();
+      std::ranges::merge(kept, begun, std::back_inserter(current));
+      EXPECT_EQ(current, reference<D>(boxes)) << "frame " << frame;
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, DoubleLaw, testing::ValuesIn(law_cases()), case_name);
+
+TEST(Doubles, AreToldApartWhereFloatsAreEqual) {
+  const std::vector<DoubleBox2> boxes = {{{0, 0}, {16777216, 1}}, {{16777217, 0}, {16777218, 1}}};
+  EXPECT_TRUE(find_pairs(boxes).empty());
+  const std::vector<Box2> floats = {{{0, 0}, {16777216.F, 1}}, {{16777217.F, 0}, {16777218.F, 1}}};
+  EXPECT_EQ(find_pairs(floats).size(), 1u);
+}
+
+TEST(Doubles, AreRefusedAsFloatsAre) {
+  const std::vector<DoubleBox2> boxes = {{{0, 0}, {1, 1}}, {{0, std::nan("")}, {1, 1}}};
+  EXPECT_THROW(find_pairs(boxes), InvalidInput);
+}
+
+TEST(Doubles, LiveInAWorld) {
+  DoubleWorld2 world;
+  const Handle a = world.add({{5e6, 0}, {5e6 + 1e-3, 1}});
+  const Handle b = world.add({{5e6 + 1.5e-3, 0}, {5e6 + 2e-3, 1}});
+  EXPECT_TRUE(world.update().begun.empty());
+  world.move(b, {{5e6 + 1e-3, 0}, {5e6 + 2e-3, 1}});
+  const Events events = world.update();
+  ASSERT_EQ(events.begun.size(), 1u);
+  EXPECT_EQ(events.begun[0], (HandlePair{a, b}));
+}
+
+}  // namespace
+}  // namespace broadside::laws
