@@ -176,6 +176,19 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, DoubleLaw, testing::ValuesIn(law_cases()), case_name);
 
+TEST(Doubles, TakeSeveralOriginsWhereOneWouldMakeEverythingTouch) {
+  // Boxes of a millimetre at sites 100 km apart: as floats about one origin they would be 8 mm wide or more.
+  Dice dice(23);
+  const std::size_t count = 20'000;
+  const Boxes<2> boxes = boxes_at<2>(dice, count, {500'000, 600'000}, 0.1, 0.5e-3);
+  const auto finder = make_finder<2, double>("grid");
+  PairCounter counter;
+  finder->find(boxes, counter);
+  EXPECT_GT(counter.count(), 0u);
+  ASSERT_TRUE(finder->statistics().has_value());
+  EXPECT_LT(finder->statistics()->tests, 20 * count);
+}
+
 TEST(Doubles, AreToldApartWhereFloatsAreEqual) {
   const std::vector<DoubleBox2> boxes = {{{0, 0}, {16777216, 1}}, {{16777217, 0}, {16777218, 1}}};
   EXPECT_TRUE(find_pairs(boxes).empty());
