@@ -1,12 +1,12 @@
 // The README's code is what examples/quick_start compiles and ctest runs.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace broadside {
 namespace {
