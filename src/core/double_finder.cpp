@@ -67,7 +67,7 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
     for (int axis = 0; axis < D; ++axis) {
       const double begin = std::max(a.min[axis], b.min[axis]);
       here &= begin >= region_.begin[axis];
-      here &= (begin < region_.end[axis]) | (region_.end[axis] == infinity);
+      here &= begin < region_.end[axis] || region_.end[axis] == infinity;
     }
     return here;
   }
