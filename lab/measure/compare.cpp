@@ -97,10 +97,11 @@ class Runner {
 
   template <int D>
   void run(const NamedScene& named, const CaseRequest& request) {
-    const std::string name =
-        fmt::format("{}{} {}D, {} boxes: ", place_, request.scene, D, grouped(request.boxes));
+    std::string name = fmt::format("{}{} {}D", place_, request.scene, D);
+    if (request.boxes > 0) name += fmt::format(", {} boxes", grouped(request.boxes));
     const Watch watch{options_.watch.stop, [&](std::string_view what) {
-                        if (options_.watch.progress) options_.watch.progress(name + std::string(what));
+                        if (options_.watch.progress)
+                          options_.watch.progress(fmt::format("{}: {}", name, what));
                       }};
     Case of;
     std::vector<History<D>> inputs;
