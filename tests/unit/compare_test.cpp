@@ -103,7 +103,7 @@ TEST(Compare, ShowsEveryWayOfBeingWrong) {
 TEST(Compare, SeesWhatGoesWrongOnlyLater) {
   Catalogue catalogue;
   catalogue.add(spoilt("late", [](std::vector<Pair>& pairs, std::size_t searches) {
-    if (searches == 20) pairs.pop_back();
+    if (searches == 20) mistake_a_pair(pairs);
   }));
   CompareOptions options = options_for("late", {small_still});
   options.effort.share_seconds = 60;
@@ -175,6 +175,24 @@ TEST(Compare, CountsTheMemoryThatAnAlgorithmKeeps) {
   EXPECT_LE(*measurement.own_bytes, 1'020'000u);
   EXPECT_GE(*measurement.peak_bytes, 1'500'000u);
   EXPECT_LE(*measurement.peak_bytes, 1'520'000u);
+}
+
+TEST(Compare, CountsTheMemoryThatATrackerComesToKeep) {
+  class Keeper final : public PairTracker<2> {
+    void update_valid(const Change<2>&, PairSink&, PairSink&) override { kept_.emplace_back(200'000, 1); }
+    std::vector<std::vector<char>> kept_;
+  };
+  Algorithm algorithm = spoilt("keeper", [](std::vector<Pair>&, std::size_t) {});
+  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<Keeper>(); };
+  Catalogue catalogue;
+  catalogue.add(algorithm);
+  const Measurement measurement =
+      only(compare(catalogue, options_for("keeper", {{"uniform:neighbours=0.000001", 2, 300, 0.1, 4}})));
+  ASSERT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
+  if (!measurement.own_bytes) GTEST_SKIP() << "this build does not count allocations";
+  EXPECT_GE(*measurement.own_bytes, 5 * 200'000u);
+  EXPECT_LE(*measurement.own_bytes, 5 * 200'000u + 50'000);
+  EXPECT_GE(*measurement.peak_bytes, *measurement.own_bytes);
 }
 
 TEST(Compare, StopsBetweenTwoSamplesAndKeepsWhatIsWhole) {

@@ -52,17 +52,19 @@ inline Algorithm repeats_a_pair() {
   return spoilt("repeats", [](std::vector<Pair>& pairs, std::size_t) { pairs.push_back(pairs.front()); });
 }
 
-/// Reports a pair that does not overlap instead of one that does, so that their number is right.
-inline Algorithm mistakes_a_pair() {
-  return spoilt("mistakes", [](std::vector<Pair>& pairs, std::size_t) {
-    const auto last = static_cast<std::uint32_t>(pairs.size());
-    for (std::uint32_t j = 1; j <= last; ++j) {
-      if (pairs[j - 1] != Pair{BoxId{0}, BoxId{j}}) {
-        pairs.back() = {BoxId{0}, BoxId{j}};
-        return;
-      }
+/// Puts a pair that does not overlap in the place of one that does, so that their number is right.
+inline void mistake_a_pair(std::vector<Pair>& pairs) {
+  const auto last = static_cast<std::uint32_t>(pairs.size());
+  for (std::uint32_t j = 1; j <= last; ++j) {
+    if (pairs[j - 1] != Pair{BoxId{0}, BoxId{j}}) {
+      pairs.back() = {BoxId{0}, BoxId{j}};
+      return;
     }
-  });
+  }
+}
+
+inline Algorithm mistakes_a_pair() {
+  return spoilt("mistakes", [](std::vector<Pair>& pairs, std::size_t) { mistake_a_pair(pairs); });
 }
 
 }  // namespace broadside::lab
