@@ -1,19 +1,15 @@
 // The law of finders: exactly the overlapping pairs, each once, whatever the boxes and whatever came before.
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
 #include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
 #include "smallest_failure.hpp"
+#include "strained_specs.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -78,37 +74,12 @@ TEST_P(FinderLaw, FindsThePairsOfShiftedAndScaledBoxes) {
   });
 }
 
-/// Values that strain a tunable: the ends of its range, each choice, and numbers of every magnitude between.
-std::vector<std::string> straining_values(const Tunable& tunable) {
-  std::vector<std::string> values = tunable.choices;
-  if (tunable.type == Tunable::Type::choice) return values;
-  for (const double value : {tunable.least, tunable.most, tunable.least + 1, 1e-30, 1e-3, 0.3, 1.0, 2.0, 3.0,
-                             7.0, 64.0, 1e4, 1e9, 1e30}) {
-    const bool whole = tunable.type != Tunable::Type::integer || value == std::floor(value);
-    if (!whole || value < tunable.least || value > tunable.most) continue;
-    std::ostringstream text;
-    text.precision(std::numeric_limits<double>::max_digits10);
-    text << value;
-    values.push_back(text.str());
-  }
-  return values;
-}
-
 TEST_P(FinderLaw, HoldsForEveryTunable) {
   in_dimension([&]<int D>() {
     const std::vector<Input<D>> inputs = hard_inputs<D>(algorithm());
-    for (const Tunable& tunable : algorithm().tunables) {
-      for (const std::string& value : straining_values(tunable)) {
-        Spec strained = spec();
-        strained.values.emplace_back(tunable.name, value);
-        try {
-          make_finder<D>(algorithm(), strained);
-        } catch (const InvalidSpec&) {
-          continue;  // such as an axis that there is in 3D only
-        }
-        for (const Input<D>& input : inputs)
-          EXPECT_TRUE(finds_the_pairs<D>(algorithm(), strained, input.boxes)) << input.name;
-      }
+    for (const Spec& strained : strained_specs(GetParam())) {
+      for (const Input<D>& input : inputs)
+        EXPECT_TRUE(finds_the_pairs<D>(algorithm(), strained, input.boxes)) << input.name;
     }
   });
 }

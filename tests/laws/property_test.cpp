@@ -12,6 +12,7 @@
 #include "hard_inputs.hpp"
 #include "lab/verify.hpp"
 #include "law_case.hpp"
+#include "strained_specs.hpp"
 
 namespace broadside::laws {
 
@@ -65,14 +66,24 @@ class Property : public Law {
     if (!algorithm().infinite_boxes) std::erase_if(boxes, is_infinite<D>);
   }
 
+  /// The algorithm's specs: with nothing set, and with each tunable strained.
+  std::vector<Spec> specs() const {
+    std::vector<Spec> all = strained_specs(GetParam());
+    all.push_back(spec());
+    return all;
+  }
+
   template <int D>
   bool finders_hold(const rc::Gen<Box<D>>& box) const {
     return rc::check(name(GetParam()) + " finds each overlapping pair once", [&] {
-      auto boxes = *rc::gen::container<std::vector<Box<D>>>(box).as("boxes");
+      auto boxes = *rc::gen::scale(2, rc::gen::container<std::vector<Box<D>>>(box)).as("boxes");
       keep_to_limits(boxes);
-      const auto divergence =
-          lab::check_finder<D>(*make_finder<D>(algorithm(), spec()), boxes, algorithm().name);
-      if (divergence) RC_FAIL(divergence->text);
+      const Spec strained = *rc::gen::elementOf(specs());
+      for (const Spec& tried : {spec(), strained}) {
+        const auto finder = make_finder<D>(algorithm(), tried);
+        if (const auto divergence = lab::check_finder<D>(*finder, boxes, tried.text()))
+          RC_FAIL(divergence->text);
+      }
     });
   }
 
