@@ -84,6 +84,9 @@ void check(const CompareArguments& arguments) {
   for (const double moving : arguments.moving) check_fraction("--moving", moving);
   if (arguments.budget && !(*arguments.budget > 0))
     throw Unusable(fmt::format("--budget is {}; expected a number of seconds above 0", *arguments.budget));
+  if (std::ranges::find(arguments.scenes, arguments.json) != arguments.scenes.end())
+    throw Unusable(
+        fmt::format("--json is {}, which is a scene as well; expected another file", arguments.json));
   if (!arguments.json.empty()) check_writable("--json", arguments.json);
 }
 
@@ -109,7 +112,11 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
   fmt::print("{}", lab::summary_of(comparison));
-  if (comparison.stopped) return Exit::interrupted;
+  if (comparison.stopped) {
+    if (!arguments.json.empty())
+      fmt::print(stderr, "broadside: stopped; {} is not written\n", arguments.json);
+    return Exit::interrupted;
+  }
   if (!arguments.json.empty()) {
     on_signal(OnSignal::note);
     const std::string text = lab::json_of(comparison, command);
@@ -146,12 +153,13 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--threads", arguments->threads, "Threads an algorithm may use; in this version 1")
       ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of a scene's first input; the others count up from it")
+      ->check(is_seed)
       ->capture_default_str();
   verb->add_option("--budget", arguments->budget,
                    fmt::format("Seconds that one search, or one history, may take; a slower algorithm is "
                                "skipped and its time estimated (standard: {}, with --long {})",
                                lab::Effort{}.budget_seconds, lab::long_effort().budget_seconds));
-  verb->add_option("--json", arguments->json, "Write the results to this file as well");
+  verb->add_option("--json", arguments->json, "Write the results to this file as well")->type_name("FILE");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   return [arguments, command] { return run(*arguments, command); };
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -20,6 +21,12 @@ void handle(int) {
   const OnSignal what = reaction;
   if (what == OnSignal::end || (what == OnSignal::note_then_end && again))
     _exit(static_cast<int>(Exit::interrupted));
+  if (what == OnSignal::note_then_end) {
+    constexpr std::string_view text =
+        "\nbroadside: stopping after the call that is under way; again stops at once\n";
+    // Nothing can be done about a message that is not taken.
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,7 +49,10 @@ Exit run(const std::vector<std::string>& arguments) {
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
   } catch (const CLI::ParseError& error) {
     // Help and version end here as well, with status 0.
-    return program.exit(error) == 0 ? Exit::fine : Exit::unusable;
+    if (error.get_exit_code() != 0)
+      throw broadside::cli::Unusable(error.what() + std::string("; --help tells more"));
+    program.exit(error);
+    return Exit::fine;
   }
   for (const auto& [name, verb] : verbs) {
     if (program.got_subcommand(name)) return verb();
@@ -61,7 +65,13 @@ Exit run(const std::vector<std::string>& arguments) {
 int main(int count, char** values) {
   const std::vector<std::string> arguments(values, values + count);
   try {
-    return static_cast<int>(run(arguments));
+    const Exit exit = run(arguments);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      throw broadside::cli::Unusable("standard output cannot be written; expected it open and not full");
+    return static_cast<int>(exit);
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "broadside: out of memory; expected fewer boxes, frames or pairs\n");
+    return static_cast<int>(Exit::unusable);
   } catch (const std::exception& error) {
     fmt::print(stderr, "broadside: {}\n", error.what());
     return static_cast<int>(Exit::unusable);

@@ -72,7 +72,9 @@ Verb add_scene(CLI::App& program) {
   verb->add_option(
       "--frames", arguments->frames,
       "Frames after the first (standard: 20 where something moves); alone, a tenth of the boxes moves");
-  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes")->capture_default_str();
+  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes")
+      ->check(is_seed)
+      ->capture_default_str();
   return [arguments] { return run(*arguments); };
 }
 

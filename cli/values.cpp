@@ -44,6 +44,14 @@ void check_dimension(int dimension) {
     throw Unusable(fmt::format("--dimension is {}; expected 2 or 3", dimension));
 }
 
+std::string is_seed(const std::string& text) {
+  constexpr std::size_t most_digits = 18;
+  const bool fits = !text.empty() && text.size() <= most_digits &&
+                    text.find_first_not_of("0123456789") == std::string::npos;
+  return fits ? ""
+              : fmt::format("seed '{}'; expected a whole number of at most {} digits", text, most_digits);
+}
+
 void check_writable(const std::string& option, const std::string& path) {
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();

@@ -18,6 +18,9 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
 void check_fraction(const std::string& option, double value);
 void check_dimension(int dimension);
 
+/// What is wrong with a seed, as a check of CLI11's; empty if nothing is.
+std::string is_seed(const std::string& text);
+
 /// Throws Unusable if no file can be made at `path`, so that this is known before hours of work.
 void check_writable(const std::string& option, const std::string& path);
 

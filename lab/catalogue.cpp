@@ -52,9 +52,15 @@ std::vector<Contender> Catalogue::select(std::string_view list) const {
     const std::string_view part = list.substr(begin, end - begin);
     begin = end + 1;
     if (is_group(part)) {
+      bool any = false;
       for (const Algorithm& algorithm : algorithms_) {
-        if (in_group(algorithm, part)) select_once(algorithm, Spec{algorithm.name, {}});
+        if (!in_group(algorithm, part)) continue;
+        select_once(algorithm, Spec{algorithm.name, {}});
+        any = true;
       }
+      if (!any)
+        throw InvalidSpec("group '" + std::string(part) +
+                          "' is empty; expected one with algorithms in this build");
       continue;
     }
     Spec spec = Spec::parse(part);

@@ -43,7 +43,8 @@ struct Events {
 /// A set of boxes that changes, and its overlapping pairs.
 ///
 /// Of boxes of floats or of doubles. add(), move() and remove() cost O(1) and show their effect on pairs at
-/// the next update(). One thread at a time; several may read between updates.
+/// the next update(). One thread at a time; several may read between updates. A world that was moved from may
+/// only be assigned to or destroyed.
 template <int D, typename Real = float>
 class World {
  public:

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "broadside/error.hpp"
 #include "broadside/version.hpp"
 
 #include "lab/numbers.hpp"
@@ -56,9 +57,17 @@ void count_memory(Measurement& entry, const std::optional<Allocation>& allocatio
   entry.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->peak, 0));
 }
 
-std::string unfit(const Algorithm& algorithm, int dimension, bool infinite) {
+std::string unfit(const Contender& contender, int dimension, bool infinite) {
+  const Algorithm& algorithm = *contender.algorithm;
   if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
   if (infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
+  try {
+    // A value may make sense in one dimension only, such as an axis.
+    dimension == 2 ? void(make_finder<2>(algorithm, contender.spec))
+                   : void(make_finder<3>(algorithm, contender.spec));
+  } catch (const InvalidSpec& unusable) {
+    return unusable.what();
+  }
   return {};
 }
 

@@ -68,7 +68,7 @@ void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, doubl
 void count_memory(Measurement& entry, const std::optional<Allocation>& allocation);
 
 /// Why `algorithm` cannot take boxes of this dimension, some of them infinite or none; empty if it can.
-std::string unfit(const Algorithm& algorithm, int dimension, bool infinite);
+std::string unfit(const Contender& contender, int dimension, bool infinite);
 
 /// Whether any of the boxes reaches to infinity, absent ones aside.
 template <int D>

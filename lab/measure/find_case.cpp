@@ -61,7 +61,7 @@ class FindCase {
 
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
-    entry.reason = unfit(*contender.algorithm, D, any_infinite(boxes_of(0)));
+    entry.reason = unfit(contender, D, any_infinite(boxes_of(0)));
     if (!entry.reason.empty()) return false;
     const double budget = contest_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {

@@ -114,26 +114,31 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
   std::vector<CaseRequest> plan;
   for (const std::string& name : scenes) {
     const Scene scene = find_scene(name).scene;
-    const std::size_t before = plan.size();
+    const auto exists = [&scene](int dimension) { return scene.has_dimension(dimension); };
+    if (named && std::ranges::none_of(dimensions, exists)) {
+      throw InvalidSpec("scene '" + name +
+                        "' does not exist in the dimensions asked for; expected dimension " +
+                        (scene.has_dimension(2) ? "2" : "3"));
+    }
     for (const int dimension : dimensions) {
-      if (!scene.has_dimension(dimension)) continue;
+      if (!exists(dimension)) continue;
       const bool moves = moves_by_itself(scene, dimension);
       const std::size_t all =
           scene.kind == SceneKind::file && moves ? std::numeric_limits<std::size_t>::max() : standard_frames;
       const std::size_t frames = wishes.frames > 0 ? wishes.frames : all;
       for (const std::size_t count : counts) {
         for (const double moving : fractions) {
-          plan.push_back({name, dimension, scene.fixed_count ? 0 : count, moves ? 0 : moving,
-                          moves || moving > 0 ? frames : 0, named});
+          const CaseRequest request{name,
+                                    dimension,
+                                    scene.fixed_count ? 0 : count,
+                                    moves ? 0 : moving,
+                                    moves || moving > 0 ? frames : 0,
+                                    named};
+          if (std::ranges::find(plan, request) == plan.end()) plan.push_back(request);
           if (moves) break;
         }
         if (scene.fixed_count) break;
       }
-    }
-    if (named && plan.size() == before) {
-      throw InvalidSpec("scene '" + name +
-                        "' does not exist in the dimensions asked for; expected dimension " +
-                        (scene.has_dimension(2) ? "2" : "3"));
     }
   }
   return plan;

@@ -18,6 +18,8 @@ struct CaseRequest {
   double moving = 0;       ///< the fraction that moves, 0 for a scene that moves by itself
   std::size_t frames = 0;  ///< 0: still
   bool required = true;    ///< whether it is an error if the scene is not there
+
+  bool operator==(const CaseRequest&) const = default;
 };
 
 /// The cases of `make compare`: at most two minutes on two cores, with all algorithms.

@@ -97,7 +97,7 @@ class TrackCase {
     const bool infinite =
         any_infinite<D>(history.boxes) ||
         std::ranges::any_of(history.steps, [](const Step<D>& step) { return any_infinite<D>(step.boxes); });
-    entry.reason = unfit(*contender.algorithm, D, infinite);
+    entry.reason = unfit(contender, D, infinite);
     if (!entry.reason.empty()) return false;
     const double frames = static_cast<double>(case_.frames + 1);
     const double budget = contest_.effort.budget_seconds;

@@ -43,6 +43,8 @@ class Lines {
     rest_ = text_;
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
+    // Editors leave empty lines at the end; they say nothing.
+    while (rest_.ends_with('\n') || rest_.ends_with('\r')) rest_.remove_suffix(1);
   }
 
   /// Whether there was another line; line() is then that one, without its end.

@@ -101,7 +101,8 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
     if (tunable == tunables.end()) {
       std::vector<std::string_view> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
-      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'; expected one of: " + listed(names));
+      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'; expected " +
+                        (names.empty() ? "none" : "one of: " + listed(names)));
     }
     check(spec.name, *tunable, value);
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;

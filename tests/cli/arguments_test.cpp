@@ -1,4 +1,5 @@
 // What the program says of itself, and of arguments that it cannot use.
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,9 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{"compare", "--dimension", "4"}, {"--dimension is 4", "expected 2 or 3"}},
       {{"compare", "--moving", "1.5"}, {"--moving is 1.5", "expected a fraction from 0 to 1"}},
       {{"compare", "--threads", "2"}, {"--threads is 2", "expected 1"}},
+      {{"compare", "--algorithms", "peers"}, {"group 'peers' is empty"}},
+      {{"compare", "--seed", "-1"}, {"--seed", "'-1'", "expected a whole number"}},
+      {{"compare", "--scenes", "boxes.csv", "--json", "boxes.csv"}, {"--json is boxes.csv", "another file"}},
       {{"compare", "--budget", "0"}, {"--budget is 0", "expected a number of seconds above 0"}},
       {{"compare", "--long", "-n", "100"}, {"--long", "expected it without"}},
       {{"compare", "--json", "/nowhere/out.json"},
@@ -89,6 +93,12 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
     EXPECT_EQ(ended.output, "");
     for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
   }
+}
+
+TEST(Output, ThatCannotBeWrittenIsAnError) {
+  const std::string to_nowhere = " --help > /dev/full 2> /dev/null";
+  const int status = std::system((BROADSIDE_PROGRAM + to_nowhere).c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
 }  // namespace

@@ -213,6 +213,15 @@ TEST(Compare, RefusesWhatIsUnknownBeforeAnythingIsMeasured) {
   EXPECT_THAT(message_of<InvalidSpec>([&] { compare(Catalogue(), options); }), HasSubstr("'nothing'"));
 }
 
+TEST(Compare, SkipsASpecWhereItMakesNoSense) {
+  const Comparison comparison = compare(Catalogue(), options_for("sweep_and_prune:axis=z", {small_still}));
+  ASSERT_EQ(comparison.cases.size(), 1u);
+  const Measurement& measurement = comparison.cases[0].measurements.at(0);
+  EXPECT_EQ(measurement.outcome, Outcome::skipped);
+  EXPECT_THAT(measurement.reason, HasSubstr("expected x or y in 2D"));
+  EXPECT_TRUE(comparison.all_verified());
+}
+
 TEST(Compare, ReportsAPlannedSceneThatIsNotThere) {
   CaseRequest missing{"nowhere", 2, 100};
   missing.required = false;

@@ -46,6 +46,11 @@ TEST(PlanOf, IsEveryCombination) {
   EXPECT_TRUE(std::ranges::all_of(plan, [](const CaseRequest& r) { return r.dimension == 3 && r.required; }));
 }
 
+TEST(PlanOf, HasWhatIsNamedTwiceOnce) {
+  EXPECT_EQ(plan_of({.scenes = {"uniform", "uniform"}, .boxes = {100, 100}, .dimensions = {2, 2}}).size(),
+            1u);
+}
+
 TEST(PlanOf, IsEveryGeneratedSceneStillWhereNothingIsSaid) {
   std::set<std::string> names;
   for (const CaseRequest& request : plan_of({})) {

@@ -137,6 +137,8 @@ TEST_F(Csv, ReadsPlainColumnsWithWhateverLineEnds) {
   EXPECT_EQ(read_file(put("c.csv", "min_x,min_y,min_z,max_x,max_y,max_z\n1,2,3,4,5,6\n")).in_3d->boxes,
             (std::vector<Box3>{{{1, 2, 3}, {4, 5, 6}}}));
   EXPECT_TRUE(read_file(put("d.csv", "min_x,min_y,max_x,max_y\n")).in_2d->boxes.empty());
+  EXPECT_EQ(read_file(put("e.csv", "min_x,min_y,max_x,max_y\n1,2,3,4\n-1,-2,0,1e10\n\r\n\n")).in_2d->boxes,
+            flat);
 }
 
 TEST_F(Csv, TakesInfinitiesForAnAbsentBox) {
@@ -159,7 +161,7 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(plain + "0,0,1\n"),
               AllOf(HasSubstr("bad.csv:3: 3 columns"), HasSubstr("expected the 4")));
   EXPECT_THAT(refusal_of(plain + "0,0,1,1,\n"), HasSubstr("bad.csv:3: 5 columns"));
-  EXPECT_THAT(refusal_of(plain + "\n"), HasSubstr("bad.csv:3: 1 columns"));
+  EXPECT_THAT(refusal_of(plain + "\n1,2,3,4\n"), HasSubstr("bad.csv:3: 1 columns"));
   EXPECT_THAT(refusal_of(plain + "0,0,1,one\n"),
               AllOf(HasSubstr("bad.csv:3: column max_y is 'one'"), HasSubstr("expected a number")));
   EXPECT_THAT(refusal_of(plain + "0,nan,1,1\n"), HasSubstr("column min_y is 'nan'"));

@@ -103,7 +103,7 @@ TEST(Settings, RefuseAnUnknownTunableAndNameTheKnownOnes) {
   EXPECT_EQ(refusal_of("grid:cells=2"),
             "grid: unknown tunable 'cells'; expected one of: cell, capacity, axis, margin");
   EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec::parse("a:b=1"), {}); }),
-            "a: unknown tunable 'b'; expected one of: none");
+            "a: unknown tunable 'b'; expected none");
 }
 
 TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
