@@ -8,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/find_pairs.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/spec.hpp"
 #include "broadside/version.hpp"

@@ -1,0 +1,369 @@
+// The recorder writes the bytes that docs/trace-format.md shows, stores only what changed, and says what
+// failed.
+#include "broadside/recorder.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace broadside {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+constexpr std::size_t empty_frame = trace::header_bytes + trace::checksum_bytes;
+constexpr std::size_t removal = 4;
+constexpr std::size_t flat_box = 4 + 4 * 4;
+
+/// Bytes as docs/trace-format.md shows them.
+std::string hexadecimal(const std::string& bytes) {
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    constexpr const char* digits = "0123456789abcdef";
+    text += {digits[byte >> 4], digits[byte & 15], ' '};
+  }
+  return text;
+}
+
+/// The bytes of the example at the end of docs/trace-format.md: the pairs of digits with which its lines
+/// begin.
+std::string documented_example() {
+  std::ifstream file(BROADSIDE_SOURCE_DIR "/docs/trace-format.md");
+  std::string text;
+  std::string example;
+  while (std::getline(file, text) && text != "## An example") continue;
+  while (std::getline(file, text)) {
+    std::istringstream line(text);
+    const auto is_byte = [](const std::string& word) {
+      return word.size() == 2 && word.find_first_not_of("0123456789abcdef") == std::string::npos;
+    };
+    for (std::string word; line >> word && is_byte(word);) example += word + " ";
+  }
+  return example;
+}
+
+/// A recorder that keeps its trace in memory.
+template <int D, typename Real = float>
+struct Tape {
+  Tape() {
+    recorder.open_with([this](const void* more, std::size_t count) {
+      bytes.append(static_cast<const char*>(more), count);
+      return true;
+    });
+  }
+
+  /// Ends the frame and returns how many bytes it took.
+  std::size_t frame() {
+    const std::size_t before = bytes.size();
+    EXPECT_TRUE(recorder.end_frame());
+    return bytes.size() - before;
+  }
+
+  bool set(std::uint32_t slot, std::vector<Real> box) {
+    return recorder.set(slot, box.data(), box.data() + D);
+  }
+
+  bool set_boxes(const std::vector<Real>& boxes) {
+    return recorder.set_boxes(boxes.data(), boxes.size() / (2 * D));
+  }
+
+  std::string bytes;
+  Recorder<D, Real> recorder;
+};
+
+/// A folder for files, gone after the test.
+class RecorderFiles : public testing::Test {
+ protected:
+  RecorderFiles()
+      : folder_(testing::TempDir() + "broadside_" +
+                testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~RecorderFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// What an engine of C++11 prints that records what `script` says to the file `name`.
+  std::string run_engine(const std::string& engine, const std::string& name, const std::string& arguments,
+                         const std::string& script) const {
+    std::ofstream(path("script")) << script;
+    const std::string command =
+        engine + " " + path(name) + " " + arguments + " < " + path("script") + " > " + path("output");
+    [[maybe_unused]] const int status = std::system(command.c_str());
+    return text_of("output");
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST(TraceChecksum, IsCrc32c) {
+  const auto checksum_of = [](const std::string& text) {
+    trace::Checksum checksum;
+    checksum.add(reinterpret_cast<const unsigned char*>(text.data()), text.size());
+    return checksum.value();
+  };
+  EXPECT_EQ(checksum_of(""), 0u);
+  EXPECT_EQ(checksum_of("123456789"), 0xe3069283u);
+  // RFC 3720, appendix B.4: 32 bytes of zero, and of one.
+  EXPECT_EQ(checksum_of(std::string(32, '\0')), 0x8a9136aau);
+  EXPECT_EQ(checksum_of(std::string(32, '\xff')), 0x62a8ab43u);
+}
+
+TEST(TraceChecksum, DoesNotDependOnHowTheBytesArrive) {
+  const std::string text = "the bytes of a frame come in pieces of any size";
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(text.data());
+  trace::Checksum whole;
+  whole.add(bytes, text.size());
+  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+    trace::Checksum parts;
+    parts.add(bytes, cut);
+    parts.add(bytes + cut, text.size() - cut);
+    EXPECT_EQ(parts.value(), whole.value());
+  }
+}
+
+TEST(Recorder, WritesTheBytesThatTheFormatShows) {
+  Tape<2> tape;
+  tape.set(0, {0, 0, 1, 1});
+  tape.set(2, {2, 0.5F, 4, 3});
+  tape.frame();
+  tape.set(0, {0.25F, 0, 1.25F, 1});
+  tape.recorder.remove(2);
+  tape.frame();
+  EXPECT_EQ(hexadecimal(tape.bytes), documented_example());
+}
+
+TEST(Recorder, WritesDoublesAndThreeAxesAlike) {
+  Tape<3, double> tape;
+  EXPECT_EQ(tape.bytes.substr(12, 4), std::string("\x03\x08\0\0", 4));
+  tape.set(0, {0, 0, 0, 1, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame + 4 + 6 * 8);
+  EXPECT_EQ(hexadecimal(tape.bytes.substr(tape.bytes.size() - 12, 8)), "00 00 00 00 00 00 f0 3f ");
+}
+
+TEST(Recorder, StoresOnlyWhatChanged) {
+  Tape<2> tape;
+  tape.set(0, {0, 0, 1, 1});
+  tape.set(1, {0, 0, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame + 2 * flat_box);
+  EXPECT_EQ(tape.frame(), empty_frame) << "nothing was said";
+  tape.set(0, {0, 0, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame) << "nothing moved";
+  tape.set(0, {0, 0, 2, 2});
+  tape.set(0, {0, 0, 1, 1});
+  tape.recorder.remove(1);
+  tape.set(1, {0, 0, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame) << "all came back to where it was";
+  tape.set(1, {0, 0, 1, 2});
+  EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+  tape.recorder.remove(1);
+  EXPECT_EQ(tape.frame(), empty_frame + removal);
+  tape.recorder.remove(1);
+  tape.recorder.remove(77);
+  EXPECT_EQ(tape.frame(), empty_frame) << "was gone already";
+}
+
+TEST(Recorder, TellsMinusZeroFromZero) {
+  Tape<2> tape;
+  tape.set(0, {0, 0, 1, 1});
+  tape.frame();
+  tape.set(0, {-0.0F, 0, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+}
+
+TEST(Recorder, TakesTheAbsentBoxForARemoval) {
+  Tape<2> removed;
+  Tape<2> absent;
+  for (Tape<2>* tape : {&removed, &absent}) {
+    tape->set(0, {0, 0, 1, 1});
+    tape->frame();
+  }
+  removed.recorder.remove(0);
+  absent.set(0, {infinity, infinity, -infinity, -infinity});
+  EXPECT_EQ(removed.frame(), absent.frame());
+  EXPECT_EQ(removed.bytes, absent.bytes);
+}
+
+TEST(Recorder, WritesTheSameWhetherBoxesComeOneByOneOrAllAtOnce) {
+  Tape<2> one_by_one;
+  Tape<2> at_once;
+  one_by_one.set(1, {5, 5, 6, 6});
+  one_by_one.set(0, {0, 0, 1, 1});
+  at_once.set_boxes({0, 0, 1, 1, 5, 5, 6, 6});
+  EXPECT_EQ(one_by_one.frame(), at_once.frame());
+
+  one_by_one.recorder.resize(1);
+  at_once.set_boxes({0, 0, 1, 1});
+  EXPECT_EQ(one_by_one.frame(), at_once.frame());
+
+  one_by_one.recorder.resize(2);
+  one_by_one.recorder.resize(3);
+  one_by_one.set(0, {0, 0, 1, 3});
+  at_once.set_boxes(
+      {0, 0, 1, 3, infinity, infinity, -infinity, -infinity, infinity, infinity, -infinity, -infinity});
+  EXPECT_EQ(one_by_one.frame(), empty_frame + 2 * removal + flat_box);
+  at_once.frame();
+  EXPECT_EQ(one_by_one.bytes, at_once.bytes);
+}
+
+TEST(Recorder, KnowsThatASlotCutOffAndBroughtBackInOneFrameIsEmpty) {
+  Tape<2> tape;
+  tape.set_boxes({0, 0, 1, 1, 5, 5, 6, 6});
+  tape.frame();
+  tape.recorder.resize(0);
+  tape.recorder.resize(2);
+  tape.set(0, {0, 0, 1, 1});
+  EXPECT_EQ(tape.frame(), empty_frame + removal);
+}
+
+TEST(Recorder, RefusesWhatIsNoBoxAndGoesOn) {
+  const std::vector<std::pair<std::vector<float>, std::string>> wrong = {
+      {{nan, 0, 1, 1}, "nan"},
+      {{0, 0, 1, -nan}, "nan"},
+      {{0, 2, 1, 1}, "min (0.000000, 2.000000)"},
+      {{infinity, 0, -infinity, 1}, "max (-inf, 1.000000)"}};
+  for (const auto& [box, found] : wrong) {
+    Tape<2> tape;
+    tape.set(3, {0, 0, 1, 1});
+    tape.frame();
+    EXPECT_FALSE(tape.set(3, box));
+    EXPECT_FALSE(tape.set_boxes(box));
+    EXPECT_FALSE(tape.set(9, box));
+    EXPECT_EQ(tape.frame(), empty_frame) << "a refused box changes nothing, not even the number of slots";
+    EXPECT_TRUE(tape.set(3, {0, 0, 1, 2}));
+    EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+    EXPECT_THAT(tape.recorder.error(), AllOf(HasSubstr("slot 3"), HasSubstr(found), HasSubstr("min <= max")));
+    EXPECT_FALSE(tape.recorder.close());
+  }
+}
+
+TEST(Recorder, TakesInfiniteAndDegenerateBoxes) {
+  Tape<2> tape;
+  EXPECT_TRUE(tape.set(0, {-infinity, 0, infinity, 0}));
+  EXPECT_TRUE(tape.set(1, {infinity, infinity, infinity, infinity}));
+  EXPECT_TRUE(tape.set(2, {0.0F, 0, -0.0F, 0}));
+  EXPECT_EQ(tape.frame(), empty_frame + 3 * flat_box);
+  EXPECT_TRUE(tape.recorder.close());
+}
+
+TEST(Recorder, RefusesMoreSlotsThanTheFormatHas) {
+  Tape<2> tape;
+  const std::vector<float> box = {0, 0, 1, 1};
+  EXPECT_FALSE(tape.set(0xffffffff, box));
+  EXPECT_THAT(tape.recorder.error(), HasSubstr("slot 4294967295"));
+  Tape<2> other;
+  EXPECT_FALSE(other.recorder.resize(std::size_t{1} << 32));
+  EXPECT_THAT(other.recorder.error(), HasSubstr("4294967296 slots"));
+}
+
+TEST(Recorder, SaysThatNothingIsOpen) {
+  Recorder2 recorder;
+  EXPECT_FALSE(recorder.end_frame());
+  EXPECT_THAT(recorder.error(), AllOf(HasSubstr("end_frame()"), HasSubstr("open()")));
+}
+
+TEST(Recorder, WritesNothingMoreAfterAFailedWrite) {
+  std::size_t taken = 0;
+  std::size_t calls = 0;
+  Recorder2 recorder;
+  recorder.open_with([&](const void*, std::size_t count) {
+    taken += count;
+    return ++calls < 2;
+  });
+  EXPECT_FALSE(recorder.end_frame());
+  EXPECT_FALSE(recorder.end_frame());
+  EXPECT_FALSE(recorder.close());
+  EXPECT_EQ(calls, 2u);
+  EXPECT_THAT(recorder.error(), HasSubstr("cannot be written"));
+}
+
+TEST(Recorder, HandsOnLongFramesInPieces) {
+  std::vector<float> boxes(4 * 20000, 1);
+  std::size_t most = 0;
+  std::size_t total = 0;
+  Recorder2 recorder;
+  recorder.open_with([&](const void*, std::size_t count) {
+    most = std::max(most, count);
+    total += count;
+    return true;
+  });
+  recorder.set_boxes(boxes.data(), boxes.size() / 4);
+  recorder.end_frame();
+  EXPECT_EQ(total, trace::header_bytes + empty_frame + 20000 * flat_box);
+  EXPECT_LE(most, std::size_t{1} << 16);
+}
+
+TEST_F(RecorderFiles, HoldEachFrameAsSoonAsItHasEnded) {
+  Recorder2 recorder;
+  ASSERT_TRUE(recorder.open(path("a.btrace")));
+  EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes);
+  recorder.resize(1);
+  EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes) << "a frame under way is not written";
+  ASSERT_TRUE(recorder.end_frame());
+  EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes + empty_frame + removal);
+  recorder.resize(2);
+  EXPECT_TRUE(recorder.close());
+  EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes + empty_frame + removal)
+      << "a frame that was not ended is not written";
+}
+
+TEST_F(RecorderFiles, StartAnewWithEachOpen) {
+  Recorder2 recorder;
+  for (const char* name : {"a.btrace", "b.btrace"}) {
+    const std::vector<float> box = {0, 0, 1, 1};
+    recorder.set(0, box.data() + 2, box.data());
+    ASSERT_TRUE(recorder.open(path(name)));
+    EXPECT_EQ(recorder.error(), "");
+    recorder.set(0, box.data(), box.data() + 2);
+    recorder.end_frame();
+  }
+  recorder.close();
+  EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes + empty_frame + flat_box);
+  EXPECT_EQ(text_of("a.btrace"), text_of("b.btrace"));
+}
+
+TEST_F(RecorderFiles, ThatCannotBeWrittenAreNamedWithTheReason) {
+  Recorder2 recorder;
+  EXPECT_FALSE(recorder.open(path("no/such/folder.btrace")));
+  EXPECT_THAT(recorder.error(), AllOf(HasSubstr("no/such/folder.btrace"), HasSubstr("No such file")));
+  EXPECT_FALSE(recorder.end_frame());
+  EXPECT_THAT(recorder.error(), HasSubstr("No such file")) << "the first failure is the one to know";
+  EXPECT_FALSE(recorder.open("/dev/full"));
+  EXPECT_THAT(recorder.error(), AllOf(HasSubstr("/dev/full"), HasSubstr("No space left")));
+}
+
+TEST_F(RecorderFiles, FromAnEngineOfCxx11AreTheSameWhateverItIsCompiledWith) {
+  const std::string script =
+      "set 0 0 0 1 1\nset 2 2 0.5 4 3\nend_frame\nset 0 0.25 0 1.25 1\nremove 2\nend_frame\n";
+  for (const char* engine : {PLAIN_ENGINE, FAST_ENGINE}) {
+    EXPECT_EQ(run_engine(engine, "a.btrace", "2 4", script), "");
+    EXPECT_EQ(hexadecimal(text_of("a.btrace")), documented_example()) << engine;
+    EXPECT_THAT(run_engine(engine, "b.btrace", "2 8", "set 7 nan 0 1 1\n"),
+                HasSubstr("slot 7 is given min (nan"))
+        << "-ffast-math must not let a NaN through";
+    EXPECT_EQ(run_engine(engine, "b.btrace", "3 8", "set 7 -inf -inf -inf inf inf inf\nend_frame\n"), "");
+    EXPECT_THAT(run_engine(engine, "b.btrace", "3 4", "set 7 0 0 inf 1 1 -inf\n"), HasSubstr("slot 7"));
+  }
+}
+
+}  // namespace
+}  // namespace broadside
