@@ -111,6 +111,7 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   const lab::Catalogue catalogue;
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
+  for (const std::string& warning : comparison.warnings) fmt::print(stderr, "broadside: {}\n", warning);
   fmt::print("{}", lab::summary_of(comparison));
   if (comparison.stopped) {
     if (!arguments.json.empty())

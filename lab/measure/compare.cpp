@@ -89,6 +89,8 @@ class Runner {
     if (scenes_.back()) return;
     try {
       scenes_.back() = find_scene(request.scene);
+      if (const std::string& warning = scenes_.back()->scene.warning; !warning.empty())
+        comparison_.warnings.push_back(warning);
     } catch (const std::exception& thrown) {
       if (request.required) throw;
       comparison_.not_compared.push_back({request, thrown.what()});

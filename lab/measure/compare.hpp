@@ -34,6 +34,7 @@ struct NotCompared {
 struct Comparison {
   std::vector<CaseResult> cases;
   std::vector<NotCompared> not_compared;
+  std::vector<std::string> warnings;  ///< of files that were read in part, each once
   bool stopped = false;  ///< by the watch; the case that was going on is left out
 
   /// Whether nothing broke the law.

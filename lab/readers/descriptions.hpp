@@ -5,6 +5,7 @@
 
 namespace broadside::lab::readers {
 
+Format trace();
 Format csv();
 Format broadmark();
 Format mesh();

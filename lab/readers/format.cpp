@@ -75,6 +75,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
+      readers::trace(),
       readers::csv(),
       readers::broadmark(),
       readers::mesh(),
@@ -127,7 +128,8 @@ Scene file_scene(const std::filesystem::path& path) {
               .source = path.string(),
               .kind = SceneKind::file,
               .fixed_count = true,
-              .fixed_seed = true};
+              .fixed_seed = true,
+              .warning = std::move(content.warning)};
   describe<2>(std::move(content.in_2d), scene.boxes_2d, scene.history_2d);
   describe<3>(std::move(content.in_3d), scene.boxes_3d, scene.history_3d);
   return scene;

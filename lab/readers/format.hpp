@@ -24,6 +24,7 @@ class FileError : public std::runtime_error {
 struct FileContent {
   std::optional<History<2>> in_2d;
   std::optional<History<3>> in_3d;
+  std::string warning{};  ///< what the reader had to leave out of a damaged file, and where; empty otherwise
 };
 
 /// A file format, described.

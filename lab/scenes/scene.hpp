@@ -77,6 +77,8 @@ struct Scene {
   std::string
       missing{};  ///< the package whose lack at configure time left this scene out; empty if it is there
 
+  std::string warning{};  ///< what the user should know of a file that was read in part; empty otherwise
+
   bool has_dimension(int dimension) const {
     return dimension == 2 ? boxes_2d || history_2d : dimension == 3 && (boxes_3d || history_3d);
   }

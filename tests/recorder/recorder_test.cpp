@@ -3,16 +3,20 @@
 #include "broadside/recorder.hpp"
 
 #include <cstdint>
-#include <filesystem>
+#include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "lab/readers/format.hpp"
+#include "lab/scenes/motion.hpp"
+#include "tests/unit/files.hpp"
 
 namespace broadside {
 namespace {
@@ -83,36 +87,16 @@ struct Tape {
   Recorder<D, Real> recorder;
 };
 
-/// A folder for files, gone after the test.
-class RecorderFiles : public testing::Test {
+class RecorderFiles : public lab::Files {
  protected:
-  RecorderFiles()
-      : folder_(testing::TempDir() + "broadside_" +
-                testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~RecorderFiles() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   /// What an engine of C++11 prints that records what `script` says to the file `name`.
   std::string run_engine(const std::string& engine, const std::string& name, const std::string& arguments,
                          const std::string& script) const {
-    std::ofstream(path("script")) << script;
-    const std::string command =
-        engine + " " + path(name) + " " + arguments + " < " + path("script") + " > " + path("output");
+    const std::string command = engine + " " + path(name).string() + " " + arguments + " < " +
+                                put("script", script).string() + " > " + path("output").string();
     [[maybe_unused]] const int status = std::system(command.c_str());
     return text_of("output");
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 TEST(TraceChecksum, IsCrc32c) {
@@ -314,7 +298,7 @@ TEST(Recorder, HandsOnLongFramesInPieces) {
 
 TEST_F(RecorderFiles, HoldEachFrameAsSoonAsItHasEnded) {
   Recorder2 recorder;
-  ASSERT_TRUE(recorder.open(path("a.btrace")));
+  ASSERT_TRUE(recorder.open(path("a.btrace").string()));
   EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes);
   recorder.resize(1);
   EXPECT_EQ(text_of("a.btrace").size(), trace::header_bytes) << "a frame under way is not written";
@@ -331,7 +315,7 @@ TEST_F(RecorderFiles, StartAnewWithEachOpen) {
   for (const char* name : {"a.btrace", "b.btrace"}) {
     const std::vector<float> box = {0, 0, 1, 1};
     recorder.set(0, box.data() + 2, box.data());
-    ASSERT_TRUE(recorder.open(path(name)));
+    ASSERT_TRUE(recorder.open(path(name).string()));
     EXPECT_EQ(recorder.error(), "");
     recorder.set(0, box.data(), box.data() + 2);
     recorder.end_frame();
@@ -343,7 +327,7 @@ TEST_F(RecorderFiles, StartAnewWithEachOpen) {
 
 TEST_F(RecorderFiles, ThatCannotBeWrittenAreNamedWithTheReason) {
   Recorder2 recorder;
-  EXPECT_FALSE(recorder.open(path("no/such/folder.btrace")));
+  EXPECT_FALSE(recorder.open(path("no/such/folder.btrace").string()));
   EXPECT_THAT(recorder.error(), AllOf(HasSubstr("no/such/folder.btrace"), HasSubstr("No such file")));
   EXPECT_FALSE(recorder.end_frame());
   EXPECT_THAT(recorder.error(), HasSubstr("No such file")) << "the first failure is the one to know";
@@ -362,6 +346,44 @@ TEST_F(RecorderFiles, FromAnEngineOfCxx11AreTheSameWhateverItIsCompiledWith) {
         << "-ffast-math must not let a NaN through";
     EXPECT_EQ(run_engine(engine, "b.btrace", "3 8", "set 7 -inf -inf -inf inf inf inf\nend_frame\n"), "");
     EXPECT_THAT(run_engine(engine, "b.btrace", "3 4", "set 7 0 0 inf 1 1 -inf\n"), HasSubstr("slot 7"));
+  }
+}
+
+/// A history as a script for the engine. The hexadecimal form of a float says all its bits.
+template <int D>
+std::string script_of(const lab::History<D>& history) {
+  std::string script;
+  const auto set = [&](std::uint32_t slot, const Box<D>& box) {
+    script += fmt::format("set {} {:a} {:a}\n", slot, fmt::join(box.min, " "), fmt::join(box.max, " "));
+  };
+  script += fmt::format("resize {}\n", history.boxes.size());
+  for (std::uint32_t slot = 0; slot < history.boxes.size(); ++slot) set(slot, history.boxes[slot]);
+  script += "end_frame\n";
+  for (const lab::Step<D>& step : history.steps) {
+    script += fmt::format("resize {}\n", step.size);
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      const std::uint32_t slot = index(step.changed[i]);
+      if (is_absent(step.boxes[i]))
+        script += fmt::format("remove {}\n", slot);
+      else
+        set(slot, step.boxes[i]);
+    }
+    script += "end_frame\n";
+  }
+  return script;
+}
+
+TEST_F(RecorderFiles, FromAnEngineAreThoseTheLabWritesByteForByte) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto flat = lab::random_history<2>({.boxes = 30, .frames = 20, .seed = seed});
+    lab::write_scene(flat, path("lab.btrace"));
+    EXPECT_EQ(run_engine(PLAIN_ENGINE, "engine.btrace", "2 4", script_of(flat)), "");
+    EXPECT_EQ(text_of("engine.btrace"), text_of("lab.btrace"));
+
+    const auto solid = lab::random_history<3>({.boxes = 30, .frames = 20, .seed = seed});
+    lab::write_scene(solid, path("lab.btrace"));
+    EXPECT_EQ(run_engine(FAST_ENGINE, "engine.btrace", "3 4", script_of(solid)), "");
+    EXPECT_EQ(text_of("engine.btrace"), text_of("lab.btrace"));
   }
 }
 

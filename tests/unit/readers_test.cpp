@@ -15,6 +15,7 @@
 
 #include "broadside/error.hpp"
 
+#include "files.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/readers/write_file.hpp"
 #include "lab/scenes/descriptions.hpp"
@@ -27,47 +28,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-
-/// Tests with a folder of their own.
-class Files : public testing::Test {
- protected:
-  Files()
-      : folder_(testing::TempDir() + "broadside_" +
-                testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Files() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-
-  std::filesystem::path put(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  std::size_t count_files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
-  }
-
-  /// What read_file says of a file that it refuses.
-  std::string refusal(const std::filesystem::path& file) const {
-    try {
-      read_file(file);
-    } catch (const FileError& error) {
-      return error.what();
-    }
-    return "was read";
-  }
-
- private:
-  std::filesystem::path folder_;
-};
 
 using Csv = Files;
 using Broadmark = Files;
@@ -304,7 +264,7 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
     FAIL() << "wrote a format that is only read";
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("extension '.obj'"),
-                                    HasSubstr("expected one of: csv (.csv), broadmark (.aabbs)")));
+                                    HasSubstr("expected one of: trace (.btrace), csv (.csv), ")));
   }
 }
 

@@ -1,0 +1,105 @@
+// Traces (docs/trace-format.md), read frame by frame: what a Recorder wrote in somebody's engine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/recorder.hpp"
+
+namespace broadside::lab {
+
+/// Reads a trace frame by frame. Memory: that of one frame's changes, however long the trace, and never more
+/// than the bytes that are there justify, whatever they claim.
+///
+/// What is wrong is refused with a FileError (lab/readers/format.hpp) that names the frame and the byte. One
+/// thread at a time.
+class TraceReader {
+ public:
+  /// Opens a trace and reads its header.
+  explicit TraceReader(const std::filesystem::path& path);
+
+  /// Reads the header of a trace from a stream, which must outlive the reader; `name` is what errors call it.
+  TraceReader(std::istream& stream, std::string name);
+
+  TraceReader(const TraceReader&) = delete;
+  TraceReader& operator=(const TraceReader&) = delete;
+
+  int dimension() const noexcept { return dimension_; }
+
+  /// 4 where the trace holds floats, 8 where it holds doubles.
+  int coordinate_bytes() const noexcept { return coordinate_bytes_; }
+
+  /// Whether there was another whole frame; what follows is then of that one. False for good at the end.
+  bool next_frame();
+
+  /// How many frames have been read.
+  std::uint64_t frames() const noexcept { return frames_; }
+
+  /// The number of slots, which is the size of the array, from this frame on.
+  std::uint32_t slots() const noexcept { return slots_; }
+
+  /// The slots named in this frame, ascending; every one that is new is among them.
+  std::span<const BoxId> changed() const noexcept { return changed_; }
+
+  /// The new box in changed()[i], exactly as in the file: the minima on all axes, then the maxima; those of
+  /// the absent box where the slot became empty.
+  std::span<const double> bounds(std::size_t i) const noexcept {
+    const auto axes = static_cast<std::size_t>(dimension_);
+    return std::span(bounds_).subspan(2 * axes * i, 2 * axes);
+  }
+
+  /// The same as a box of floats, for D = dimension(); doubles between two floats are rounded outward.
+  template <int D>
+  Box<D> box(std::size_t i) const noexcept;
+
+  /// After the last frame: where the trace was cut off, if it was; empty otherwise.
+  const std::string& warning() const noexcept { return warning_; }
+
+ private:
+  /// What a frame's header says, and where the frame is.
+  struct FrameHeader {
+    std::uint64_t byte;
+    std::uint32_t slots;
+    std::uint32_t removed;
+    std::uint32_t set;
+  };
+
+  void read_header();
+  bool read_frame_header(FrameHeader& header);
+  void take(const FrameHeader& header);
+  void take_box(std::uint32_t slot, std::size_t at);
+
+  bool read(std::uint64_t count);
+  std::uint32_t word(std::size_t at) const noexcept;
+  double coordinate(std::size_t at) const noexcept;
+  void check_sum(std::size_t count);
+  bool cut_off(std::uint64_t frame_byte, const std::string& found);
+  [[noreturn]] void refuse(std::uint64_t byte, const std::string& found, const std::string& expected) const;
+
+  std::ifstream file_;
+  std::istream& stream_;
+  std::string name_;
+  int dimension_ = 0;
+  int coordinate_bytes_ = 0;
+
+  std::uint64_t frames_ = 0;
+  std::uint32_t slots_ = 0;
+  std::vector<BoxId> changed_;
+  std::vector<double> bounds_;  // of each changed slot, one after the other
+  std::string warning_;
+  bool ended_ = false;
+
+  trace::Checksum checksum_;
+  std::vector<unsigned char> bytes_;  // those read last ...
+  std::uint64_t begin_ = 0;           // ... and where they begin in the file
+};
+
+}  // namespace broadside::lab

@@ -1,0 +1,60 @@
+// A folder of its own for each test that reads and writes files.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "lab/readers/format.hpp"
+
+namespace broadside::lab {
+
+/// Tests with a folder of their own.
+class Files : public testing::Test {
+ protected:
+  Files() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    // Tests of one name run side by side: in two suites, or in two builds.
+    folder_ = testing::TempDir() + "broadside_" + test.test_suite_name() + "_" + test.name() + "_" +
+              std::to_string(getpid());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~Files() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+  std::filesystem::path put(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::size_t count_files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+  }
+
+  /// What read_file says of a file that it refuses.
+  std::string refusal(const std::filesystem::path& file) const {
+    try {
+      read_file(file);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "was read";
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace broadside::lab
