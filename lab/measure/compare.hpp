@@ -35,7 +35,7 @@ struct Comparison {
   std::vector<CaseResult> cases;
   std::vector<NotCompared> not_compared;
   std::vector<std::string> warnings;  ///< of files that were read in part, each once
-  bool stopped = false;  ///< by the watch; the case that was going on is left out
+  bool stopped = false;               ///< by the watch; the case that was going on is left out
 
   /// Whether nothing broke the law.
   bool all_verified() const;

@@ -89,6 +89,10 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
               IsEmpty());
   EXPECT_THAT(breaches("lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
   EXPECT_THAT(
+      breaches("examples/record_box2d/main.cpp",
+               "#include <box2d/box2d.h>\n#include <broadside/recorder.hpp>\n#include \"game.hpp\"\n"),
+      IsEmpty());
+  EXPECT_THAT(
       breaches("cli/main.cpp", "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
       IsEmpty());
 }
@@ -120,6 +124,8 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"lab/readers/mesh.cpp", "<box2d/box2d.h>"},
       {"cli/main.cpp", "\"core/input_check.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
+      {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},
+      {"examples/record_box2d/main.cpp", "<broadside/broadside.hpp>"},
       {"tests/unit/cli_test.cpp", "\"cli/compare.hpp\""},
       {"tests/unit/engine_test.cpp", "<box2d/box2d.h>"},
   };
