@@ -88,7 +88,7 @@ Exit run() {
 
   lab::Columns formats("<<<<");
   for (const lab::Format& format : lab::formats()) {
-    const bool written = format.write_2d || format.write_3d;
+    const bool written = bool(format.create);
     formats.add({format.name, written ? "read, written" : "read",
                  fmt::format("{}", fmt::join(format.extensions, " ")),
                  format.missing.empty() ? format.summary : "not there: " + format.missing});

@@ -7,8 +7,8 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <limits>
+#include <memory>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -55,18 +55,18 @@ struct Counts {
   std::uint32_t steps;
 };
 
-Counts read_counts(std::ifstream& file, const std::filesystem::path& path) {
-  const std::uintmax_t size = std::filesystem::file_size(path);
-  std::array<char, header_bytes> header;
-  if (!file.read(header.data(), header.size())) {
+Counts read_counts(Input& input) {
+  const std::string_view bytes = input.bytes();
+  const std::uintmax_t size = bytes.size();
+  if (size < header_bytes) {
     throw FileError(
-        fmt::format("{}: has {} bytes; expected a header of {} bytes", path.string(), size, header_bytes));
+        fmt::format("{}: has {} bytes; expected a header of {} bytes", input.name(), size, header_bytes));
   }
-  const Counts counts = {read_word(&header[2 * name_bytes]), read_word(&header[2 * name_bytes + 4])};
+  const Counts counts = {read_word(&bytes[2 * name_bytes]), read_word(&bytes[2 * name_bytes + 4])};
   constexpr std::uint32_t most = std::numeric_limits<std::int32_t>::max();
   if (counts.boxes > most || counts.steps > most) {
     throw FileError(fmt::format("{}: claims {} boxes and {} steps; expected neither to be negative",
-                                path.string(), static_cast<std::int32_t>(counts.boxes),
+                                input.name(), static_cast<std::int32_t>(counts.boxes),
                                 static_cast<std::int32_t>(counts.steps)));
   }
   const std::uintmax_t bounds = std::uintmax_t{counts.boxes} * (std::uintmax_t{counts.steps} + 1);
@@ -75,52 +75,40 @@ Counts read_counts(std::ifstream& file, const std::filesystem::path& path) {
   if (rest % bounds_bytes != 0 || rest / bounds_bytes != bounds) {
     throw FileError(fmt::format(
         "{}: has {} bytes and claims {} boxes and {} steps; expected {} + {} x boxes x (steps + 1) bytes",
-        path.string(), size, counts.boxes, counts.steps, header_bytes, bounds_bytes));
+        input.name(), size, counts.boxes, counts.steps, header_bytes, bounds_bytes));
   }
   // Without boxes the size bounds no number of steps.
   return {counts.boxes, counts.boxes == 0 ? 0 : counts.steps};
 }
 
-std::vector<Box3> read_frame(std::ifstream& file, const std::filesystem::path& path, std::size_t count,
-                             std::size_t frame) {
-  std::string bytes(count * bounds_bytes, '\0');
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    throw FileError(fmt::format("{}: ends within frame {}; expected {} boxes", path.string(), frame, count));
+std::vector<Box3> read_frame(Input& input, std::size_t count, std::size_t frame) {
+  const std::size_t begin = header_bytes + frame * count * bounds_bytes;
   std::vector<Box3> boxes(count);
   for (std::size_t i = 0; i < count; ++i) {
-    boxes[i] = read_bounds(&bytes[i * bounds_bytes]);
+    boxes[i] = read_bounds(&input.bytes()[begin + i * bounds_bytes]);
     if (is_present(boxes[i])) continue;
     throw FileError(
         fmt::format("{}: frame {}, box {} has min ({}) and max ({}); expected numbers with min <= max",
-                    path.string(), frame, i, fmt::join(boxes[i].min, ", "), fmt::join(boxes[i].max, ", ")));
+                    input.name(), frame, i, fmt::join(boxes[i].min, ", "), fmt::join(boxes[i].max, ", ")));
   }
+  input.passed(begin + count * bounds_bytes);
   return boxes;
 }
 
-bool is_flat(const Box3& box) { return box.min[2] == 0 && box.max[2] == 0; }
-
-Box2 without_z(const Box3& box) { return {{box.min[0], box.min[1]}, {box.max[0], box.max[1]}}; }
-
-/// The same history in 2D, if every box lies in the plane z = 0, as when a 2D history was written.
-std::optional<History<2>> flattened(const History<3>& history) {
-  History<2> flat;
-  if (!std::ranges::all_of(history.boxes, is_flat)) return std::nullopt;
-  std::ranges::transform(history.boxes, std::back_inserter(flat.boxes), without_z);
-  for (const Step<3>& step : history.steps) {
-    if (!std::ranges::all_of(step.boxes, is_flat)) return std::nullopt;
-    flat.steps.push_back({step.size, step.changed, {}});
-    std::ranges::transform(step.boxes, std::back_inserter(flat.steps.back().boxes), without_z);
-  }
-  return flat;
+/// Whether every box lies in the plane z = 0, as when a 2D history was written.
+bool is_flat(const History<3>& history) {
+  const auto flat = [](const Box3& box) { return box.min[2] == 0 && box.max[2] == 0; };
+  return !history.boxes.empty() && std::ranges::all_of(history.boxes, flat) &&
+         std::ranges::all_of(history.steps,
+                             [&](const Step<3>& step) { return std::ranges::all_of(step.boxes, flat); });
 }
 
-FileContent read(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const Counts counts = read_counts(file, path);
-  History<3> history{read_frame(file, path, counts.boxes, 0), {}};
+AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+  const Counts counts = read_counts(*input);
+  History<3> history{read_frame(*input, counts.boxes, 0), {}};
   std::vector<Box3> before = history.boxes;
   for (std::uint32_t frame = 1; frame <= counts.steps; ++frame) {
-    std::vector<Box3> now = read_frame(file, path, counts.boxes, frame);
+    std::vector<Box3> now = read_frame(*input, counts.boxes, frame);
     Step<3> step{now.size(), {}, {}};
     for (std::size_t i = 0; i < now.size(); ++i) {
       if (now[i] == before[i]) continue;
@@ -130,8 +118,9 @@ FileContent read(const std::filesystem::path& path) {
     history.steps.push_back(std::move(step));
     before = std::move(now);
   }
-  std::optional<History<2>> flat = flattened(history);
-  return {std::move(flat), std::move(history)};
+  const bool flat = options.dimension != 3 && is_flat(history);
+  AnyFrameReader frames = std::make_unique<HistoryReader<3, float>>(std::move(history));
+  return flat ? flattened(std::move(frames)) : std::move(frames);
 }
 
 /// Calls `visit` with the boxes of each frame.
@@ -186,6 +175,28 @@ void write(const History<D>& history, std::ostream& stream) {
   });
 }
 
+/// The header tells how many frames there are: all are kept until the last one is known.
+template <int D>
+class BroadmarkWriter final : public FrameWriter<D, float> {
+ public:
+  explicit BroadmarkWriter(std::ostream& stream) : stream_(stream) {}
+
+  void first(std::span<const Box<D>> boxes) override { history_.boxes.assign(boxes.begin(), boxes.end()); }
+  void next(const Step<D>& step) override { history_.steps.push_back(step); }
+  void finish() override { write(history_, stream_); }
+
+ private:
+  std::ostream& stream_;
+  History<D> history_;
+};
+
+AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+  if (precision != Precision::float32)
+    throw FileError("boxes of doubles; expected floats, which is what an .aabbs file holds");
+  if (dimension == 2) return std::make_unique<BroadmarkWriter<2>>(stream);
+  return std::make_unique<BroadmarkWriter<3>>(stream);
+}
+
 }  // namespace
 
 Format broadmark() {
@@ -194,9 +205,8 @@ Format broadmark() {
       .summary = "Broadmark's frames of boxes",
       .extensions = {".aabbs"},
       .recognises = [](std::string_view, std::string_view extension) { return extension == ".aabbs"; },
-      .read = read,
-      .write_2d = write<2>,
-      .write_3d = write<3>,
+      .open = open,
+      .create = create,
   };
 }
 

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <ostream>
 #include <utility>
 
@@ -36,11 +35,7 @@ std::string header(bool has_frames) {
 /// A file's lines, one after the other.
 class Lines {
  public:
-  explicit Lines(const std::filesystem::path& path) : path_(path) {
-    std::ifstream file(path, std::ios::binary);
-    text_.assign(std::istreambuf_iterator<char>(file), {});
-    if (file.bad() || !file.is_open()) throw FileError(path.string() + ": cannot be read");
-    rest_ = text_;
+  explicit Lines(Input& input) : input_(input), rest_(input.bytes()) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
     // Editors leave empty lines at the end; they say nothing.
@@ -61,19 +56,18 @@ class Lines {
   std::string_view line() const noexcept { return line_; }
 
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
-    throw FileError(fmt::format("{}:{}: {}; expected {}", path_.string(), number_, found, expected));
+    throw FileError(fmt::format("{}:{}: {}; expected {}", input_.name(), number_, found, expected));
   }
 
  private:
-  std::filesystem::path path_;
-  std::string text_;
+  Input& input_;
   std::string_view rest_;
   std::string_view line_;
   std::size_t number_ = 0;
 };
 
 /// One line, split at its commas.
-template <int D>
+template <int D, typename Real>
 class Row {
  public:
   Row(const Lines& lines, bool has_frames) : lines_(lines), first_(has_frames ? 0 : 2) {
@@ -101,11 +95,11 @@ class Row {
     return value;
   }
 
-  Box<D> box() const {
+  Box<D, Real> box() const {
     if (std::ranges::all_of(std::span(fields_).subspan(2),
                             [](std::string_view field) { return field.empty(); }))
-      return absent_box<D>();
-    Box<D> box;
+      return absent_box<D, Real>();
+    Box<D, Real> box;
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] = number(2 + axis);
       box.max[axis] = number(2 + D + axis);
@@ -127,10 +121,11 @@ class Row {
     return error == std::errc() && end == text.data() + text.size();
   }
 
-  float number(std::size_t column) const {
-    float value = 0;
+  Real number(std::size_t column) const {
+    Real value = 0;
     // A NaN is no number, and nothing equals it.
-    if (!parse(fields_[column], value) || value != value) refuse(column, "a number that a float can hold");
+    if (!parse(fields_[column], value) || value != value)
+      refuse(column, fmt::format("a number that a {} can hold", name(precision_of<Real>)));
     return value;
   }
 
@@ -139,20 +134,20 @@ class Row {
   std::array<std::string_view, 2 + 2 * D> fields_;
 };
 
-template <int D>
-History<D> read_boxes(Lines& lines) {
-  History<D> history;
-  while (lines.next()) history.boxes.push_back(Row<D>(lines, false).box());
+template <int D, typename Real>
+History<D, Real> read_boxes(Lines& lines) {
+  History<D, Real> history;
+  while (lines.next()) history.boxes.push_back(Row<D, Real>(lines, false).box());
   return history;
 }
 
-template <int D>
-History<D> read_frames(Lines& lines) {
-  History<D> history;
+template <int D, typename Real>
+History<D, Real> read_frames(Lines& lines) {
+  History<D, Real> history;
   std::vector<std::size_t> last_change;  // for each box, the frame in which it was last listed
   std::size_t frame = 0;
   while (lines.next()) {
-    const Row<D> row(lines, true);
+    const Row<D, Real> row(lines, true);
     const std::size_t next = row.whole_number(0);
     if (next == frame + 1) {
       history.steps.push_back({last_change.size(), {}, {}});
@@ -175,7 +170,7 @@ History<D> read_frames(Lines& lines) {
       history.boxes.push_back(row.box());
       continue;
     }
-    Step<D>& step = history.steps.back();
+    Step<D, Real>& step = history.steps.back();
     step.size = last_change.size();
     step.changed.push_back(BoxId(place));
     step.boxes.push_back(row.box());
@@ -183,29 +178,36 @@ History<D> read_frames(Lines& lines) {
   return history;
 }
 
-FileContent read(const std::filesystem::path& path) {
-  Lines lines(path);
+AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+  Lines lines(*input);
   const std::string expected =
       fmt::format("'{}' or '{}', with or without 'frame,box,' before it", header<2>(false), header<3>(false));
   if (!lines.next()) lines.refuse("the file is empty", expected);
-  if (lines.line() == header<2>(false)) return {read_boxes<2>(lines), {}};
-  if (lines.line() == header<3>(false)) return {{}, read_boxes<3>(lines)};
-  if (lines.line() == header<2>(true)) return {read_frames<2>(lines), {}};
-  if (lines.line() == header<3>(true)) return {{}, read_frames<3>(lines)};
+  for (const bool has_frames : {false, true}) {
+    for (const int dimension : {2, 3}) {
+      if (lines.line() != (dimension == 2 ? header<2>(has_frames) : header<3>(has_frames))) continue;
+      const Precision precision = options.precision.value_or(Precision::float64);
+      return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameReader {
+        return std::make_unique<HistoryReader<D, Real>>(has_frames ? read_frames<D, Real>(lines)
+                                                                   : read_boxes<D, Real>(lines));
+      });
+    }
+  }
   lines.refuse(fmt::format("'{}'", lines.line().substr(0, 100)), expected);
 }
 
-void append(std::string& text, float number) {
+template <typename Real>
+void append(std::string& text, Real number) {
   std::array<char, 32> digits;
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
   text.append(digits.data(), end);
 }
 
-template <int D>
-void append_row(std::string& text, std::size_t frame, BoxId id, const Box<D>& box) {
+template <int D, typename Real>
+void append_row(std::string& text, std::size_t frame, BoxId id, const Box<D, Real>& box) {
   text += fmt::format("{},{}", frame, index(id));
-  for (const std::array<float, D>& corner : {box.min, box.max}) {
-    for (const float coordinate : corner) {
+  for (const std::array<Real, D>& corner : {box.min, box.max}) {
+    for (const Real coordinate : corner) {
       text += ',';
       if (!is_absent(box)) append(text, coordinate);
     }
@@ -215,20 +217,21 @@ void append_row(std::string& text, std::size_t frame, BoxId id, const Box<D>& bo
 
 /// What a file must list so that its boxes become those of `step`: the boxes that change, those that go
 /// because the array ends before them, and those that come absent; sorted.
-template <int D>
-std::vector<std::pair<BoxId, Box<D>>> rows_of(const Step<D>& step, std::span<const Box<D>> before,
-                                              std::size_t places) {
-  std::vector<std::pair<BoxId, Box<D>>> rows;
+template <int D, typename Real>
+std::vector<std::pair<BoxId, Box<D, Real>>> rows_of(const Step<D, Real>& step,
+                                                    std::span<const Box<D, Real>> before,
+                                                    std::size_t places) {
+  std::vector<std::pair<BoxId, Box<D, Real>>> rows;
   for (std::size_t i = step.size; i < before.size(); ++i) {
-    if (!is_absent(before[i])) rows.emplace_back(BoxId(i), absent_box<D>());
+    if (!is_absent(before[i])) rows.emplace_back(BoxId(i), absent_box<D, Real>());
   }
-  for (std::size_t i = places; i < step.size; ++i) rows.emplace_back(BoxId(i), absent_box<D>());
+  for (std::size_t i = places; i < step.size; ++i) rows.emplace_back(BoxId(i), absent_box<D, Real>());
   for (std::size_t i = 0; i < step.changed.size(); ++i) {
     if (index(step.changed[i]) < step.size) rows.emplace_back(step.changed[i], step.boxes[i]);
   }
   // Of two rows for a box the later one, from the list of changes, holds.
   std::ranges::reverse(rows);
-  std::ranges::stable_sort(rows, {}, &std::pair<BoxId, Box<D>>::first);
+  std::ranges::stable_sort(rows, {}, &std::pair<BoxId, Box<D, Real>>::first);
   // Not std::ranges' version: clang 14 cannot compile what it returns.
   rows.erase(
       std::unique(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
@@ -236,23 +239,40 @@ std::vector<std::pair<BoxId, Box<D>>> rows_of(const Step<D>& step, std::span<con
   return rows;
 }
 
-template <int D>
-void write(const History<D>& history, std::ostream& stream) {
-  std::string text = header<D>(true) + '\n';
-  for (std::size_t i = 0; i < history.boxes.size(); ++i) append_row(text, 0, BoxId(i), history.boxes[i]);
-  stream << text;
+template <int D, typename Real>
+class CsvWriter final : public FrameWriter<D, Real> {
+ public:
+  explicit CsvWriter(std::ostream& stream) : stream_(stream) {}
 
-  std::vector<Box<D>> boxes = history.boxes;
-  std::size_t places = boxes.size();  // in the file, where the array never becomes shorter
-  for (std::size_t frame = 1; frame <= history.steps.size(); ++frame) {
-    const Step<D>& step = history.steps[frame - 1];
-    text.clear();
-    for (const auto& [id, box] : rows_of<D>(step, boxes, places)) append_row(text, frame, id, box);
-    if (text.empty()) text = fmt::format("{}{:,>{}}\n", frame, "", columns<D>().size() - 1);
-    stream << text;
-    lab::apply(step, boxes);
-    places = std::max(places, boxes.size());
+  void first(std::span<const Box<D, Real>> boxes) override {
+    boxes_.assign(boxes.begin(), boxes.end());
+    places_ = boxes.size();
+    std::string text = header<D>(true) + '\n';
+    for (std::size_t i = 0; i < boxes.size(); ++i) append_row(text, 0, BoxId(i), boxes[i]);
+    stream_ << text;
   }
+
+  void next(const Step<D, Real>& step) override {
+    ++frame_;
+    std::string text;
+    for (const auto& [id, box] : rows_of<D, Real>(step, boxes_, places_)) append_row(text, frame_, id, box);
+    if (text.empty()) text = fmt::format("{}{:,>{}}\n", frame_, "", columns<D>().size() - 1);
+    stream_ << text;
+    lab::apply(step, boxes_);
+    places_ = std::max(places_, boxes_.size());
+  }
+
+ private:
+  std::ostream& stream_;
+  std::vector<Box<D, Real>> boxes_;
+  std::size_t places_ = 0;  // in the file, where the array never becomes shorter
+  std::size_t frame_ = 0;
+};
+
+AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+  return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
+    return std::make_unique<CsvWriter<D, Real>>(stream);
+  });
 }
 
 }  // namespace
@@ -267,9 +287,8 @@ Format csv() {
             return extension == ".csv" || bytes.starts_with(header<2>(true).substr(0, 10)) ||
                    bytes.starts_with(header<2>(false).substr(0, 6));
           },
-      .read = read,
-      .write_2d = write<2>,
-      .write_3d = write<3>,
+      .open = open,
+      .create = create,
   };
 }
 

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -29,9 +26,12 @@ bool has_extension(const Format& format, const std::string& extension) {
   return std::ranges::find(format.extensions, extension) != format.extensions.end();
 }
 
+bool can_be_read(const Format& format) { return bool(format.open) || !format.missing.empty(); }
+
+bool can_be_written(const Format& format) { return bool(format.create); }
+
 /// The formats that `wanted` picks, for an error's text.
-template <typename Wanted>
-std::string listed(Wanted wanted) {
+std::string listed(bool (*wanted)(const Format&)) {
   std::string list;
   for (const Format& format : formats()) {
     if (!wanted(format)) continue;
@@ -41,20 +41,34 @@ std::string listed(Wanted wanted) {
   return list;
 }
 
-const Format& format_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 512> bytes;
-  // A folder can be opened, but not read.
-  if (!file || (file.read(bytes.data(), bytes.size()), file.bad()))
-    throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  const std::string_view begin(bytes.data(), static_cast<std::size_t>(file.gcount()));
+const Format& readable_format(Input& input, std::string_view name) {
+  const std::string_view begin = input.beginning();
   for (const Format& format : formats()) {
-    if (!format.recognises(begin, extension_of(path))) continue;
+    const bool is_it = name.empty() ? format.recognises(begin, input.extension()) : format.name == name;
+    if (!is_it) continue;
     if (format.missing.empty()) return format;
-    throw FileError(fmt::format("{}: {}", path.string(), format.missing));
+    throw FileError(fmt::format("{}: {}", input.name(), format.missing));
   }
-  throw FileError(fmt::format("{}: is in no format known here; expected one of: {}", path.string(),
-                              listed([](const Format&) { return true; })));
+  if (!name.empty())
+    throw FileError(
+        fmt::format("{}: unknown format '{}'; expected one of: {}", input.name(), name, listed(can_be_read)));
+  if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
+  throw FileError(
+      fmt::format("{}: is in no format known here; expected one of: {}", input.name(), listed(can_be_read)));
+}
+
+/// Throws FileError if an option means nothing to the format.
+void check_options(const Format& format, const std::string& name, const ReadOptions& options) {
+  if (!options.columns.empty() && !format.has_columns)
+    throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
+                                format.name));
+  if (options.boxes.empty() ||
+      std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
+    return;
+  std::string known;
+  for (const Part& part : format.parts) known += (known.empty() ? "one of: " : ", ") + part.name;
+  throw FileError(fmt::format("{}: boxes of '{}' in format {}; expected {}", name, options.boxes, format.name,
+                              known.empty() ? "none to be asked for: it holds boxes" : known));
 }
 
 template <int D>
@@ -83,34 +97,90 @@ std::span<const Format> formats() {
   return list;
 }
 
-FileContent read_file(const std::filesystem::path& path) { return format_of(path).read(path); }
+BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
+  auto input = std::make_unique<Input>(path, options.progress);
+  const Format& format = readable_format(*input, options.format);
+  std::string name = input->name();
+  check_options(format, name, options);
+  AnyFrameReader frames = format.open(std::move(input), options);
+  if (options.dimension == 3 && dimension_of(frames) == 2)
+    throw FileError(fmt::format("{}: holds boxes in 2D; expected boxes in 3D", name));
+  if (options.dimension == 2) frames = flattened(std::move(frames));
+  if (options.precision) frames = with_precision(std::move(frames), *options.precision);
+  return {std::move(name), &format, std::move(frames)};
+}
 
-template <int D>
-void write_scene(const History<D>& history, const std::filesystem::path& path) {
-  const auto writer = [](const Format& format) {
+FileContent read_file(const std::filesystem::path& path, const ReadOptions& options) {
+  ReadOptions floats = options;
+  floats.precision = Precision::float32;
+  BoxFile file = open_file(path, floats);
+  FileContent content;
+  const auto read = [&content]<int D>(FrameReader<D, float>& frames) {
     if constexpr (D == 2)
-      return format.write_2d;
+      content.in_2d = read_all(frames);
     else
-      return format.write_3d;
+      content.in_3d = read_all(frames);
+    content.warning = frames.warning();
   };
-  const auto found = std::ranges::find_if(formats(), [&](const Format& format) {
-    return writer(format) && has_extension(format, extension_of(path));
-  });
-  if (found == formats().end()) {
-    throw FileError(fmt::format("{}: extension '{}' is of no format that can be written; expected one of: {}",
-                                path.string(), extension_of(path), listed(writer)));
+  std::visit(
+      [&](const auto& frames) {
+        if constexpr (requires { read(*frames); }) read(*frames);
+      },
+      file.frames);
+  if (content.in_3d && file.format->is_seen_flat && options.dimension == 0) {
+    AnyFrameReader flat = flattened(std::make_unique<HistoryReader<3, float>>(*content.in_3d));
+    read(*std::get<std::unique_ptr<FrameReader<2, float>>>(flat));
   }
-  write_file(path, [&](std::ostream& stream) {
+  return content;
+}
+
+const Format& writable_format(const std::filesystem::path& path, std::string_view name) {
+  const std::string extension = extension_of(path);
+  for (const Format& format : formats()) {
+    if (!can_be_written(format)) continue;
+    if (name.empty() ? has_extension(format, extension) : format.name == name) return format;
+  }
+  const std::string found = name.empty() ? fmt::format("extension '{}' is of no format", extension)
+                                         : fmt::format("'{}' is no format", name);
+  throw FileError(fmt::format("{}: {} that can be written; expected one of: {}", path.string(), found,
+                              listed(can_be_written)));
+}
+
+void write_frames(AnyFrameReader frames, const std::filesystem::path& path, const Format& format) {
+  const int dimension = dimension_of(frames);
+  const Precision precision = precision_of_frames(frames);
+  // The reader's errors name their file already; what the format cannot hold is said of this one.
+  const auto written = [&](const auto& write) {
     try {
-      writer (*found)(history, stream);
+      write();
     } catch (const FileError& error) {
       throw FileError(fmt::format("{}: {}", path.string(), error.what()));
     }
+  };
+  const auto copy = [&]<int D, typename Real>(FrameReader<D, Real>& reader, std::ostream& stream) {
+    std::unique_ptr<FrameWriter<D, Real>> writer;
+    written([&] {
+      writer = std::get<std::unique_ptr<FrameWriter<D, Real>>>(format.create(stream, dimension, precision));
+    });
+    const std::vector<Box<D, Real>> boxes = reader.first();
+    written([&] { writer->first(boxes); });
+    for (Step<D, Real> step; reader.next(step);) written([&] { writer->next(step); });
+    written([&] { writer->finish(); });
+  };
+  write_file(path, [&](std::ostream& stream) {
+    std::visit([&](const auto& reader) { copy(*reader, stream); }, frames);
   });
+}
+
+template <int D, typename Real>
+void write_scene(const History<D, Real>& history, const std::filesystem::path& path) {
+  write_frames(std::make_unique<HistoryReader<D, Real>>(history), path, writable_format(path));
 }
 
 template void write_scene(const History<2>&, const std::filesystem::path&);
 template void write_scene(const History<3>&, const std::filesystem::path&);
+template void write_scene(const History<2, double>&, const std::filesystem::path&);
+template void write_scene(const History<3, double>&, const std::filesystem::path&);
 
 bool is_path(std::string_view text) {
   const std::filesystem::path path(text);
@@ -120,11 +190,10 @@ bool is_path(std::string_view text) {
                              [&](const Format& format) { return has_extension(format, extension_of(path)); });
 }
 
-Scene file_scene(const std::filesystem::path& path) {
-  const Format& format = format_of(path);
-  FileContent content = format.read(path);
+Scene file_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  FileContent content = read_file(path, options);
   Scene scene{.name = path.string(),
-              .summary = format.summary,
+              .summary = "boxes of a file",
               .source = path.string(),
               .kind = SceneKind::file,
               .fixed_count = true,

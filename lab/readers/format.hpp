@@ -1,15 +1,19 @@
-// The formats of files that people have, and the one list of them: from a file to histories and back.
+// The formats of files that people have, and the one list of them: from a file to frames of boxes and back.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <ostream>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lab/readers/frames.hpp"
+#include "lab/readers/input.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -20,11 +24,20 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a file holds: boxes in 2D, in 3D, or in both, one a view of the other.
-struct FileContent {
-  std::optional<History<2>> in_2d;
-  std::optional<History<3>> in_3d;
-  std::string warning{};  ///< what the reader had to leave out of a damaged file, and where; empty otherwise
+/// How a file is to be read; what is left empty, the file and its format decide.
+struct ReadOptions {
+  std::string format{};   ///< the name of a format; empty: told by the file's content and name
+  std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
+  std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
+  int dimension = 0;      ///< 2 or 3; a file in 3D is seen along the z axis in 2D
+  std::optional<Precision> precision{};
+  Progress progress{};
+};
+
+/// What the boxes of a file can be: "triangles", say.
+struct Part {
+  std::string name;
+  std::string summary;  ///< one line
 };
 
 /// A file format, described.
@@ -32,17 +45,23 @@ struct Format {
   std::string name;
   std::string summary;                  ///< one line
   std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
+  std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
+  bool has_columns = false;             ///< whether ReadOptions::columns means something
+  bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
 
-  /// Whether a file that begins with these (up to 512) bytes and has this extension is of this format.
+  /// Whether a file that begins with these bytes (Input::beginning_bytes of them) and has this extension is
+  /// of this format.
   std::function<bool(std::string_view bytes, std::string_view extension)> recognises;
 
-  /// Reads a file. Throws FileError. Memory for what the file holds, not for what its header claims.
-  std::function<FileContent(const std::filesystem::path&)> read{};
+  /// Opens an input. Of the options, those that the format has; dimension and precision only where it has a
+  /// choice: the caller converts. Throws FileError. Memory for what the file holds, not for what its header
+  /// claims.
+  std::function<AnyFrameReader(std::unique_ptr<Input>, const ReadOptions&)> open{};
 
-  /// Appends to a stream, which is checked by the caller; empty where the format is only read. Throws
-  /// FileError if the format cannot hold the history.
-  std::function<void(const History<2>&, std::ostream&)> write_2d{};
-  std::function<void(const History<3>&, std::ostream&)> write_3d{};
+  /// Begins a file of boxes of this dimension and precision in a stream, which outlives the writer and is
+  /// checked by the caller; empty where the format is only read. Throws FileError if the format cannot hold
+  /// such boxes; the caller adds the file's name.
+  std::function<AnyFrameWriter(std::ostream&, int dimension, Precision precision)> create{};
 
   std::string missing{};  ///< what is not there and how to get it, where files cannot be read for that reason
 };
@@ -50,19 +69,46 @@ struct Format {
 /// All formats, in the order in which they are asked whether a file is theirs. Thread-safe.
 std::span<const Format> formats();
 
-/// Reads a file in whatever format it is. Throws FileError, naming the formats there are if it is in none.
-FileContent read_file(const std::filesystem::path& path);
+/// A file opened for reading.
+struct BoxFile {
+  std::string name;      ///< what to call it
+  const Format* format;  ///< the one it is in
+  AnyFrameReader frames;
+};
 
-/// Writes a history in the format that the path's extension says. The file is whole or not there, and an old
-/// one stays until the new one is whole. Throws FileError.
-template <int D>
-void write_scene(const History<D>& history, const std::filesystem::path& path);
+/// Opens a file in whatever format it is, or standard input where the path is "-". Throws FileError, naming
+/// the formats there are if it is in none, and if an option means nothing in its format.
+BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// What a file holds, as the lab's scenes need it: floats, in 2D, in 3D, or in both where 3D is made to be
+/// seen flat.
+struct FileContent {
+  std::optional<History<2>> in_2d;
+  std::optional<History<3>> in_3d;
+  std::string warning{};  ///< what the reader had to leave out of a damaged file, and where; empty otherwise
+};
+
+/// Reads a file whole. Throws as open_file and its reader do.
+FileContent read_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The format in which a file is written: that of this name, or, where `name` is empty, that of the path's
+/// extension. Throws FileError naming those that can be written.
+const Format& writable_format(const std::filesystem::path& path, std::string_view name = {});
+
+/// Writes a file of frames, or to standard output where the path is "-". The file is whole or not there, and
+/// an old one stays until the new one is whole. Throws FileError. Memory: that of a frame, where the format
+/// does not need to know all before it writes the first.
+void write_frames(AnyFrameReader frames, const std::filesystem::path& path, const Format& format);
+
+/// Writes a history in the format that the path's extension says. Otherwise as write_frames.
+template <int D, typename Real>
+void write_scene(const History<D, Real>& history, const std::filesystem::path& path);
 
 /// Whether `text` is meant as a file's path: it names a file, or has a slash or the extension of a format.
 bool is_path(std::string_view text);
 
 /// A file as a scene of its own. Boxes that do not move in the file can be set moving; others move as they do
 /// there, for as many frames as the file has. Throws FileError.
-Scene file_scene(const std::filesystem::path& path);
+Scene file_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace broadside::lab

@@ -1,6 +1,7 @@
 // Triangle meshes (PLY, OBJ, STL and what else assimp reads): the bounds of their triangles.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -29,19 +30,25 @@ std::optional<Box3> bounds_of(const aiMesh& mesh, const aiFace& triangle) {
   return box;
 }
 
-FileContent read(const std::filesystem::path& path) {
+AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions&) {
+  // Parts are put where the file's scene has them; lines and points have no triangles.
+  constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
   try {
-    // Parts are put where the file's scene has them; lines and points have no triangles.
-    scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    // A file may name others beside it; what comes through a pipe cannot.
+    if (!input->path().empty()) {
+      scene = importer.ReadFile(input->path().string(), steps);
+    } else {
+      const std::string_view bytes = input->bytes();
+      scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps);
+    }
   } catch (const std::exception& error) {
-    throw FileError(fmt::format("{}: {}; expected a mesh", path.string(), error.what()));
+    throw FileError(fmt::format("{}: {}; expected a mesh", input->name(), error.what()));
   }
   if (scene == nullptr)
-    throw FileError(fmt::format("{}: {}; expected a mesh", path.string(), importer.GetErrorString()));
+    throw FileError(fmt::format("{}: {}; expected a mesh", input->name(), importer.GetErrorString()));
 
-  History<2> flat;
   History<3> history;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
@@ -50,15 +57,14 @@ FileContent read(const std::filesystem::path& path) {
       const std::optional<Box3> box = bounds_of(mesh, mesh.mFaces[f]);
       if (!box) {
         throw FileError(fmt::format("{}: triangle {} has a corner that is not finite; expected numbers",
-                                    path.string(), history.boxes.size()));
+                                    input->name(), history.boxes.size()));
       }
       history.boxes.push_back(*box);
-      flat.boxes.push_back({{box->min[0], box->min[1]}, {box->max[0], box->max[1]}});
     }
   }
   if (history.boxes.empty())
-    throw FileError(fmt::format("{}: has no triangles; expected at least one", path.string()));
-  return {std::move(flat), std::move(history)};
+    throw FileError(fmt::format("{}: has no triangles; expected at least one", input->name()));
+  return std::make_unique<HistoryReader<3, float>>(std::move(history));
 }
 
 }  // namespace
@@ -68,11 +74,12 @@ Format mesh() {
       .name = "mesh",
       .summary = "the triangles of a mesh; seen along the z axis in 2D",
       .extensions = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".dae", ".3ds"},
+      .is_seen_flat = true,
       .recognises =
           [](std::string_view, std::string_view extension) {
             return !extension.empty() && Assimp::Importer().IsExtensionSupported(std::string(extension));
           },
-      .read = read,
+      .open = open,
   };
 }
 

@@ -12,6 +12,7 @@ Format mesh() {
       .name = "mesh",
       .summary = "the triangles of a mesh; seen along the z axis in 2D",
       .extensions = extensions,
+      .is_seen_flat = true,
       .recognises =
           [extensions](std::string_view, std::string_view extension) {
             return std::ranges::find(extensions, extension) != extensions.end();

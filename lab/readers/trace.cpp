@@ -1,6 +1,7 @@
-// The format of traces among the others: a trace as a history, and a history as a trace.
+// The format of traces among the others.
 #include "lab/readers/trace.hpp"
 
+#include <memory>
 #include <ostream>
 #include <utility>
 
@@ -9,59 +10,94 @@
 namespace broadside::lab::readers {
 namespace {
 
-template <int D>
-Step<D> step_of(const TraceReader& reader) {
-  const std::span<const BoxId> changed = reader.changed();
-  Step<D> step{reader.slots(), {changed.begin(), changed.end()}, {}};
-  step.boxes.reserve(changed.size());
-  for (std::size_t i = 0; i < changed.size(); ++i) step.boxes.push_back(reader.box<D>(i));
-  return step;
-}
+/// A trace's frames, of D dimensions and in the trace's precision.
+template <int D, typename Real>
+class TraceFrames final : public FrameReader<D, Real> {
+ public:
+  TraceFrames(std::unique_ptr<Input> input, std::unique_ptr<TraceReader> reader)
+      : input_(std::move(input)), reader_(std::move(reader)) {}
 
-template <int D>
-History<D> read_history(TraceReader& reader) {
-  History<D> history;
-  if (!reader.next_frame()) {
-    if (reader.warning().empty()) return history;
-    throw FileError(reader.warning() + "; expected at least one whole frame");
+  std::vector<Box<D, Real>> first() override {
+    std::vector<Box<D, Real>> boxes;
+    if (reader_->next_frame()) {
+      lab::apply(step(), boxes);
+    } else if (!reader_->warning().empty()) {
+      throw FileError(reader_->warning() + "; expected at least one whole frame");
+    }
+    return boxes;
   }
-  lab::apply(step_of<D>(reader), history.boxes);
-  while (reader.next_frame()) history.steps.push_back(step_of<D>(reader));
-  return history;
-}
 
-FileContent read(const std::filesystem::path& path) {
-  TraceReader reader(path);
-  FileContent content;
-  if (reader.dimension() == 2)
-    content.in_2d = read_history<2>(reader);
-  else
-    content.in_3d = read_history<3>(reader);
-  content.warning = reader.warning();
-  return content;
-}
+  bool next(Step<D, Real>& next) override {
+    if (!reader_->next_frame()) return false;
+    next = step();
+    return true;
+  }
 
-template <int D>
-void write(const History<D>& history, std::ostream& stream) {
-  Recorder<D> recorder;
-  recorder.open_with([&stream](const void* bytes, std::size_t count) {
-    return bool(stream.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count)));
+  std::string warning() const override { return reader_->warning(); }
+
+ private:
+  Step<D, Real> step() const {
+    const std::span<const BoxId> changed = reader_->changed();
+    Step<D, Real> step{reader_->slots(), {changed.begin(), changed.end()}, {}};
+    step.boxes.reserve(changed.size());
+    for (std::size_t i = 0; i < changed.size(); ++i) step.boxes.push_back(reader_->box<D, Real>(i));
+    return step;
+  }
+
+  std::unique_ptr<Input> input_;
+  std::unique_ptr<TraceReader> reader_;
+};
+
+AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions&) {
+  auto reader = std::make_unique<TraceReader>(input->stream(), input->name());
+  const Precision precision =
+      reader->coordinate_bytes() == sizeof(float) ? Precision::float32 : Precision::float64;
+  return for_boxes_of(reader->dimension(), precision, [&]<int D, typename Real>() -> AnyFrameReader {
+    return std::make_unique<TraceFrames<D, Real>>(std::move(input), std::move(reader));
   });
-  const auto set = [&](std::size_t slot, const Box<D>& box) {
-    recorder.set(static_cast<std::uint32_t>(slot), box.min.data(), box.max.data());
-  };
-  recorder.resize(history.boxes.size());
-  for (std::size_t i = 0; i < history.boxes.size(); ++i) set(i, history.boxes[i]);
-  recorder.end_frame();
-  for (const Step<D>& step : history.steps) {
-    recorder.resize(step.size);
+}
+
+template <int D, typename Real>
+class TraceWriter final : public FrameWriter<D, Real> {
+ public:
+  explicit TraceWriter(std::ostream& stream) : stream_(stream) {
+    recorder_.open_with([&stream](const void* bytes, std::size_t count) {
+      return bool(stream.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count)));
+    });
+  }
+
+  void first(std::span<const Box<D, Real>> boxes) override {
+    recorder_.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) set(i, boxes[i]);
+    end_frame();
+  }
+
+  void next(const Step<D, Real>& step) override {
+    recorder_.resize(step.size);
     for (std::size_t i = 0; i < step.changed.size(); ++i) {
       if (index(step.changed[i]) < step.size) set(index(step.changed[i]), step.boxes[i]);
     }
-    recorder.end_frame();
+    end_frame();
   }
-  // What is wrong with the stream, the caller says.
-  if (!recorder.close() && stream) throw FileError(recorder.error());
+
+ private:
+  void set(std::size_t slot, const Box<D, Real>& box) {
+    recorder_.set(static_cast<std::uint32_t>(slot), box.min.data(), box.max.data());
+  }
+
+  void end_frame() {
+    // What is wrong with the stream, the caller says.
+    if ((!recorder_.end_frame() || !recorder_.error().empty()) && stream_) throw FileError(recorder_.error());
+  }
+
+  std::ostream& stream_;
+  Recorder<D, Real> recorder_;
+};
+
+AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+  return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
+    return std::make_unique<TraceWriter<D, Real>>(stream);
+  });
 }
 
 }  // namespace
@@ -77,9 +113,8 @@ Format trace() {
                                          trace::magic.size());
             return extension == ".btrace" || bytes.starts_with(magic);
           },
-      .read = read,
-      .write_2d = write<2>,
-      .write_3d = write<3>,
+      .open = open,
+      .create = create,
   };
 }
 

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <istream>
 #include <span>
 #include <string>
@@ -23,9 +21,6 @@ namespace broadside::lab {
 /// thread at a time.
 class TraceReader {
  public:
-  /// Opens a trace and reads its header.
-  explicit TraceReader(const std::filesystem::path& path);
-
   /// Reads the header of a trace from a stream, which must outlive the reader; `name` is what errors call it.
   TraceReader(std::istream& stream, std::string name);
 
@@ -56,9 +51,18 @@ class TraceReader {
     return std::span(bounds_).subspan(2 * axes * i, 2 * axes);
   }
 
-  /// The same as a box of floats, for D = dimension(); doubles between two floats are rounded outward.
-  template <int D>
-  Box<D> box(std::size_t i) const noexcept;
+  /// The same as a box, for D = dimension(); doubles are rounded to the nearest float where floats are asked
+  /// for.
+  template <int D, typename Real>
+  Box<D, Real> box(std::size_t i) const noexcept {
+    const std::span<const double> from = bounds(i);
+    Box<D, Real> box;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      box.min[axis] = static_cast<Real>(from[axis]);
+      box.max[axis] = static_cast<Real>(from[D + axis]);
+    }
+    return box;
+  }
 
   /// After the last frame: where the trace was cut off, if it was; empty otherwise.
   const std::string& warning() const noexcept { return warning_; }
@@ -84,7 +88,6 @@ class TraceReader {
   bool cut_off(std::uint64_t frame_byte, const std::string& found);
   [[noreturn]] void refuse(std::uint64_t byte, const std::string& found, const std::string& expected) const;
 
-  std::ifstream file_;
   std::istream& stream_;
   std::string name_;
   int dimension_ = 0;

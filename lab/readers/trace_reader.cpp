@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -18,21 +17,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t word_bytes = 4;
 
-float rounded_down(double value) {
-  const auto nearest = static_cast<float>(value);
-  return nearest > value ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
-}
-
-float rounded_up(double value) { return -rounded_down(-value); }
-
 }  // namespace
-
-TraceReader::TraceReader(const std::filesystem::path& path) : stream_(file_), name_(path.string()) {
-  errno = 0;
-  file_.open(path, std::ios::binary);
-  if (!file_) throw FileError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
-  read_header();
-}
 
 TraceReader::TraceReader(std::istream& stream, std::string name) : stream_(stream), name_(std::move(name)) {
   read_header();
@@ -55,17 +40,6 @@ bool TraceReader::next_frame() {
   ++frames_;
   ended_ = false;
   return true;
-}
-
-template <int D>
-Box<D> TraceReader::box(std::size_t i) const noexcept {
-  const std::span<const double> from = bounds(i);
-  Box<D> box;
-  for (std::size_t axis = 0; axis < D; ++axis) {
-    box.min[axis] = rounded_down(from[axis]);
-    box.max[axis] = rounded_up(from[D + axis]);
-  }
-  return box;
 }
 
 void TraceReader::read_header() {
@@ -212,8 +186,5 @@ void TraceReader::refuse(std::uint64_t byte, const std::string& found, const std
   const std::string frame = begin_ == 0 ? "" : fmt::format("frame {}, ", frames_);
   throw FileError(fmt::format("{}: {}byte {}: {}; expected {}", name_, frame, byte, found, expected));
 }
-
-template Box<2> TraceReader::box(std::size_t) const noexcept;
-template Box<3> TraceReader::box(std::size_t) const noexcept;
 
 }  // namespace broadside::lab

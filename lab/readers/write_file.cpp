@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <string>
 
 #include <fmt/format.h>
@@ -28,9 +29,20 @@ void write_directly(const std::filesystem::path& path, const std::filesystem::pa
   if (!file) refuse(shown, errno != 0 ? std::strerror(errno) : "the stream failed");
 }
 
+void write_to_standard_output(const std::function<void(std::ostream&)>& write) {
+  errno = 0;
+  write(std::cout);
+  std::cout.flush();
+  if (!std::cout) refuse("standard output", errno != 0 ? std::strerror(errno) : "the stream failed");
+}
+
 }  // namespace
 
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
+  if (path == "-") {
+    write_to_standard_output(write);
+    return;
+  }
   std::error_code error;
   // A link is to stay one, and what it points to is to be replaced.
   const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);

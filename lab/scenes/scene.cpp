@@ -67,9 +67,9 @@ std::string_view name(SceneKind kind) noexcept {
   return names[static_cast<std::size_t>(kind)];
 }
 
-template <int D>
-void apply(const Step<D>& step, std::vector<Box<D>>& boxes) {
-  boxes.resize(step.size, absent_box<D>());
+template <int D, typename Real>
+void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes) {
+  boxes.resize(step.size, absent_box<D, Real>());
   for (std::size_t i = 0; i < step.changed.size(); ++i) {
     if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
   }
@@ -114,5 +114,7 @@ History<3> make_history(const Scene& scene, const Spec& spec, const SceneRequest
 
 template void apply(const Step<2>&, std::vector<Box<2>>&);
 template void apply(const Step<3>&, std::vector<Box<3>>&);
+template void apply(const Step<2, double>&, std::vector<DoubleBox2>&);
+template void apply(const Step<3, double>&, std::vector<DoubleBox3>&);
 
 }  // namespace broadside::lab

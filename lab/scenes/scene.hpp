@@ -16,23 +16,23 @@
 namespace broadside::lab {
 
 /// What changes from one frame to the next.
-template <int D>
+template <int D, typename Real = float>
 struct Step {
-  std::size_t size;            ///< the number of boxes from this frame on
-  std::vector<BoxId> changed;  ///< places whose boxes change, each once
-  std::vector<Box<D>> boxes;   ///< their new boxes, in the same order; absent where one is removed
+  std::size_t size;                 ///< the number of boxes from this frame on
+  std::vector<BoxId> changed;       ///< places whose boxes change, each once
+  std::vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
 };
 
 /// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
-template <int D>
+template <int D, typename Real = float>
 struct History {
-  std::vector<Box<D>> boxes;
-  std::vector<Step<D>> steps;
+  std::vector<Box<D, Real>> boxes;
+  std::vector<Step<D, Real>> steps;
 };
 
 /// Turns the boxes of one frame into those of the next.
-template <int D>
-void apply(const Step<D>& step, std::vector<Box<D>>& boxes);
+template <int D, typename Real>
+void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
 
 /// How many boxes, from which seed, and how they move; the last three concern only scenes that do not move on
 /// their own.

@@ -1,0 +1,90 @@
+// Frames seen in another precision, or flat.
+#include "lab/readers/frames.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace broadside::lab {
+namespace {
+
+template <int D, typename Real, int OldD, typename OldReal>
+Box<D, Real> converted(const Box<OldD, OldReal>& box) {
+  // Without z, an absent box is still absent.
+  Box<D, Real> result;
+  for (int axis = 0; axis < D; ++axis) {
+    result.min[axis] = static_cast<Real>(box.min[axis]);
+    result.max[axis] = static_cast<Real>(box.max[axis]);
+  }
+  return result;
+}
+
+/// The frames of another reader, each box converted.
+template <int D, typename Real, int OldD, typename OldReal>
+class ConvertedFrames final : public FrameReader<D, Real> {
+ public:
+  explicit ConvertedFrames(std::unique_ptr<FrameReader<OldD, OldReal>> frames) : frames_(std::move(frames)) {}
+
+  std::vector<Box<D, Real>> first() override { return converted_boxes(frames_->first()); }
+
+  bool next(Step<D, Real>& step) override {
+    if (!frames_->next(old_)) return false;
+    step = {old_.size, std::move(old_.changed), converted_boxes(old_.boxes)};
+    return true;
+  }
+
+  std::string warning() const override { return frames_->warning(); }
+
+ private:
+  static std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
+    std::vector<Box<D, Real>> result;
+    result.reserve(boxes.size());
+    std::ranges::transform(boxes, std::back_inserter(result), converted<D, Real, OldD, OldReal>);
+    return result;
+  }
+
+  std::unique_ptr<FrameReader<OldD, OldReal>> frames_;
+  Step<OldD, OldReal> old_;
+};
+
+template <typename Real, int D, typename OldReal>
+AnyFrameReader with_coordinates_of(std::unique_ptr<FrameReader<D, OldReal>> frames) {
+  if constexpr (std::is_same_v<Real, OldReal>)
+    return frames;
+  else
+    return std::make_unique<ConvertedFrames<D, Real, D, OldReal>>(std::move(frames));
+}
+
+template <int D, typename Real>
+AnyFrameReader flat(std::unique_ptr<FrameReader<D, Real>> frames) {
+  if constexpr (D == 2)
+    return frames;
+  else
+    return std::make_unique<ConvertedFrames<2, Real, 3, Real>>(std::move(frames));
+}
+
+}  // namespace
+
+std::string_view name(Precision precision) noexcept {
+  return precision == Precision::float32 ? "float" : "double";
+}
+
+int dimension_of(const AnyFrameReader& frames) noexcept { return frames.index() % 2 == 0 ? 2 : 3; }
+
+Precision precision_of_frames(const AnyFrameReader& frames) noexcept {
+  return frames.index() < 2 ? Precision::float32 : Precision::float64;
+}
+
+AnyFrameReader with_precision(AnyFrameReader frames, Precision precision) {
+  return std::visit(
+      [precision](auto& reader) {
+        return precision == Precision::float32 ? with_coordinates_of<float>(std::move(reader))
+                                               : with_coordinates_of<double>(std::move(reader));
+      },
+      frames);
+}
+
+AnyFrameReader flattened(AnyFrameReader frames) {
+  return std::visit([](auto& reader) { return flat(std::move(reader)); }, frames);
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,114 @@
+// Boxes as files hold them: frame after frame, in 2D or 3D, as floats or as doubles.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+/// The type of a file's coordinates: float or double.
+enum class Precision : std::uint8_t { float32, float64 };
+
+/// "float" or "double".
+std::string_view name(Precision precision) noexcept;
+
+template <typename Real>
+constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
+
+/// Gives the frames of a file, one after the other. Throws FileError (lab/readers/format.hpp) where the file
+/// is wrong, which may be in a later frame. One thread at a time.
+template <int D, typename Real>
+class FrameReader {
+ public:
+  virtual ~FrameReader() = default;
+
+  /// The boxes of the first frame. Called once, before next().
+  virtual std::vector<Box<D, Real>> first() = 0;
+
+  /// Whether there was another frame; `step` then leads to it from the one before.
+  virtual bool next(Step<D, Real>& step) = 0;
+
+  /// After the last frame: what had to be left out of a damaged file, and where; empty otherwise.
+  virtual std::string warning() const { return {}; }
+};
+
+/// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.
+template <int D, typename Real>
+class FrameWriter {
+ public:
+  virtual ~FrameWriter() = default;
+
+  /// The boxes of the first frame. Called once, before next().
+  virtual void first(std::span<const Box<D, Real>> boxes) = 0;
+
+  virtual void next(const Step<D, Real>& step) = 0;
+
+  /// After the last frame. What is wrong with the stream, the caller sees.
+  virtual void finish() {}
+};
+
+/// One of the four, by dimension and precision.
+template <template <int, typename> typename T>
+using AnyOf = std::variant<std::unique_ptr<T<2, float>>, std::unique_ptr<T<3, float>>,
+                           std::unique_ptr<T<2, double>>, std::unique_ptr<T<3, double>>>;
+using AnyFrameReader = AnyOf<FrameReader>;
+using AnyFrameWriter = AnyOf<FrameWriter>;
+
+/// What `make.template operator()<D, Real>()` gives for this dimension, 2 or 3, and this precision.
+template <typename Make>
+auto for_boxes_of(int dimension, Precision precision, const Make& make) {
+  const bool is_float = precision == Precision::float32;
+  if (dimension == 2)
+    return is_float ? make.template operator()<2, float>() : make.template operator()<2, double>();
+  return is_float ? make.template operator()<3, float>() : make.template operator()<3, double>();
+}
+
+int dimension_of(const AnyFrameReader& frames) noexcept;
+Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
+
+/// The frames of a file whose reader has all its boxes in memory.
+template <int D, typename Real>
+class HistoryReader final : public FrameReader<D, Real> {
+ public:
+  explicit HistoryReader(History<D, Real> history) : history_(std::move(history)) {}
+
+  std::vector<Box<D, Real>> first() override { return std::move(history_.boxes); }
+
+  bool next(Step<D, Real>& step) override {
+    if (next_ == history_.steps.size()) return false;
+    step = std::move(history_.steps[next_++]);
+    return true;
+  }
+
+ private:
+  History<D, Real> history_;
+  std::size_t next_ = 0;
+};
+
+/// All frames that are left, in memory.
+template <int D, typename Real>
+History<D, Real> read_all(FrameReader<D, Real>& frames) {
+  History<D, Real> history{frames.first(), {}};
+  for (Step<D, Real> step; frames.next(step);) history.steps.push_back(std::move(step));
+  return history;
+}
+
+/// The same frames with coordinates of another type: rounded to the nearest, and the infinite beyond the
+/// largest.
+AnyFrameReader with_precision(AnyFrameReader frames, Precision precision);
+
+/// The same frames in 2D: 3D boxes seen along the z axis.
+AnyFrameReader flattened(AnyFrameReader frames);
+
+}  // namespace broadside::lab

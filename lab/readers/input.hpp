@@ -1,0 +1,82 @@
+// The bytes that a reader reads: of a file, of standard input, or in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <istream>
+#include <memory>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace broadside::lab {
+
+/// Told, now and then, how many bytes of how many have been read; the second is 0 where nobody knows.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+/// An input, all at once (bytes()) or piece by piece (stream()): a reader chooses one of the two. One thread
+/// at a time.
+class Input {
+ public:
+  /// How many bytes beginning() gives, if there are as many.
+  static constexpr std::size_t beginning_bytes = 512;
+
+  /// Opens a file, or standard input where the path is "-". Throws FileError, also for a folder.
+  explicit Input(const std::filesystem::path& path, Progress progress = {});
+
+  /// Bytes in memory, which must outlive the input; `name` is what errors call them.
+  Input(std::string name, std::string_view bytes);
+
+  ~Input();
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+
+  /// What errors call it: the path, or "standard input".
+  const std::string& name() const noexcept { return name_; }
+
+  /// The path of a file that can be opened again; empty for anything else.
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+  /// The extension of its name with its dot, in lower case; empty if it has none.
+  std::string extension() const;
+
+  /// The first bytes, which are not consumed.
+  std::string_view beginning();
+
+  /// All bytes. A file is mapped, not copied: nobody may shorten it while it is read. Throws FileError.
+  std::string_view bytes();
+
+  /// The bytes in sequence, from the first one; as they come, so that a pipe can be followed. A failure to
+  /// read is an exception of the stream's badbit, with errno set.
+  std::istream& stream();
+
+  /// Says that all bytes before `byte` have been dealt with. Cheap.
+  void passed(std::uint64_t byte) {
+    if (byte >= next_report_) report(byte);
+  }
+
+ private:
+  class Buffer;
+
+  void report(std::uint64_t byte);
+  [[noreturn]] void refuse() const;
+
+  std::string name_;
+  std::filesystem::path path_;
+  Progress progress_;
+  std::uint64_t next_report_ = UINT64_MAX;
+  int descriptor_ = -1;
+  bool is_regular_ = false;  // a regular file, whose size is known and which can be mapped
+  std::uint64_t size_ = 0;
+  std::string_view all_;  // once bytes() was called, or from the start in memory
+  bool has_all_ = false;
+  void* mapped_ = nullptr;
+  std::string kept_;  // all bytes of what cannot be mapped
+  std::unique_ptr<Buffer> buffer_;
+  std::unique_ptr<std::istream> stream_;
+};
+
+}  // namespace broadside::lab
