@@ -1,0 +1,149 @@
+// Inputs: the same bytes whether they are mapped, piped or in memory, at once or in pieces.
+#include "lab/readers/input.hpp"
+
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "files.hpp"
+#include "lab/readers/format.hpp"
+#include "message.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+using InputTest = Files;
+
+/// A pipe into which a thread writes, and the path at which it can be opened.
+class Pipe {
+ public:
+  explicit Pipe(std::string text)
+      : writer_([this, text = std::move(text)] {
+          // In pieces, as a program writes that computes in between.
+          for (std::size_t begin = 0; begin < text.size(); begin += 1000) {
+            const std::string piece = text.substr(begin, 1000);
+            if (::write(ends_[1], piece.data(), piece.size()) != static_cast<ssize_t>(piece.size())) break;
+          }
+          ::close(ends_[1]);
+        }) {}
+
+  ~Pipe() {
+    writer_.join();
+    ::close(ends_[0]);
+  }
+
+  std::string path() const { return "/dev/fd/" + std::to_string(ends_[0]); }
+
+ private:
+  std::array<int, 2> ends_ = make_ends();
+  std::thread writer_;
+
+  static std::array<int, 2> make_ends() {
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe; expected one");
+    return ends;
+  }
+};
+
+/// Some 250 kB: more than any buffer here holds.
+std::string long_text() {
+  std::string text;
+  for (int i = 0; i < 50'000; ++i) text += std::to_string(i) + "\n";
+  return text;
+}
+
+std::string stream_text(Input& input) { return {std::istreambuf_iterator<char>(input.stream()), {}}; }
+
+TEST_F(InputTest, GivesTheBytesOfAFileAtOnceOrAsAStreamAfterItsBeginningWasLookedAt) {
+  const std::string text = long_text();
+  Input at_once(put("a.txt", text));
+  EXPECT_EQ(at_once.beginning(), text.substr(0, Input::beginning_bytes));
+  EXPECT_EQ(at_once.bytes(), text);
+  EXPECT_EQ(at_once.bytes(), text) << "a second time";
+  EXPECT_EQ(at_once.path(), path("a.txt"));
+
+  Input in_pieces(path("a.txt"));
+  EXPECT_EQ(in_pieces.beginning(), text.substr(0, Input::beginning_bytes));
+  EXPECT_EQ(stream_text(in_pieces), text);
+}
+
+TEST_F(InputTest, GivesTheBytesOfAPipeLikewise) {
+  const std::string text = long_text();
+  const Pipe first(text);
+  Input at_once(first.path());
+  EXPECT_EQ(at_once.beginning(), text.substr(0, Input::beginning_bytes));
+  EXPECT_EQ(at_once.bytes(), text);
+  EXPECT_TRUE(at_once.path().empty()) << "a pipe cannot be opened again";
+
+  const Pipe second(text);
+  Input in_pieces(second.path());
+  EXPECT_EQ(in_pieces.beginning(), text.substr(0, Input::beginning_bytes));
+  EXPECT_EQ(stream_text(in_pieces), text);
+}
+
+TEST_F(InputTest, GivesTheBytesInMemoryLikewise) {
+  const std::string text = long_text();
+  Input at_once("memory", text);
+  EXPECT_EQ(at_once.beginning(), text.substr(0, Input::beginning_bytes));
+  EXPECT_EQ(at_once.bytes(), text);
+  Input in_pieces("memory", text);
+  EXPECT_EQ(stream_text(in_pieces), text);
+  EXPECT_EQ(Input("memory", "").bytes(), "");
+}
+
+TEST_F(InputTest, MayBeEmptyOrShort) {
+  Input empty(put("empty", ""));
+  EXPECT_EQ(empty.beginning(), "");
+  EXPECT_EQ(empty.bytes(), "");
+  const Pipe pipe("abc");
+  Input piped(pipe.path());
+  EXPECT_EQ(piped.beginning(), "abc");
+  EXPECT_EQ(piped.bytes(), "abc");
+}
+
+TEST_F(InputTest, KnowsItsExtensionInLowerCase) {
+  EXPECT_EQ(Input(put("a.CSV", "")).extension(), ".csv");
+  EXPECT_EQ(Input("b.tar.Npy", "").extension(), ".npy");
+  EXPECT_EQ(Input(put("c", "")).extension(), "");
+}
+
+TEST_F(InputTest, IsRefusedWhereItCannotBeRead) {
+  EXPECT_THAT(message_of<FileError>([&] { Input input(path("none")); }),
+              AllOf(HasSubstr("none: cannot be read"), HasSubstr("No such file")));
+  EXPECT_THAT(message_of<FileError>([&] { Input input(path("")); }), HasSubstr("Is a directory"));
+  // It can be opened, and its first byte cannot be read.
+  EXPECT_THAT(message_of<FileError>([] { Input("/proc/self/mem").beginning(); }),
+              HasSubstr("/proc/self/mem: cannot be read"));
+  EXPECT_THAT(message_of<FileError>([] { Input("/proc/self/mem").bytes(); }), HasSubstr("cannot be read"));
+}
+
+TEST_F(InputTest, TellsHowFarItIsAndOfHowMuch) {
+  const std::string text(40'000'000, 'x');
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> reports;
+  const Progress progress = [&](std::uint64_t done, std::uint64_t total) {
+    reports.emplace_back(done, total);
+  };
+  Input file(put("a.txt", text), progress);
+  for (std::uint64_t byte = 0; byte <= text.size(); byte += 1'000'000) file.passed(byte);
+  EXPECT_THAT(reports.size(), testing::AllOf(testing::Ge(3u), testing::Le(6u)));
+  EXPECT_EQ(reports.back().second, text.size());
+
+  reports.clear();
+  Input streamed(path("a.txt"), progress);
+  EXPECT_EQ(stream_text(streamed).size(), text.size());
+  EXPECT_GE(reports.size(), 3u);
+}
+
+}  // namespace
+}  // namespace broadside::lab
