@@ -1,0 +1,121 @@
+// Meshes through assimp: PLY, OBJ, STL, glTF and what else it reads.
+//
+// Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "lab/readers/format.hpp"
+#include "lab/readers/indexed_mesh.hpp"
+#include "lab/readers/mesh_content.hpp"
+#include "lab/readers/ply_claims.hpp"
+
+namespace broadside::lab {
+namespace {
+
+[[noreturn]] void refuse(const Input& input, std::string_view found) {
+  throw FileError(fmt::format("{}: {}; expected a mesh", input.name(), found));
+}
+
+/// assimp trusts the places of vertices that a file gives, in its later steps as well.
+void check_corners(const Input& input, const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        if (face.mIndices[i] < mesh.mNumVertices) continue;
+        throw FileError(fmt::format("{}: face {} names the vertex {}; expected one below {}", input.name(), f,
+                                    face.mIndices[i], mesh.mNumVertices));
+      }
+    }
+  }
+}
+
+/// Puts the meshes of a scene into one, each where its node is.
+class Collector {
+ public:
+  Collector(const Input& input, const aiScene& scene) : input_(input), scene_(scene) {}
+
+  IndexedMesh collect() {
+    // Not by recursion: a file decides how deep its nodes lie.
+    std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes = {{scene_.mRootNode, aiMatrix4x4()}};
+    while (!nodes.empty()) {
+      const auto [node, parent] = nodes.back();
+      nodes.pop_back();
+      const aiMatrix4x4 place = parent * node->mTransformation;
+      for (unsigned m = 0; m < node->mNumMeshes; ++m) add(*scene_.mMeshes[node->mMeshes[m]], place);
+      for (unsigned c = node->mNumChildren; c-- > 0;) nodes.emplace_back(node->mChildren[c], place);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void add(const aiMesh& mesh, const aiMatrix4x4& place) {
+    const std::size_t first = mesh_.vertices.size();
+    if (mesh.mNumVertices > std::numeric_limits<std::uint32_t>::max() - first)
+      refuse(input_, "has more vertices than 32 bits can count");
+    // A product with the identity would make a NaN of an infinity.
+    const bool is_in_place = place == aiMatrix4x4();
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D point = is_in_place ? mesh.mVertices[v] : place * mesh.mVertices[v];
+      mesh_.vertices.push_back({point.x, point.y, point.z});
+    }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        mesh_.corners.push_back(static_cast<std::uint32_t>(first + face.mIndices[i]));
+      mesh_.face_ends.push_back(mesh_.corners.size());
+    }
+  }
+
+  const Input& input_;
+  const aiScene& scene_;
+  IndexedMesh mesh_;
+};
+
+}  // namespace
+
+IndexedMesh import_mesh(Input& input, MeshFaces faces) {
+  Assimp::Importer importer;
+  const std::string_view content = mesh_content(input.beginning());
+  const std::string extension = input.extension();
+  const bool is_named = !extension.empty() && importer.IsExtensionSupported(extension);
+  const aiScene* scene = nullptr;
+  try {
+    // A file may name others beside it; what comes through a pipe, or under another name, cannot.
+    if (content == "ply") check_ply_claims(input.bytes(), input.name());
+    if (is_named && !input.path().empty()) {
+      scene = importer.ReadFile(input.path().string(), 0);
+    } else {
+      const std::string_view bytes = input.bytes();
+      scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, std::string(content).c_str());
+    }
+    if (scene == nullptr) refuse(input, importer.GetErrorString());
+    check_corners(input, *scene);
+    if (faces == MeshFaces::triangles) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::exception& error) {
+    refuse(input, error.what());
+  }
+  if (scene == nullptr || scene->mRootNode == nullptr) refuse(input, importer.GetErrorString());
+  IndexedMesh mesh = Collector(input, *scene).collect();
+  mesh.has_own_vertices = content == "ply" || content == "off";
+  return mesh;
+}
+
+std::string mesh_import_missing() { return {}; }
+
+bool is_mesh_extension(std::string_view extension) {
+  return !extension.empty() && Assimp::Importer().IsExtensionSupported(std::string(extension));
+}
+
+}  // namespace broadside::lab

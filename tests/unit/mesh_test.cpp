@@ -1,0 +1,175 @@
+// Meshes: their triangles, edges and vertices, and what they sweep from one time to the next.
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/find_pairs.hpp"
+
+#include "files.hpp"
+#include "lab/readers/format.hpp"
+#include "lab/readers/swept_mesh.hpp"
+#include "message.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Tests that need assimp.
+class MeshTest : public Files {
+ protected:
+  void SetUp() override {
+    if (!mesh_import_missing().empty()) GTEST_SKIP() << mesh_import_missing();
+  }
+
+  /// A square in the plane z = `z` and a triangle that shares a side with it; vertex 5 is in no face.
+  static std::string ply(const std::string& z) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 " +
+           z + "\n1 0 " + z + "\n1 1 " + z + "\n0 1 " + z + "\n3 0 " + z + "\n9 9 9\n4 0 1 2 3\n3 2 1 4\n";
+  }
+
+  std::vector<Box3> boxes_of(const std::filesystem::path& file, const std::string& part) const {
+    const BoxFile opened = open_file(file, {.boxes = part});
+    return std::get<std::unique_ptr<FrameReader<3, float>>>(opened.frames)->first();
+  }
+};
+
+TEST_F(MeshTest, GivesTrianglesEdgesOrVertices) {
+  const auto file = put("a.ply", ply("0"));
+  EXPECT_EQ(boxes_of(file, ""), boxes_of(file, "triangles"));
+  EXPECT_EQ(boxes_of(file, "triangles").size(), 3u);
+  EXPECT_THAT(boxes_of(file, "edges"),
+              ElementsAre(Box3{{0, 0, 0}, {1, 0, 0}}, Box3{{0, 0, 0}, {0, 1, 0}}, Box3{{1, 0, 0}, {1, 1, 0}},
+                          Box3{{1, 0, 0}, {3, 0, 0}}, Box3{{0, 1, 0}, {1, 1, 0}}, Box3{{1, 0, 0}, {3, 1, 0}}))
+      << "each side once, the lower vertex first";
+  const std::vector<Box3> vertices = boxes_of(file, "vertices");
+  ASSERT_EQ(vertices.size(), 6u) << "a vertex in no face counts";
+  EXPECT_EQ(vertices[4], (Box3{{3, 0, 0}, {3, 0, 0}}));
+  EXPECT_THAT(message_of<FileError>([&] { boxes_of(file, "segments"); }),
+              HasSubstr("expected one of: triangles, edges, vertices"));
+}
+
+TEST_F(MeshTest, MakesVerticesInOnePlaceOneWhereTheFileHasNoneOfItsOwn) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv -0 0 0\nf 1 2 3\nf 2 4 3\nf 5 2 3\n";
+  EXPECT_EQ(boxes_of(put("a.obj", obj), "vertices").size(), 4u);
+  EXPECT_EQ(boxes_of(put("a.obj", obj), "edges").size(), 5u);
+}
+
+TEST_F(MeshTest, IsRecognisedByContentWhateverItIsCalled) {
+  const std::string obj = "# made by hand\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string stl =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\nendsolid a\n";
+  EXPECT_EQ(boxes_of(put("obj.dat", obj), "").size(), 1u);
+  EXPECT_EQ(boxes_of(put("stl", stl), "").size(), 1u);
+  EXPECT_EQ(boxes_of(put("ply.txt", ply("0")), "").size(), 3u);
+}
+
+TEST_F(MeshTest, RefusesWhatItsHeaderClaimsBeforeMakingRoomForIt) {
+  std::string text = ply("0");
+  text.replace(text.find("vertex 6"), 8, "vertex 2147483648");
+  EXPECT_THAT(
+      refusal(put("a.ply", text)),
+      AllOf(HasSubstr("a.ply: claims 2147483648 of the element 'vertex'"), HasSubstr("expected at most")));
+  text = ply("0");
+  text.replace(text.find("face 2"), 6, "face 99999999999999999999999");
+  EXPECT_THAT(refusal(put("a.ply", text)), HasSubstr("of the element 'face'"));
+}
+
+TEST_F(MeshTest, RefusesFacesOfVerticesThatAreNotThere) {
+  std::string text = ply("0");
+  text.replace(text.find("3 2 1 4"), 7, "3 2 1 7");
+  EXPECT_THAT(refusal(put("a.ply", text)),
+              AllOf(HasSubstr("a.ply: face 1 names the vertex 7"), HasSubstr("expected one below 6")));
+}
+
+TEST_F(MeshTest, RefusesVerticesThatAreNotFiniteWhereABoxNeedsThem) {
+  EXPECT_THAT(refusal(put("a.ply", ply("nan"))), AllOf(HasSubstr("a.ply: face 0 has a vertex at (0, 0, nan)"),
+                                                       HasSubstr("expected finite numbers")));
+}
+
+/// The pairs of two parts of a mesh at two times that have no vertex in common.
+std::vector<Pair> apart(const SweptMesh& mesh, MeshPart left, MeshPart right) {
+  const SweptElements a = mesh.swept(left);
+  const SweptElements b = mesh.swept(right);
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  ApartPairs filter(a.elements, b.elements, collector);
+  if (left == right)
+    find_pairs(a.boxes, filter);
+  else
+    find_pairs(a.boxes, b.boxes, filter);
+  collector.flush();
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+TEST_F(MeshTest, SweepsElementsFromOneTimeToTheNext) {
+  const SweptMesh mesh = read_swept_mesh(put("0.ply", ply("0")), put("1.ply", ply("2")));
+  EXPECT_THAT(mesh.swept(MeshPart::faces).boxes,
+              ElementsAre(Box3{{0, 0, 0}, {1, 1, 2}}, Box3{{1, 0, 0}, {3, 1, 2}}));
+  const std::vector<Box3> vertices = mesh.swept(MeshPart::vertices).boxes;
+  EXPECT_EQ(vertices[4], (Box3{{3, 0, 0}, {3, 0, 2}}));
+  EXPECT_EQ(vertices[5], (Box3{{9, 9, 9}, {9, 9, 9}}));
+}
+
+TEST_F(MeshTest, LeavesOutPairsThatShareAVertex) {
+  // A triangle, and another that falls through it; a vertex of each touches only the other's face.
+  const auto at = [](const std::string& z) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n4 0 0\n0 4 0\n1 1 " +
+           z + "\n3 1 " + z + "\n1 3 " + z + "\n3 0 1 2\n3 3 4 5\n";
+  };
+  const SweptMesh mesh = read_swept_mesh(put("0.ply", at("1")), put("1.ply", at("-1")));
+  const auto pair = [](std::uint32_t a, std::uint32_t b) { return Pair{BoxId{a}, BoxId{b}}; };
+  EXPECT_THAT(apart(mesh, MeshPart::vertices, MeshPart::faces),
+              ElementsAre(pair(3, 0), pair(4, 0), pair(5, 0)));
+  EXPECT_THAT(apart(mesh, MeshPart::faces, MeshPart::vertices),
+              ElementsAre(pair(0, 3), pair(0, 4), pair(0, 5)))
+      << "of two sets, a pair keeps its order";
+  EXPECT_THAT(apart(mesh, MeshPart::edges, MeshPart::edges), ElementsAre(pair(2, 3), pair(2, 4), pair(2, 5)));
+}
+
+TEST_F(MeshTest, SweepsMeshesWithoutVerticesOfTheirOwnByTheirPlacesAtBothTimes) {
+  // Two triangles that share a side at both times; a third has a corner in one place with the first at one
+  // time alone.
+  const auto at = [](const std::string& x) {
+    return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv " + x +
+           " 0 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 2 4 3\nf 5 6 7\n";
+  };
+  const SweptMesh mesh = read_swept_mesh(put("0.obj", at("0")), put("1.obj", at("-0.5")));
+  EXPECT_EQ(mesh.swept(MeshPart::vertices).boxes.size(), 7u);
+  EXPECT_THAT(apart(mesh, MeshPart::faces, MeshPart::faces),
+              ElementsAre(Pair{BoxId{0}, BoxId{2}}, Pair{BoxId{1}, BoxId{2}}));
+}
+
+TEST_F(MeshTest, RefusesToSweepTwoDifferentMeshes) {
+  const auto first = put("0.ply", ply("0"));
+  std::string text = ply("0");
+  text.replace(text.find("3 2 1 4"), 7, "3 1 2 4");
+  EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, put("1.ply", text)); }),
+              AllOf(HasSubstr("0.ply and "),
+                    HasSubstr("1.ply: face 1 is of vertices 2, 1, 4 and of vertices 1, 2, 4"),
+                    HasSubstr("expected one mesh at two times")));
+  const auto other = put("2.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                         "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, other); }), HasSubstr("6 vertices and 3"));
+  EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, put("a.csv", "1,2,3,4\n")); }),
+              AllOf(HasSubstr("a.csv"), HasSubstr("expected a mesh")));
+  EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, path("nothing.ply")); }),
+              HasSubstr("No such file"));
+}
+
+}  // namespace
+}  // namespace broadside::lab
