@@ -1,7 +1,6 @@
 // broadside compare: the comparison, as a table and as JSON.
 #include "lab/measure/compare.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -11,12 +10,15 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/progress_line.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/numbers.hpp"
 #include "lab/readers/write_file.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/table.hpp"
@@ -27,38 +29,19 @@ namespace {
 struct CompareArguments {
   std::string algorithms = "all";
   std::vector<std::string> scenes;
+  InputOptions input;
   std::vector<std::string> boxes;
   std::vector<int> dimensions;
   std::vector<double> moving;
   std::string frames;
   int threads = 1;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   std::optional<double> budget;
   std::string json;
   bool is_long = false;
 };
 
-/// One line on stderr that is written over again and again; nothing where stderr is no terminal.
-class ProgressLine {
- public:
-  void show(std::string_view what) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!on_terminal_ || now - shown_ < std::chrono::milliseconds(100)) return;
-    shown_ = now;
-    // A longer line would wrap and could not be written over.
-    fmt::print(stderr, "\r\x1b[K{}", what.substr(0, 78));
-  }
-
-  void clear() {
-    if (on_terminal_) fmt::print(stderr, "\r\x1b[K");
-  }
-
- private:
-  bool on_terminal_ = isatty(STDERR_FILENO) != 0;
-  std::chrono::steady_clock::time_point shown_{};
-};
-
-std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments) {
+std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
   const bool own_plan = !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
                         !arguments.frames.empty();
   if (own_plan) {
@@ -70,6 +53,7 @@ std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments) {
         .dimensions = arguments.dimensions,
         .moving = arguments.moving,
         .frames = arguments.frames.empty() ? 0 : read_count("--frames", arguments.frames),
+        .find = find,
     });
   }
   std::vector<lab::CaseRequest> plan = arguments.is_long ? lab::long_plan() : lab::quick_plan();
@@ -90,13 +74,29 @@ void check(const CompareArguments& arguments) {
   if (!arguments.json.empty()) check_writable("--json", arguments.json);
 }
 
+/// Says which options mean nothing to a scene that was asked for.
+void warn_of_ignored(const CompareArguments& arguments, const lab::FindScene& find) {
+  for (const std::string& name : arguments.scenes) {
+    const lab::Scene scene = find(name).scene;
+    const auto warn = [&name](std::string_view option, std::string_view why) {
+      say(fmt::format("{} is ignored by scene '{}', {}", option, name, why));
+    };
+    if (!arguments.boxes.empty() && scene.fixed_count) warn("-n", "whose number of boxes is its own");
+    if (arguments.seed && scene.fixed_seed) warn("--seed", "which is the same for every seed");
+    if (!arguments.moving.empty() && (scene.history_2d || scene.history_3d))
+      warn("--moving", "which moves by itself");
+  }
+}
+
 Exit run(const CompareArguments& arguments, std::span<const std::string> command) {
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
   options.algorithms = arguments.algorithms;
-  options.plan = plan_of(arguments);
-  options.seed = arguments.seed;
+  options.find = lab::scene_finder(read_options(arguments.input));
+  options.plan = plan_of(arguments, options.find);
+  warn_of_ignored(arguments, options.find);
+  options.seed = arguments.seed.value_or(options.seed);
   if (arguments.is_long) options.effort = lab::long_effort();
   if (arguments.budget) options.effort.budget_seconds = *arguments.budget;
   options.watch.stop = interrupted;
@@ -111,18 +111,19 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   const lab::Catalogue catalogue;
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
-  for (const std::string& warning : comparison.warnings) fmt::print(stderr, "broadside: {}\n", warning);
+  for (const std::string& warning : comparison.warnings) say(warning);
   fmt::print("{}", lab::summary_of(comparison));
-  if (comparison.stopped) {
-    if (!arguments.json.empty())
-      fmt::print(stderr, "broadside: stopped; {} is not written\n", arguments.json);
-    return Exit::interrupted;
-  }
-  if (!arguments.json.empty()) {
+  if (!arguments.json.empty() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::note);
     const std::string text = lab::json_of(comparison, command);
     lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
+    if (comparison.stopped)
+      say(fmt::format("stopped; {} holds the {} that had ended", arguments.json,
+                      lab::counted(comparison.cases.size(), "case", "cases")));
+  } else if (!arguments.json.empty()) {
+    say(fmt::format("stopped before a case had ended; {} is not written", arguments.json));
   }
+  if (comparison.stopped) return Exit::interrupted;
   return comparison.all_verified() ? Exit::fine : Exit::failed;
 }
 
@@ -139,10 +140,11 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
           "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between")
       ->capture_default_str();
   verb->add_option("--scenes", arguments->scenes,
-                   "Names, specs or files; a comma between (standard: every generated scene)")
+                   "Names, specs or files, - for standard input; a comma between (standard: every generated "
+                   "scene)")
       ->delimiter(',');
-  verb->add_option("-n,--boxes", arguments->boxes,
-                   "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
+  add_file_options(*verb, arguments->input);
+  verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
       ->delimiter(',');
   verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (standard: both)")->delimiter(',');
   verb->add_option(
@@ -153,9 +155,9 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
   verb->add_option("--threads", arguments->threads, "Threads an algorithm may use; in this version 1")
       ->capture_default_str();
-  verb->add_option("--seed", arguments->seed, "Seed of a scene's first input; the others count up from it")
-      ->check(is_seed)
-      ->capture_default_str();
+  verb->add_option("--seed", arguments->seed,
+                   "Seed of a scene's first input; the others count up from it (standard: 1)")
+      ->check(is_seed);
   verb->add_option("--budget", arguments->budget,
                    fmt::format("Seconds that one search, or one history, may take; a slower algorithm is "
                                "skipped and its time estimated (standard: {}, with --long {})",

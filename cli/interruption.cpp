@@ -39,4 +39,8 @@ void on_signal(OnSignal what) {
 
 bool interrupted() noexcept { return noted; }
 
+void end_if_interrupted() {
+  if (noted) throw Interruption();
+}
+
 }  // namespace broadside::cli

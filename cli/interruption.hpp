@@ -1,6 +1,8 @@
 // What the program does at Ctrl-C (SIGINT) and at SIGTERM.
 #pragma once
 
+#include <exception>
+
 namespace broadside::cli {
 
 /// What a signal does.
@@ -16,5 +18,14 @@ void on_signal(OnSignal what);
 
 /// Whether a signal was noted.
 bool interrupted() noexcept;
+
+/// Thrown where work ends because a signal was noted. What it had begun to write is removed on the way out.
+class Interruption : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+/// Throws Interruption if a signal was noted.
+void end_if_interrupted();
 
 }  // namespace broadside::cli

@@ -13,6 +13,8 @@
 
 #include "broadside/version.hpp"
 
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
 #include "cli/unusable.hpp"
 #include "cli/verbs.hpp"
 
@@ -40,6 +42,8 @@ Exit run(const std::vector<std::string>& arguments) {
       "Exit status: 0 fine, 1 a verification failed, 2 unusable arguments or input, 130 interrupted.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
       {"compare", broadside::cli::add_compare(program, arguments)},
+      {"pairs", broadside::cli::add_pairs(program)},
+      {"convert", broadside::cli::add_convert(program)},
       {"scene", broadside::cli::add_scene(program)},
       {"list", broadside::cli::add_list(program)},
   };
@@ -69,11 +73,13 @@ int main(int count, char** values) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw broadside::cli::Unusable("standard output cannot be written; expected it open and not full");
     return static_cast<int>(exit);
+  } catch (const broadside::cli::Interruption&) {
+    return static_cast<int>(Exit::interrupted);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "broadside: out of memory; expected fewer boxes, frames or pairs\n");
+    broadside::cli::say("out of memory; expected fewer boxes, frames or pairs");
     return static_cast<int>(Exit::unusable);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "broadside: {}\n", error.what());
+    broadside::cli::say(error.what());
     return static_cast<int>(Exit::unusable);
   }
 }

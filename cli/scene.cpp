@@ -2,11 +2,17 @@
 #include "lab/scenes/scene.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
+#include "cli/message.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -15,42 +21,61 @@
 namespace broadside::cli {
 namespace {
 
+constexpr std::size_t standard_boxes = 10'000;
+
 struct SceneArguments {
   std::string scene;
+  InputOptions input;
   std::string output;
-  std::string boxes = "10000";
+  std::string to;
+  std::string boxes;
   int dimension = 0;
-  double moving = 0;
+  std::optional<double> moving;
   std::string frames;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
 };
 
+/// Refuses options that mean nothing to the scene.
+void check(const SceneArguments& arguments, const lab::Scene& scene) {
+  const auto refuse = [&arguments](std::string_view option, std::string_view why) {
+    throw Unusable(fmt::format("{} for scene '{}', {}; expected none", option, arguments.scene, why));
+  };
+  if (!arguments.boxes.empty() && scene.fixed_count) refuse("-n", "whose number of boxes is its own");
+  if (arguments.seed && scene.fixed_seed) refuse("--seed", "which is the same for every seed");
+  if (arguments.moving && (scene.history_2d || scene.history_3d)) refuse("--moving", "which moves by itself");
+}
+
 template <int D>
-void write(const SceneArguments& arguments, const lab::NamedScene& named) {
-  const bool moves =
-      (D == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d)) || arguments.moving > 0;
+void write(const SceneArguments& arguments, const lab::NamedScene& named, const lab::Format& format) {
+  const bool moves = (D == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d)) ||
+                     arguments.moving.value_or(0) > 0;
   lab::SceneRequest request;
-  request.boxes = read_count("-n", arguments.boxes);
-  request.seed = arguments.seed;
-  request.moving = arguments.moving;
+  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.seed = arguments.seed.value_or(request.seed);
+  request.moving = arguments.moving.value_or(0);
   if (!arguments.frames.empty())
     request.frames = read_count("--frames", arguments.frames);
   else if (moves)
     request.frames = 20;
   if (!moves && request.frames > 0) request.moving = 0.1;
-  const lab::History<D> history = lab::make_history<D>(named.scene, named.spec, request);
+  auto frames =
+      std::make_unique<lab::HistoryReader<D, float>>(lab::make_history<D>(named.scene, named.spec, request));
   on_signal(OnSignal::note);
-  lab::write_scene(history, arguments.output);
+  lab::write_frames(std::move(frames), arguments.output, format);
 }
 
 Exit run(const SceneArguments& arguments) {
   on_signal(OnSignal::end);
-  check_fraction("--moving", arguments.moving);
+  if (arguments.moving) check_fraction("--moving", *arguments.moving);
   check_writable("-o", arguments.output);
-  const lab::NamedScene named = lab::find_scene(arguments.scene);
+  const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
+  const lab::NamedScene named =
+      lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
+  if (!named.scene.warning.empty()) say(named.scene.warning);
+  check(arguments, named.scene);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
-  dimension == 2 ? write<2>(arguments, named) : write<3>(arguments, named);
+  dimension == 2 ? write<2>(arguments, named, format) : write<3>(arguments, named, format);
   return interrupted() ? Exit::interrupted : Exit::fine;
 }
 
@@ -62,19 +87,20 @@ Verb add_scene(CLI::App& program) {
       "scene",
       "Makes the boxes of a scene and writes them to a file; `broadside list` tells scenes and formats.");
   verb->add_option("scene", arguments->scene, "Name, spec such as power_law:exponent=2, or file")->required();
-  verb->add_option("-o,--output", arguments->output, "The file, in the format that its extension says")
+  verb->add_option("-o,--output", arguments->output,
+                   "The file, in the format that its extension says; - is standard output")
       ->required();
-  verb->add_option("-n,--boxes", arguments->boxes, "Number of boxes, such as 1000, 100k or 1e6")
-      ->capture_default_str();
+  verb->add_option("--to", arguments->to, "The format to write, whatever the extension")->type_name("NAME");
+  verb->add_option("-n", arguments->boxes,
+                   fmt::format("Number of boxes, such as 1000, 100k or 1e6 (standard: {})", standard_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)");
-  verb->add_option("--moving", arguments->moving, "Fraction of the boxes that move, from 0 to 1")
-      ->capture_default_str();
+  verb->add_option("--moving", arguments->moving, "Fraction of the boxes that move, from 0 to 1");
   verb->add_option(
       "--frames", arguments->frames,
       "Frames after the first (standard: 20 where something moves); alone, a tenth of the boxes moves");
-  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes")
-      ->check(is_seed)
-      ->capture_default_str();
+  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
+      ->check(is_seed);
+  add_file_options(*verb, arguments->input);
   return [arguments] { return run(*arguments); };
 }
 

@@ -28,6 +28,14 @@ std::size_t read_count(const std::string& option, const std::string& text) {
   return static_cast<std::size_t>(number);
 }
 
+std::size_t read_index(const std::string& option, const std::string& text) {
+  std::size_t number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || rest != text.data() + text.size())
+    throw Unusable(option + " is '" + text + "'; expected a whole number from 0");
+  return number;
+}
+
 std::vector<std::size_t> read_counts(const std::string& option, const std::vector<std::string>& texts) {
   std::vector<std::size_t> counts;
   for (const std::string& text : texts) counts.push_back(read_count(option, text));
@@ -53,6 +61,7 @@ std::string is_seed(const std::string& text) {
 }
 
 void check_writable(const std::string& option, const std::string& path) {
+  if (path == "-") return;  // standard output
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
   if (path.empty() || path.back() == '/' || std::filesystem::is_directory(path, ignored))

@@ -11,7 +11,10 @@ namespace broadside::cli {
 /// `option`, if it is none or is below 1.
 std::size_t read_count(const std::string& option, const std::string& text);
 
-/// Likewise each of a list.
+/// The whole number from 0 that `text` is, likewise.
+std::size_t read_index(const std::string& option, const std::string& text);
+
+/// Likewise each of a list of counts.
 std::vector<std::size_t> read_counts(const std::string& option, const std::vector<std::string>& texts);
 
 /// Throw Unusable if the value is no fraction from 0 to 1, or no dimension.
@@ -21,7 +24,8 @@ void check_dimension(int dimension);
 /// What is wrong with a seed, as a check of CLI11's; empty if nothing is.
 std::string is_seed(const std::string& text);
 
-/// Throws Unusable if no file can be made at `path`, so that this is known before hours of work.
+/// Throws Unusable if no file can be made at `path`, so that this is known before hours of work. Standard
+/// output ("-") is not looked at.
 void check_writable(const std::string& option, const std::string& path);
 
 }  // namespace broadside::cli

@@ -19,6 +19,8 @@ using Verb = std::function<Exit()>;
 /// `arguments` are the program's, itself first, for what reports say of it; they outlive the verb.
 Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
 Verb add_scene(CLI::App& program);
+Verb add_pairs(CLI::App& program);
+Verb add_convert(CLI::App& program);
 Verb add_list(CLI::App& program);
 
 }  // namespace broadside::cli

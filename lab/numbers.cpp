@@ -14,6 +14,10 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+std::string counted(std::uint64_t number, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
+}
+
 std::string rounded(double number) {
   if (number >= 99.95) return grouped(static_cast<std::uint64_t>(std::llround(number)));
   if (number <= 0) return "0";

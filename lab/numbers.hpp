@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace broadside::lab {
 
 /// "1,234,567".
 std::string grouped(std::uint64_t number);
+
+/// "1 pair", "1,234,567 pairs".
+std::string counted(std::uint64_t number, std::string_view one, std::string_view many);
 
 /// About three significant digits and no exponent: "0.0712", "4.21", "41.2", "41,200".
 std::string rounded(double number);

@@ -88,7 +88,7 @@ class Runner {
     }
     if (scenes_.back()) return;
     try {
-      scenes_.back() = find_scene(request.scene);
+      scenes_.back() = options_.find(request.scene);
       if (const std::string& warning = scenes_.back()->scene.warning; !warning.empty())
         comparison_.warnings.push_back(warning);
     } catch (const std::exception& thrown) {

@@ -19,6 +19,7 @@ struct CompareOptions {
   std::string algorithms = "all";  ///< as Catalogue::select reads it
   std::vector<CaseRequest> plan = quick_plan();
   std::uint64_t seed = 1;  ///< of a scene's first input; the others count up from it
+  FindScene find = [](std::string_view text) { return find_scene(text); };
   Effort effort{};
   Watch watch{};
   std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nobody asks

@@ -113,7 +113,7 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
 
   std::vector<CaseRequest> plan;
   for (const std::string& name : scenes) {
-    const Scene scene = find_scene(name).scene;
+    const Scene scene = wishes.find(name).scene;
     const auto exists = [&scene](int dimension) { return scene.has_dimension(dimension); };
     if (named && std::ranges::none_of(dimensions, exists)) {
       throw InvalidSpec("scene '" + name +

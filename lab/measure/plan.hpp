@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lab/measure/measurement.hpp"
+#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 
@@ -37,6 +39,7 @@ struct Wishes {
   std::vector<int> dimensions{};
   std::vector<double> moving{};
   std::size_t frames = 0;  ///< 0: 20 where boxes move, all where they move in a file
+  FindScene find = [](std::string_view text) { return find_scene(text); };
 };
 
 /// Every combination, but for those that do not exist: a dimension that a scene does not have, a count or a

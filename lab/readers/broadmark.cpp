@@ -207,6 +207,7 @@ Format broadmark() {
       .recognises = [](std::string_view, std::string_view extension) { return extension == ".aabbs"; },
       .open = open,
       .create = create,
+      .has_doubles = false,
   };
 }
 

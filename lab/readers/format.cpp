@@ -185,7 +185,8 @@ template void write_scene(const History<3, double>&, const std::filesystem::path
 bool is_path(std::string_view text) {
   const std::filesystem::path path(text);
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) || text.find('/') != std::string_view::npos ||
+  return text == "-" || std::filesystem::is_regular_file(path, ignored) ||
+         text.find('/') != std::string_view::npos ||
          std::ranges::any_of(formats(),
                              [&](const Format& format) { return has_extension(format, extension_of(path)); });
 }

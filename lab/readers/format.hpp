@@ -63,6 +63,8 @@ struct Format {
   /// such boxes; the caller adds the file's name.
   std::function<AnyFrameWriter(std::ostream&, int dimension, Precision precision)> create{};
 
+  bool has_doubles = true;  ///< whether create() takes doubles, in a format that can be written
+
   std::string missing{};  ///< what is not there and how to get it, where files cannot be read for that reason
 };
 
@@ -104,7 +106,8 @@ void write_frames(AnyFrameReader frames, const std::filesystem::path& path, cons
 template <int D, typename Real>
 void write_scene(const History<D, Real>& history, const std::filesystem::path& path);
 
-/// Whether `text` is meant as a file's path: it names a file, or has a slash or the extension of a format.
+/// Whether `text` is meant as a file's path: it names a file, has a slash or the extension of a format, or is
+/// "-", which stands for standard input.
 bool is_path(std::string_view text);
 
 /// A file as a scene of its own. Boxes that do not move in the file can be set moving; others move as they do

@@ -92,8 +92,8 @@ std::string json_of(const Comparison& comparison, std::span<const std::string> c
   std::string text =
       fmt::format("{{\n\"schema\": \"broadside.results/1\",\n\"machine\": {},\n\"build\": {},\n",
                   text_of(machine_json()), text_of(build_json()));
-  text += fmt::format("\"command\": {},\n\"measurements\": [",
-                      text_of(std::vector<std::string>(command.begin(), command.end())));
+  text += fmt::format("\"command\": {},\n\"stopped\": {},\n\"measurements\": [",
+                      text_of(std::vector<std::string>(command.begin(), command.end())), comparison.stopped);
   std::string_view separator = "\n";
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "broadside/error.hpp"
@@ -79,7 +82,9 @@ std::span<const Scene> scenes() { return std::span(scene_list().scenes).first(sc
 
 std::span<const Scene> missing_scenes() { return std::span(scene_list().scenes).subspan(scene_list().there); }
 
-NamedScene find_scene(std::string_view text) {
+NamedScene find_scene(std::string_view text) { return find_scene(text, {}); }
+
+NamedScene find_scene(std::string_view text, const ReadOptions& files) {
   // A file's name may have a colon in it.
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(text, ignored);
@@ -87,7 +92,7 @@ NamedScene find_scene(std::string_view text) {
   const std::vector<Scene>& list = scene_list().scenes;
   const auto found = std::ranges::find(list, spec.name, &Scene::name);
   if (found == list.end() && is_path(spec.name)) {
-    Scene scene = file_scene(spec.name);
+    Scene scene = file_scene(spec.name, files);
     const Settings checked(spec, scene.tunables);
     return {std::move(scene), std::move(spec)};
   }
@@ -100,6 +105,16 @@ NamedScene find_scene(std::string_view text) {
     throw InvalidSpec("scene '" + spec.name + "' cannot be made: " + found->missing);
   const Settings checked(spec, found->tunables);
   return {*found, std::move(spec)};
+}
+
+FindScene scene_finder(const ReadOptions& files) {
+  return [files, read = std::make_shared<std::map<std::string, NamedScene, std::less<>>>()](
+             std::string_view text) -> NamedScene {
+    if (const auto known = read->find(text); known != read->end()) return known->second;
+    NamedScene found = find_scene(text, files);
+    if (found.scene.kind == SceneKind::file) read->emplace(text, found);
+    return found;
+  };
 }
 
 template <>

@@ -15,6 +15,8 @@
 
 namespace broadside::lab {
 
+struct ReadOptions;  // lab/readers/format.hpp
+
 /// What changes from one frame to the next.
 template <int D, typename Real = float>
 struct Step {
@@ -90,14 +92,23 @@ std::span<const Scene> scenes();
 /// The scenes that there could be and are not; of those of a missing engine, only the name. Thread-safe.
 std::span<const Scene> missing_scenes();
 
-/// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
-/// file that one of the readers reads, and its spec. Throws InvalidSpec naming the scenes there are, or
-/// FileError (lab/readers/format.hpp).
+/// A scene and the spec it was asked for under.
 struct NamedScene {
   Scene scene;
   Spec spec;
 };
+
+/// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
+/// file that one of the readers reads, and its spec; "-" is standard input. Throws InvalidSpec naming the
+/// scenes there are, or FileError (lab/readers/format.hpp).
 NamedScene find_scene(std::string_view text);
+NamedScene find_scene(std::string_view text, const ReadOptions& files);
+
+/// Finds a scene as find_scene does.
+using FindScene = std::function<NamedScene(std::string_view text)>;
+
+/// A find_scene that reads files with these options, and each one once: standard input cannot be read again.
+FindScene scene_finder(const ReadOptions& files);
 
 /// The scene's boxes in D dimensions, in motion if the request has frames. Throws InvalidSpec if a value in
 /// `spec` is wrong, or if the scene does not exist in D dimensions.

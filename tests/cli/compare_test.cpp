@@ -108,22 +108,49 @@ Ended interrupted(int signal, const std::string& json) {
   return process.wait();
 }
 
-TEST(CompareVerb, LeavesNoFileBehindWhenItIsInterrupted) {
+TEST(CompareVerb, WritesTheCasesThatHadEndedWhenItIsInterrupted) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder folder;
     const Ended ended = interrupted(signal, folder.file("out.json"));
     EXPECT_EQ(ended.status, 130);
-    EXPECT_THAT(folder.names(), IsEmpty());
     EXPECT_THAT(ended.output, HasSubstr("stopped before the end"));
+    EXPECT_THAT(ended.errors, HasSubstr("out.json holds the "));
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
+    const Json json = Json::parse(text_of(folder.file("out.json")));
+    EXPECT_EQ(json["stopped"], true);
+    EXPECT_GE(json["measurements"].size(), 1u);
   }
 }
 
-TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenItIsInterrupted) {
+TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenNoCaseHadEnded) {
   const TemporaryFolder folder;
-  std::ofstream(folder.file("out.json")) << "older";
-  EXPECT_EQ(interrupted(SIGINT, folder.file("out.json")).status, 130);
+  const std::string file = folder.put("out.json", "older");
+  Process process({"compare", "--scenes", "uniform", "-n", "100k", "--algorithms", "brute_force", "--budget",
+                   "600", "--json", file});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  process.signal(SIGINT);
+  const Ended ended = process.wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(ended.errors, HasSubstr("out.json is not written"));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
-  EXPECT_EQ(text_of(folder.file("out.json")), "older");
+  EXPECT_EQ(text_of(file), "older");
+}
+
+TEST(CompareVerb, SaysWhichOptionsAFileIgnores) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n1,1,2,2\n");
+  const Ended ended =
+      run({"compare", "--scenes", file, "-n", "100", "--seed", "3", "--algorithms", "brute_force"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("-n is ignored by scene '"), HasSubstr("--seed is ignored")));
+}
+
+TEST(CompareVerb, TakesItsBoxesFromStandardInput) {
+  const Ended ended = shell(
+      "$BROADSIDE scene lattice -n 100 --dimension 3 -o - --to trace | "
+      "$BROADSIDE compare --scenes - --algorithms own");
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("-, 3D, 100 boxes, "));
 }
 
 TEST(SceneVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {

@@ -20,25 +20,27 @@ std::filesystem::path new_folder() {
   return name;
 }
 
-[[noreturn]] void become_program(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+[[noreturn]] void become_program(std::vector<std::string> arguments, const std::string& program,
+                                 const std::filesystem::path& folder) {
   const auto redirect = [](int stream, const std::filesystem::path& file) {
     dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), stream);
   };
   redirect(STDOUT_FILENO, folder / "output");
   redirect(STDERR_FILENO, folder / "errors");
-  arguments.insert(arguments.begin(), BROADSIDE_PROGRAM);
+  arguments.insert(arguments.begin(), program);
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  execv(BROADSIDE_PROGRAM, pointers.data());
+  execv(program.c_str(), pointers.data());
   _exit(127);
 }
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments) : folder_(new_folder()), id_(fork()) {
+Process::Process(const std::vector<std::string>& arguments, const std::string& program)
+    : folder_(new_folder()), id_(fork()) {
   if (id_ < 0) throw std::runtime_error("no process can be made");
-  if (id_ == 0) become_program(arguments, folder_);
+  if (id_ == 0) become_program(arguments, program, folder_);
 }
 
 Process::~Process() {
@@ -64,11 +66,21 @@ Ended Process::wait() {
 
 Ended run(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
 
+Ended shell(const std::string& line) {
+  setenv("BROADSIDE", BROADSIDE_PROGRAM, 1);
+  return Process({"-c", line}, "/bin/sh").wait();
+}
+
 TemporaryFolder::TemporaryFolder() : path_(new_folder()) {}
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TemporaryFolder::put(const std::string& name, const std::string& text) const {
+  std::ofstream(file(name), std::ios::binary) << text;
+  return file(name);
 }
 
 std::vector<std::string> TemporaryFolder::names() const {

@@ -19,7 +19,7 @@ struct Ended {
 /// The program with these arguments, running, its output and errors going to files.
 class Process {
  public:
-  explicit Process(const std::vector<std::string>& arguments);
+  explicit Process(const std::vector<std::string>& arguments, const std::string& program = BROADSIDE_PROGRAM);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -40,6 +40,9 @@ class Process {
 /// Runs the program to its end.
 Ended run(const std::vector<std::string>& arguments);
 
+/// Runs a line of a shell to its end; $BROADSIDE in it is the program.
+Ended shell(const std::string& line);
+
 /// A folder that is there as long as this object is.
 class TemporaryFolder {
  public:
@@ -49,6 +52,9 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+  /// A new file in it, by its path.
+  std::string put(const std::string& name, const std::string& text) const;
 
   /// The names of what is in it.
   std::vector<std::string> names() const;

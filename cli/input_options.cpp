@@ -1,0 +1,71 @@
+// How a verb's files are to be read: the options that all of them share.
+#include "cli/input_options.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/progress_line.hpp"
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "lab/numbers.hpp"
+
+namespace broadside::cli {
+namespace {
+
+/// Shows how far a file has been read; the line goes with the reader.
+lab::Progress progress_of(const std::string& path) {
+  const std::string name = path.empty()  ? "files"
+                           : path == "-" ? "standard input"
+                                         : std::filesystem::path(path).filename().string();
+  return [name, line = std::make_shared<ProgressLine>()](std::uint64_t done, std::uint64_t total) {
+    line->show(total == 0 ? fmt::format("reading {}: {}", name, lab::bytes(done))
+                          : fmt::format("reading {}: {} %", name, done * 100 / total));
+  };
+}
+
+}  // namespace
+
+void add_file_options(CLI::App& verb, InputOptions& options) {
+  verb.add_option("--format", options.format,
+                  "The format of the input (standard: told by its content and name)")
+      ->type_name("NAME");
+  verb.add_option("--boxes", options.boxes,
+                  "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "
+                  "tells which a format has")
+      ->type_name("PART");
+  verb.add_option("--columns", options.columns,
+                  "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")
+      ->type_name("LIST");
+}
+
+void add_input_options(CLI::App& verb, InputOptions& options) {
+  add_file_options(verb, options);
+  verb.add_option("--precision", options.precision,
+                  "float or double: coordinates are rounded to it (standard: the input's own)");
+  verb.add_option("--dimension", options.dimension, "2 or 3; in 2, boxes in 3D are seen along the z axis");
+}
+
+lab::ReadOptions read_options(const InputOptions& options, const std::string& path) {
+  lab::ReadOptions read;
+  read.format = options.format;
+  read.boxes = options.boxes;
+  read.columns = options.columns;
+  read.dimension = options.dimension;
+  if (options.dimension != 0) check_dimension(options.dimension);
+  if (options.precision == "float")
+    read.precision = lab::Precision::float32;
+  else if (options.precision == "double")
+    read.precision = lab::Precision::float64;
+  else if (!options.precision.empty())
+    throw Unusable(fmt::format("--precision is '{}'; expected float or double", options.precision));
+  read.progress = progress_of(path);
+  return read;
+}
+
+lab::BoxFile open_input(const InputOptions& options, const std::string& path) {
+  return lab::open_file(path, read_options(options, path));
+}
+
+}  // namespace broadside::cli

@@ -1,0 +1,173 @@
+// broadside pairs: joins a file, or two, and writes the pairs of boxes that overlap.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+#include "cli/input_options.hpp"
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "cli/verbs.hpp"
+#include "lab/catalogue.hpp"
+#include "lab/join.hpp"
+#include "lab/measure/contest.hpp"
+#include "lab/numbers.hpp"
+#include "lab/pair_file.hpp"
+#include "lab/readers/write_file.hpp"
+
+namespace broadside::cli {
+namespace {
+
+struct PairsArguments {
+  std::vector<std::string> files;
+  InputOptions input;
+  std::string algorithm{default_algorithm};
+  std::string frame;
+  std::string output = "-";
+  std::string order = "sorted";
+  bool counts = false;
+};
+
+void check(const PairsArguments& arguments) {
+  if (arguments.files.size() > 2)
+    throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
+                               arguments.files.size()));
+  if (std::ranges::count(arguments.files, "-") > 1)
+    throw Unusable("standard input twice; expected it to be one of the two files");
+  if (arguments.order != "sorted" && arguments.order != "found")
+    throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
+  // Known before the files are read.
+  if (lab::Catalogue().select(arguments.algorithm).size() != 1)
+    throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
+  if (arguments.counts) return;
+  lab::pair_format_of(arguments.output);
+  check_writable("-o", arguments.output);
+}
+
+lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path) {
+  // Frames are counted from 0.
+  const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
+  lab::FrameOfFile read = lab::read_frame(open_input(arguments.input, path), frame);
+  if (!read.warning.empty()) say(read.warning);
+  if (read.is_moving && arguments.frame.empty())
+    say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
+  return read;
+}
+
+/// The pairs within one set of boxes or between two.
+class Join {
+ public:
+  explicit Join(const PairsArguments& arguments) : arguments_(arguments) {
+    const lab::Stopwatch watch;
+    for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path));
+    if (is_between()) lab::match(sets_[0], sets_[1]);
+    read_ms_ = watch.milliseconds();
+  }
+
+  bool is_between() const { return sets_.size() == 2; }
+
+  /// Writes the pairs in the order in which they are found.
+  void find(PairSink& pairs) {
+    const lab::Stopwatch watch;
+    if (is_between())
+      lab::join(sets_[0].boxes, sets_[1].boxes, arguments_.algorithm, pairs);
+    else
+      lab::join(sets_[0].boxes, arguments_.algorithm, pairs);
+    join_ms_ = watch.milliseconds();
+  }
+
+  /// What was joined and how, and how long it took.
+  std::string text(std::uint64_t pairs) const {
+    std::string sets;
+    for (const lab::FrameOfFile& set : sets_) {
+      sets += fmt::format("{}{} ({})", sets.empty() ? "" : " with ", set.name,
+                          lab::counted(lab::size(set.boxes), "box", "boxes"));
+    }
+    const lab::AnyBoxes& boxes = sets_[0].boxes;
+    return fmt::format("{} in {}D: {}, exact in {}; read in {}, joined by {} in {}", sets,
+                       lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
+                       name(lab::precision(boxes)), lab::duration(read_ms_ / 1e3), arguments_.algorithm,
+                       lab::duration(join_ms_ / 1e3));
+  }
+
+ private:
+  const PairsArguments& arguments_;
+  std::vector<lab::FrameOfFile> sets_;
+  double read_ms_ = 0;
+  double join_ms_ = 0;
+};
+
+Exit run(const PairsArguments& arguments) {
+  on_signal(OnSignal::end);
+  check(arguments);
+  Join join(arguments);
+  if (arguments.counts) {
+    PairCounter counter;
+    join.find(counter);
+    fmt::print("{}\n", counter.count());
+    say(join.text(counter.count()));
+    return Exit::fine;
+  }
+  const bool streams = arguments.order == "found";
+  std::vector<Pair> sorted;
+  if (!streams) {
+    PairCollector collector(sorted);
+    join.find(collector);
+    std::sort(sorted.begin(), sorted.end());
+  }
+  std::uint64_t count = sorted.size();
+  on_signal(OnSignal::note);
+  lab::write_file(arguments.output, [&](std::ostream& stream) {
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output), join.is_between());
+    PairFunction found([&](std::span<const Pair> pairs) {
+      end_if_interrupted();
+      count += pairs.size();
+      file.write(pairs);
+    });
+    if (streams)
+      join.find(found);
+    else
+      file.write(sorted);
+    file.finish();
+  });
+  say(join.text(count));
+  return Exit::fine;
+}
+
+}  // namespace
+
+Verb add_pairs(CLI::App& program) {
+  const auto arguments = std::make_shared<PairsArguments>();
+  CLI::App* const verb = program.add_subcommand(
+      "pairs",
+      "Finds the pairs of overlapping boxes of a file, or those between the boxes of two files, exactly in "
+      "the precision of the input. Boxes are counted from 0.");
+  verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
+  add_input_options(*verb, arguments->input);
+  verb->add_option("--algorithm", arguments->algorithm,
+                   "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
+      ->capture_default_str();
+  verb->add_option("--frame", arguments->frame,
+                   "The frame of a file whose boxes move, counted from 0 (standard: the first)");
+  verb->add_option("-o,--output", arguments->output,
+                   "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
+                   "as CSV")
+      ->capture_default_str();
+  verb->add_option("--order", arguments->order,
+                   "sorted: by the first box, then the second, whatever the algorithm (takes 8 bytes a "
+                   "pair); found: written as they are found, in an order fixed by boxes and algorithm")
+      ->capture_default_str();
+  verb->add_flag("--count", arguments->counts, "Only count the pairs, and keep none");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace broadside::cli

@@ -1,0 +1,77 @@
+// Files of boxes turned into another format.
+#include "lab/convert.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace broadside::lab {
+namespace {
+
+/// Passes frames on, and counts what goes by.
+template <int D, typename Real>
+class CountingFrames final : public FrameReader<D, Real> {
+ public:
+  CountingFrames(std::unique_ptr<FrameReader<D, Real>> frames, Converted& counts,
+                 const std::function<void()>& each_frame)
+      : frames_(std::move(frames)), counts_(counts), each_frame_(each_frame) {}
+
+  std::vector<Box<D, Real>> first() override {
+    each_frame_();
+    std::vector<Box<D, Real>> boxes = frames_->first();
+    count(boxes, boxes.size());
+    return boxes;
+  }
+
+  bool next(Step<D, Real>& step) override {
+    each_frame_();
+    if (!frames_->next(step)) {
+      counts_.warning = frames_->warning();
+      return false;
+    }
+    count(step.boxes, step.size);
+    return true;
+  }
+
+  std::string warning() const override { return frames_->warning(); }
+
+ private:
+  void count(const std::vector<Box<D, Real>>& boxes, std::size_t size) {
+    ++counts_.frames;
+    counts_.boxes = std::max(counts_.boxes, size);
+    counts_.coordinates += 2 * D * boxes.size();
+    if (counts_.precision != Precision::float32) return;
+    const auto is_rounded = [](Real number) {
+      return static_cast<Real>(static_cast<float>(number)) != number;
+    };
+    for (const Box<D, Real>& box : boxes) {
+      counts_.rounded += static_cast<std::uint64_t>(std::ranges::count_if(box.min, is_rounded) +
+                                                    std::ranges::count_if(box.max, is_rounded));
+    }
+  }
+
+  std::unique_ptr<FrameReader<D, Real>> frames_;
+  Converted& counts_;
+  const std::function<void()>& each_frame_;
+};
+
+}  // namespace
+
+Converted convert(BoxFile from, const std::filesystem::path& path, const Format& format,
+                  std::optional<Precision> precision, const std::function<void()>& each_frame) {
+  Converted converted;
+  converted.dimension = dimension_of(from.frames);
+  converted.precision =
+      format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
+  AnyFrameReader counted = std::visit(
+      [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) -> AnyFrameReader {
+        return std::make_unique<CountingFrames<D, Real>>(std::move(frames), converted, each_frame);
+      },
+      from.frames);
+  write_frames(with_precision(std::move(counted), converted.precision), path, format);
+  return converted;
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,32 @@
+// Files of boxes turned into another format.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "lab/readers/format.hpp"
+
+namespace broadside::lab {
+
+/// What a conversion wrote.
+struct Converted {
+  int dimension = 2;
+  Precision precision = Precision::float32;
+  std::uint64_t frames = 0;
+  std::size_t boxes = 0;          ///< the most places there are in a frame
+  std::uint64_t coordinates = 0;  ///< of all boxes written, in all frames
+  std::uint64_t rounded = 0;      ///< coordinates that the written file holds only rounded to a float
+  std::string warning{};          ///< what had to be left out of a damaged input; empty otherwise
+};
+
+/// Writes what is left of `from` to `path`, as write_frames does: in the precision asked for, or that of
+/// `from`; in float where the format holds no doubles. `each_frame` is called before each frame and may throw
+/// to end the conversion, of which nothing is then left. Throws FileError. Memory: that of a frame, where
+/// both formats go frame by frame.
+Converted convert(BoxFile from, const std::filesystem::path& path, const Format& format,
+                  std::optional<Precision> precision, const std::function<void()>& each_frame);
+
+}  // namespace broadside::lab

@@ -1,0 +1,84 @@
+// Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
+#include "lab/join.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "broadside/find_pairs.hpp"
+
+namespace broadside::lab {
+namespace {
+
+template <int D, typename Real>
+FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t frame) {
+  std::vector<Box<D, Real>> boxes = frames.first();
+  std::size_t at = 0;
+  Step<D, Real> step;
+  bool has_more = frames.next(step);
+  for (; has_more && at < frame; ++at) {
+    lab::apply(step, boxes);
+    has_more = frames.next(step);
+  }
+  if (at < frame)
+    throw FileError(fmt::format("{}: frame {} of a file with {} frames, counted from 0; expected one of them",
+                                name, frame, at + 1));
+  return {std::move(name), std::move(boxes), has_more || frame > 0, frames.warning()};
+}
+
+template <int D>
+std::vector<Box<D, double>> widened(const std::vector<Box<D>>& boxes) {
+  std::vector<Box<D, double>> wide(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      wide[i].min[axis] = static_cast<double>(boxes[i].min[axis]);
+      wide[i].max[axis] = static_cast<double>(boxes[i].max[axis]);
+    }
+  }
+  return wide;
+}
+
+AnyBoxes widened(const AnyBoxes& boxes) {
+  if (dimension(boxes) == 2) return widened(std::get<std::vector<Box2>>(boxes));
+  return widened(std::get<std::vector<Box3>>(boxes));
+}
+
+}  // namespace
+
+std::size_t size(const AnyBoxes& boxes) noexcept {
+  return std::visit([](const auto& list) { return list.size(); }, boxes);
+}
+
+int dimension(const AnyBoxes& boxes) noexcept { return boxes.index() % 2 == 0 ? 2 : 3; }
+
+Precision precision(const AnyBoxes& boxes) noexcept {
+  return boxes.index() < 2 ? Precision::float32 : Precision::float64;
+}
+
+FrameOfFile read_frame(BoxFile file, std::size_t frame) {
+  return std::visit([&](const auto& frames) { return read(*frames, std::move(file.name), frame); },
+                    file.frames);
+}
+
+void match(FrameOfFile& left, FrameOfFile& right) {
+  if (dimension(left.boxes) != dimension(right.boxes)) {
+    throw FileError(fmt::format(
+        "{} holds boxes in {}D and {} in {}D; expected both in the same, as --dimension 2 makes them",
+        left.name, dimension(left.boxes), right.name, dimension(right.boxes)));
+  }
+  if (precision(left.boxes) == precision(right.boxes)) return;
+  AnyBoxes& narrow = precision(left.boxes) == Precision::float32 ? left.boxes : right.boxes;
+  narrow = widened(narrow);
+}
+
+void join(const AnyBoxes& boxes, std::string_view spec, PairSink& pairs) {
+  std::visit([&](const auto& list) { find_pairs(list, pairs, spec); }, boxes);
+}
+
+void join(const AnyBoxes& left, const AnyBoxes& right, std::string_view spec, PairSink& pairs) {
+  std::visit(
+      [&](const auto& list) { find_pairs(list, std::get<std::decay_t<decltype(list)>>(right), pairs, spec); },
+      left);
+}
+
+}  // namespace broadside::lab

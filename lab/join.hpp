@@ -1,0 +1,48 @@
+// Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "lab/readers/format.hpp"
+
+namespace broadside::lab {
+
+/// Boxes of either dimension and either precision.
+using AnyBoxes =
+    std::variant<std::vector<Box2>, std::vector<Box3>, std::vector<DoubleBox2>, std::vector<DoubleBox3>>;
+
+std::size_t size(const AnyBoxes& boxes) noexcept;
+int dimension(const AnyBoxes& boxes) noexcept;
+Precision precision(const AnyBoxes& boxes) noexcept;
+
+/// The boxes of one frame of a file.
+struct FrameOfFile {
+  std::string name;  ///< the file's
+  AnyBoxes boxes;
+  bool is_moving = false;  ///< whether the file has other frames
+  std::string warning{};   ///< what had to be left out of a damaged file; empty otherwise
+};
+
+/// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,
+/// where the format is read frame by frame.
+FrameOfFile read_frame(BoxFile file, std::size_t frame);
+
+/// Brings two sets to the same precision: double, exactly, if either is. Throws FileError, naming both, if
+/// one is in 2D and the other in 3D.
+void match(FrameOfFile& left, FrameOfFile& right);
+
+/// Writes every pair of overlapping boxes once, in the order in which the algorithm of `spec` finds them.
+/// Throws as find_pairs does.
+void join(const AnyBoxes& boxes, std::string_view spec, PairSink& pairs);
+
+/// Writes every pair of a box of `left` and one of `right`, which match, likewise.
+void join(const AnyBoxes& left, const AnyBoxes& right, std::string_view spec, PairSink& pairs);
+
+}  // namespace broadside::lab

@@ -1,0 +1,49 @@
+// Pairs as files: CSV, or a NumPy array of n x 2 numbers.
+#include "lab/pair_file.hpp"
+
+#include <array>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "lab/readers/format.hpp"
+
+namespace broadside::lab {
+namespace {
+
+void append(std::string& text, BoxId id, char end) {
+  std::array<char, 11> digits;
+  char* const after = std::to_chars(digits.data(), digits.data() + 10, index(id)).ptr;
+  *after = end;
+  text.append(digits.data(), after + 1);
+}
+
+}  // namespace
+
+PairFormat pair_format_of(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  std::error_code ignored;
+  const bool is_device =
+      std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+  if (path == "-" || extension == ".csv" || (is_device && extension.empty())) return PairFormat::csv;
+  throw FileError(fmt::format("{}: extension '{}' is of no format for pairs; expected .csv or .npy",
+                              path.string(), extension));
+}
+
+PairFile::PairFile(std::ostream& stream, PairFormat, bool is_between)
+    : stream_(stream), text_(is_between ? "left,right\n" : "first,second\n") {}
+
+void PairFile::write(std::span<const Pair> pairs) {
+  constexpr std::size_t bytes_a_piece = std::size_t{1} << 16;
+  for (const Pair pair : pairs) {
+    append(text_, pair.first, ',');
+    append(text_, pair.second, '\n');
+    if (text_.size() < bytes_a_piece) continue;
+    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.clear();
+  }
+}
+
+void PairFile::finish() { stream_.write(text_.data(), static_cast<std::streamsize>(text_.size())); }
+
+}  // namespace broadside::lab

@@ -1,0 +1,39 @@
+// Pairs as files: CSV, or a NumPy array of n x 2 numbers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <span>
+#include <string>
+
+#include "broadside/pair.hpp"
+
+namespace broadside::lab {
+
+enum class PairFormat : std::uint8_t { csv, npy };
+
+/// The format that a path's extension says; CSV for standard output ("-") and for what is no regular file.
+/// Throws FileError.
+PairFormat pair_format_of(const std::filesystem::path& path);
+
+/// Writes pairs to a stream, as they come, and keeps none; but for NumPy's format where the stream cannot be
+/// moved back to the array's header, as in a pipe.
+class PairFile {
+ public:
+  /// Begins the file. The stream outlives this object; what is wrong with it, the caller sees. `is_between`
+  /// says that pairs are of a left and a right set, which the columns are then called.
+  PairFile(std::ostream& stream, PairFormat format, bool is_between);
+
+  void write(std::span<const Pair> pairs);
+
+  /// After the last pair.
+  void finish();
+
+ private:
+  std::ostream& stream_;
+  std::string text_;
+};
+
+}  // namespace broadside::lab

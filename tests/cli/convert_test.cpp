@@ -1,0 +1,136 @@
+// broadside convert, and scene's output: formats, pipes, what is lost and said.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+
+namespace broadside::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const std::string tenths =
+    "min_x,min_y,max_x,max_y\n"
+    "0.1,0,1,1\n"
+    "2,2,2.5,3.7\n";
+
+TEST(ConvertVerb, ReachesTheSamePairsThroughEveryFormat) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("boxes.csv");
+  ASSERT_EQ(run({"scene", "integers", "-n", "300", "--dimension", "3", "-o", file}).status, 0);
+  const std::string expected = run({"pairs", file}).output;
+  for (const std::string name : {"a.btrace", "b.aabbs", "c.csv"}) {
+    const Ended ended = run({"convert", file, "-o", folder.file(name)});
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_EQ(ended.output, "");
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("1 frame of 300 boxes in 3D"), Not(HasSubstr("rounded"))));
+    EXPECT_EQ(run({"pairs", folder.file(name)}).output, expected);
+  }
+}
+
+TEST(ConvertVerb, KeepsEveryFrame) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("moving.csv");
+  ASSERT_EQ(run({"scene", "churn", "-n", "50", "--frames", "6", "-o", file}).status, 0);
+  const Ended there = run({"convert", file, "-o", folder.file("moving.btrace")});
+  EXPECT_THAT(there.errors, HasSubstr("7 frames of "));
+  ASSERT_EQ(run({"convert", folder.file("moving.btrace"), "-o", folder.file("back.csv")}).status, 0);
+  for (const std::string frame : {"0", "3", "6"}) {
+    EXPECT_EQ(run({"pairs", file, "--frame", frame}).output,
+              run({"pairs", folder.file("back.csv"), "--frame", frame}).output);
+  }
+}
+
+TEST(ConvertVerb, SaysHowManyCoordinatesAreRounded) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"-o", folder.file("boxes.aabbs")},
+        std::vector<std::string>{"--precision", "float", "-o", folder.file("boxes.btrace")}}) {
+    std::vector<std::string> arguments = {"convert", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("2 of 8 coordinates were rounded to float"),
+                                    HasSubstr("1 frame of 2 boxes in 2D, as floats, in format ")));
+  }
+}
+
+TEST(ConvertVerb, StandsInAPipe) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  const Ended piped = shell("cat " + file + " | $BROADSIDE convert - --to trace -o - | " +
+                            "$BROADSIDE convert - --to csv -o - | cat");
+  EXPECT_THAT(piped.output, AllOf(HasSubstr("0.1,0,1,1\n"), HasSubstr("2,2,2.5,3.7\n")));
+  EXPECT_EQ(shell("$BROADSIDE scene lattice -n 9 -o - --to csv | $BROADSIDE pairs - --count").output, "20\n");
+}
+
+TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
+  const TemporaryFolder folder;
+  const std::string good = folder.put("good.csv", tenths);
+  const std::string late = folder.put("late.csv",
+                                      "frame,box,min_x,min_y,max_x,max_y\n"
+                                      "0,0,0,0,1,1\n"
+                                      "1,0,0,0,1,-1\n");
+  const std::string absent = folder.put("absent.csv", "min_x,min_y,max_x,max_y\n,,,\n");
+  struct Refusal {
+    std::vector<std::string> arguments;
+    std::vector<std::string> message;
+  };
+  const std::vector<Refusal> refusals = {
+      {{good}, {"--output"}},
+      {{folder.file("missing.csv"), "-o", folder.file("out.csv")}, {"missing.csv", "No such file"}},
+      {{late, "-o", folder.file("out.btrace")}, {"late.csv:3", "min <= max"}},
+      {{absent, "-o", folder.file("out.aabbs")}, {"out.aabbs", "box 0 is absent"}},
+      {{good, "-o", folder.file("out.ply")}, {"out.ply", "'.ply'", "can be written"}},
+      {{good, "-o", folder.file("out.csv"), "--to", "mesh"}, {"'mesh'", "can be written"}},
+      {{good, "-o", "-"}, {"-: extension ''", "csv"}},
+      {{good, "-o", "/dev/full", "--to", "csv"}, {"/dev/full", "No space left"}},
+      {{good, "-o", "/nowhere/out.csv"}, {"no folder '/nowhere'"}},
+      {{good, "-o", folder.file("out.csv"), "--dimension", "3"}, {"good.csv", "2D"}},
+  };
+  for (const Refusal& refusal : refusals) {
+    std::vector<std::string> arguments = {"convert"};
+    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 2) << ended.errors;
+    EXPECT_THAT(ended.output, IsEmpty());
+    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"absent.csv", "good.csv", "late.csv"}));
+}
+
+TEST(ConvertVerb, ReadsWhatIsWholeOfATraceThatIsCutOff) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("moving.btrace");
+  ASSERT_EQ(run({"scene", "churn", "-n", "50", "--frames", "6", "-o", file}).status, 0);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 5);
+  const Ended ended = run({"convert", file, "-o", folder.file("whole.btrace")});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("is cut off in frame 6"), HasSubstr("6 frames of ")));
+}
+
+TEST(SceneVerb, RefusesOptionsThatTheSceneIgnores) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  const std::string out = folder.file("out.csv");
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{file, "-n", "100"}, {file, "--seed", "2"}, {"churn", "--moving", "0.5"}}) {
+    std::vector<std::string> arguments = {"scene", "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr(more[1] + " for scene '"), HasSubstr("expected none")));
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.csv"});
+}
+
+}  // namespace
+}  // namespace broadside::cli

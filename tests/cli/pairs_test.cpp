@@ -1,0 +1,182 @@
+// broadside pairs: what it finds, counts and writes, and what it says of input that it cannot use.
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+
+namespace broadside::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Boxes 0 and 3 overlap; 1 touches 3 at a corner; 2 is alone.
+const std::string four_boxes =
+    "min_x,min_y,max_x,max_y\n"
+    "0,0,2,2\n"
+    "3,3,4,4\n"
+    "10,10,11,11\n"
+    "1,1,3,3\n";
+
+TEST(PairsVerb, WritesThePairsAsCsvAndSaysWhatItDid) {
+  const TemporaryFolder folder;
+  const Ended ended = run({"pairs", folder.put("boxes.csv", four_boxes)});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "first,second\n0,3\n1,3\n");
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("boxes.csv (4 boxes) in 2D: 2 pairs, exact in double; read in "),
+                                  HasSubstr(", joined by grid in ")));
+}
+
+TEST(PairsVerb, OnlyCountsWhereThatIsAsked) {
+  const TemporaryFolder folder;
+  const Ended ended = run({"pairs", "--count", folder.put("boxes.csv", four_boxes)});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "2\n");
+}
+
+TEST(PairsVerb, JoinsTwoFilesAndFindsOnlyWhatIsBetweenThem) {
+  const TemporaryFolder folder;
+  const std::string right = folder.put("right.csv",
+                                       "min_x,min_y,max_x,max_y\n"
+                                       "2,2,2,2\n"
+                                       "2,2,10,10\n");
+  const Ended ended = run({"pairs", folder.put("left.csv", four_boxes), right});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "left,right\n0,0\n0,1\n1,1\n2,1\n3,0\n3,1\n");
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("left.csv (4 boxes) with "), HasSubstr("right.csv (2 boxes)")));
+}
+
+TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
+  const TemporaryFolder folder;
+  // A gap that a float does not see at this distance.
+  const std::string file = folder.put("boxes.csv",
+                                      "min_x,min_y,max_x,max_y\n"
+                                      "5000000,0,5000000.001,1\n"
+                                      "5000000.002,0,5000001,1\n");
+  EXPECT_EQ(run({"pairs", "--count", file}).output, "0\n");
+  const Ended rounded = run({"pairs", "--count", file, "--precision", "float"});
+  EXPECT_EQ(rounded.output, "1\n");
+  EXPECT_THAT(rounded.errors, HasSubstr("1 pair, exact in float"));
+}
+
+TEST(PairsVerb, JoinsFloatsWithDoublesAsDoubles) {
+  const TemporaryFolder folder;
+  const std::string doubles = folder.put("boxes.csv", four_boxes);
+  const std::string floats = folder.file("boxes.btrace");
+  ASSERT_EQ(run({"convert", doubles, "--precision", "float", "-o", floats}).status, 0);
+  EXPECT_THAT(run({"pairs", "--count", floats}).errors, HasSubstr("exact in float"));
+  const Ended ended = run({"pairs", "--count", floats, doubles});
+  EXPECT_EQ(ended.output, "8\n");
+  EXPECT_THAT(ended.errors, HasSubstr("exact in double"));
+}
+
+TEST(PairsVerb, SortsSoThatTheAlgorithmMakesNoDifference) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("boxes.csv");
+  ASSERT_EQ(run({"scene", "clustered", "-n", "500", "-o", file}).status, 0);
+  const std::string expected = run({"pairs", file}).output;
+  std::istringstream lines(expected);
+  std::vector<std::string> found;
+  for (std::string line; std::getline(lines, line);) found.push_back(line);
+  EXPECT_GT(found.size(), 100u);
+  for (const std::string algorithm : {"brute_force", "quadtree", "sweep_and_prune", "paper_grid"}) {
+    EXPECT_EQ(run({"pairs", file, "--algorithm", algorithm}).output, expected);
+    // As they are found: the same pairs, and the same order again.
+    const Ended streamed = run({"pairs", file, "--algorithm", algorithm, "--order", "found"});
+    EXPECT_EQ(run({"pairs", file, "--algorithm", algorithm, "--order", "found"}).output, streamed.output);
+    std::istringstream more(streamed.output);
+    std::vector<std::string> unsorted;
+    for (std::string line; std::getline(more, line);) unsorted.push_back(line);
+    EXPECT_TRUE(std::ranges::is_permutation(unsorted, found));
+  }
+}
+
+TEST(PairsVerb, TakesAFrameOfAFileThatMoves) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv",
+                                      "frame,box,min_x,min_y,max_x,max_y\n"
+                                      "0,0,0,0,1,1\n"
+                                      "0,1,5,5,6,6\n"
+                                      "1,1,1,1,2,2\n");
+  const Ended first = run({"pairs", "--count", file});
+  EXPECT_EQ(first.output, "0\n");
+  EXPECT_THAT(first.errors, HasSubstr("holds several frames; these are the pairs of the first (--frame 0)"));
+  EXPECT_EQ(run({"pairs", "--count", file, "--frame", "1"}).output, "1\n");
+  const Ended beyond = run({"pairs", "--count", file, "--frame", "2"});
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_THAT(beyond.errors, HasSubstr("frame 2 of a file with 2 frames, counted from 0"));
+}
+
+TEST(PairsVerb, ReadsStandardInputAndFollowsAPipe) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  const Ended piped = shell("cat " + file + " | $BROADSIDE pairs - | cat");
+  EXPECT_EQ(piped.output, "first,second\n0,3\n1,3\n");
+  EXPECT_THAT(piped.errors, HasSubstr("standard input (4 boxes)"));
+  EXPECT_EQ(shell("$BROADSIDE pairs --count - " + file + " < " + file).output, "8\n");
+}
+
+TEST(PairsVerb, WritesAFileWholeOrNotAtAll) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  const Ended ended = run({"pairs", file, "-o", folder.file("pairs.csv")});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "");
+  EXPECT_EQ(text_of(folder.file("pairs.csv")), "first,second\n0,3\n1,3\n");
+  EXPECT_EQ(run({"pairs", folder.put("bad.csv", "min_x\n"), "-o", folder.file("none.csv")}).status, 2);
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"bad.csv", "boxes.csv", "pairs.csv"}));
+  const Ended full = run({"pairs", file, "-o", "/dev/full"});
+  EXPECT_EQ(full.status, 2);
+  EXPECT_THAT(full.errors, HasSubstr("/dev/full: cannot be written: No space left on device"));
+  const Ended no_room = shell("$BROADSIDE pairs " + file + " > /dev/full");
+  EXPECT_EQ(no_room.status, 2);
+  EXPECT_THAT(no_room.errors, HasSubstr("standard output: cannot be written"));
+}
+
+TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  const std::string solid = folder.put("solid.csv", "min_x,min_y,min_z,max_x,max_y,max_z\n0,0,0,1,1,1\n");
+  struct Refusal {
+    std::vector<std::string> arguments;
+    std::vector<std::string> message;
+  };
+  const std::vector<Refusal> refusals = {
+      {{}, {"files"}},
+      {{file, file, file}, {"3 files", "expected one"}},
+      {{"-", "-"}, {"standard input twice"}},
+      {{folder.file("missing.csv")}, {"missing.csv", "No such file"}},
+      {{"/"}, {"/: cannot be read: Is a directory"}},
+      {{folder.put("empty.csv", "")}, {"empty.csv", "empty"}},
+      {{folder.put("words.csv", "min_x,min_y,max_x,max_y\n0,0,much,1\n")}, {"words.csv:2", "'much'"}},
+      {{folder.put("bad.csv", "min_x,min_y,max_x,max_y\n0,0,\x1b[2J,1\n")}, {"bad.csv:2", "'\\x1b[2J'"}},
+      {{file, solid}, {"in 2D", "in 3D", "--dimension 2"}},
+      {{file, "--order", "any"}, {"--order is 'any'", "expected sorted or found"}},
+      {{file, "--frame", "-1"}, {"--frame is '-1'", "expected a whole number from 0"}},
+      {{file, "--precision", "half"}, {"--precision is 'half'", "expected float or double"}},
+      {{file, "--dimension", "4"}, {"--dimension is 4"}},
+      {{file, "--format", "csw"}, {"unknown format 'csw'", "csv"}},
+      {{file, "--boxes", "triangles"}, {"boxes of 'triangles' in format csv"}},
+      {{file, "--algorithm", "gird"}, {"'gird'", "grid"}},
+      {{file, "--algorithm", "own"}, {"--algorithm is 'own'", "expected one"}},
+      {{file, "-o", folder.file("pairs.txt")}, {"'.txt'", "expected .csv or .npy"}},
+      {{file, "-o", "/nowhere/pairs.csv"}, {"no folder '/nowhere'"}},
+  };
+  for (const Refusal& refusal : refusals) {
+    std::vector<std::string> arguments = {"pairs"};
+    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 2) << ended.errors;
+    EXPECT_THAT(ended.output, IsEmpty());
+    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace broadside::cli
