@@ -7,6 +7,7 @@ namespace broadside::lab::readers {
 
 Format trace();
 Format csv();
+Format npy();
 Format broadmark();
 Format mesh();
 

@@ -89,10 +89,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
-      readers::trace(),
-      readers::csv(),
-      readers::broadmark(),
-      readers::mesh(),
+      readers::trace(), readers::csv(), readers::npy(), readers::broadmark(), readers::mesh(),
   };
   return list;
 }

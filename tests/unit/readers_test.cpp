@@ -121,13 +121,13 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(plain + "0,0,1\n"),
               AllOf(HasSubstr("bad.csv:3: 3 columns"), HasSubstr("expected the 4")));
   EXPECT_THAT(refusal_of(plain + "0,0,1,1,\n"), HasSubstr("bad.csv:3: 5 columns"));
-  EXPECT_THAT(refusal_of(plain + "\n1,2,3,4\n"), HasSubstr("bad.csv:3: 1 columns"));
+  EXPECT_THAT(refusal_of(plain + "\n1,2,3,4\n"), HasSubstr("bad.csv:3: an empty line"));
   EXPECT_THAT(refusal_of(plain + "0,0,1,one\n"),
               AllOf(HasSubstr("bad.csv:3: column max_y is 'one'"), HasSubstr("expected a number")));
   EXPECT_THAT(refusal_of(plain + "0,nan,1,1\n"), HasSubstr("column min_y is 'nan'"));
   EXPECT_THAT(refusal_of(plain + "0,1e99,1,1\n"), HasSubstr("column min_y is '1e99'"));
   EXPECT_THAT(refusal_of(plain + "0,,1,1\n"), HasSubstr("column min_y is ''"));
-  EXPECT_THAT(refusal_of(plain + "0, 0,1,1\n"), HasSubstr("column min_y is ' 0'"));
+  EXPECT_THAT(refusal_of(plain + "0,0 0,1,1\n"), HasSubstr("column min_y is '0 0'"));
   EXPECT_THAT(refusal_of(plain + "2,0,1,1\n"),
               AllOf(HasSubstr("bad.csv:3: min (2, 0) and max (1, 1)"), HasSubstr("min <= max")));
 
@@ -258,7 +258,7 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   EXPECT_THAT(refusal(path("nothing.csv")), AllOf(HasSubstr("nothing.csv"), HasSubstr("No such file")));
   EXPECT_THAT(refusal(path("")), HasSubstr("cannot be read"));
   EXPECT_THAT(refusal(put("a.xyzzy", "hello")),
-              AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), broadmark (.aabbs)")));
+              AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), broadmark (.aabbs)")));
   try {
     write_scene(History<2>{}, path("a.obj"));
     FAIL() << "wrote a format that is only read";

@@ -1,0 +1,147 @@
+// Writes boxes as a table: one line a box, or one line a box that changes in a frame.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lab/readers/csv.hpp"
+
+namespace broadside::lab::readers {
+namespace {
+
+template <int D>
+constexpr std::string_view bounds_columns =
+    D == 2 ? "min_x,min_y,max_x,max_y\n" : "min_x,min_y,min_z,max_x,max_y,max_z\n";
+
+/// Text on its way into a stream, gathered into large pieces.
+class Buffer {
+ public:
+  explicit Buffer(std::ostream& stream) : stream_(stream), bytes_(std::size_t{1} << 16) {}
+
+  template <typename Number>
+  void number(Number value) {
+    make_room();
+    used_ = static_cast<std::size_t>(
+        std::to_chars(bytes_.data() + used_, bytes_.data() + bytes_.size(), value).ptr - bytes_.data());
+  }
+
+  void text(std::string_view text) {
+    make_room();
+    std::memcpy(bytes_.data() + used_, text.data(), text.size());
+    used_ += text.size();
+  }
+
+  void flush() {
+    stream_.write(bytes_.data(), static_cast<std::streamsize>(used_));
+    used_ = 0;
+  }
+
+ private:
+  /// Room for what is longest: the names of the columns.
+  void make_room() {
+    if (bytes_.size() - used_ < 100) flush();
+  }
+
+  std::ostream& stream_;
+  std::vector<char> bytes_;
+  std::size_t used_ = 0;
+};
+
+template <int D, typename Real>
+void write_bounds(Buffer& buffer, const Box<D, Real>& box) {
+  const bool absent = is_absent(box);
+  for (int i = 0; i < 2 * D; ++i) {
+    if (i > 0) buffer.text(",");
+    if (!absent) buffer.number(static_cast<double>(i < D ? box.min[i] : box.max[i - D]));
+  }
+  buffer.text("\n");
+}
+
+template <int D, typename Real>
+void write_row(Buffer& buffer, std::size_t frame, BoxId id, const Box<D, Real>& box) {
+  buffer.number(frame);
+  buffer.text(",");
+  buffer.number(index(id));
+  buffer.text(",");
+  write_bounds(buffer, box);
+}
+
+/// What a file must list so that its boxes become those of `step`: the boxes that change, those that go
+/// because the array ends before them, and those that come absent; sorted.
+template <int D, typename Real>
+std::vector<std::pair<BoxId, Box<D, Real>>> rows_of(const Step<D, Real>& step,
+                                                    std::span<const Box<D, Real>> before,
+                                                    std::size_t places) {
+  std::vector<std::pair<BoxId, Box<D, Real>>> rows;
+  for (std::size_t i = step.size; i < before.size(); ++i) {
+    if (!is_absent(before[i])) rows.emplace_back(BoxId(i), absent_box<D, Real>());
+  }
+  for (std::size_t i = places; i < step.size; ++i) rows.emplace_back(BoxId(i), absent_box<D, Real>());
+  for (std::size_t i = 0; i < step.changed.size(); ++i) {
+    if (index(step.changed[i]) < step.size) rows.emplace_back(step.changed[i], step.boxes[i]);
+  }
+  // Of two rows for a box the later one, from the list of changes, holds.
+  std::ranges::reverse(rows);
+  std::ranges::stable_sort(rows, {}, &std::pair<BoxId, Box<D, Real>>::first);
+  // Not std::ranges' version: clang 14 cannot compile what it returns.
+  rows.erase(
+      std::unique(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+      rows.end());
+  return rows;
+}
+
+template <int D, typename Real>
+class CsvWriter final : public FrameWriter<D, Real> {
+ public:
+  explicit CsvWriter(std::ostream& stream) : buffer_(stream) {}
+
+  void first(std::span<const Box<D, Real>> boxes) override {
+    boxes_.assign(boxes.begin(), boxes.end());
+    places_ = boxes.size();
+  }
+
+  void next(const Step<D, Real>& step) override {
+    if (frame_ == 0) {
+      buffer_.text("frame,box,");
+      buffer_.text(bounds_columns<D>);
+      for (std::size_t i = 0; i < boxes_.size(); ++i) write_row(buffer_, 0, BoxId(i), boxes_[i]);
+    }
+    ++frame_;
+    const auto rows = rows_of<D, Real>(step, boxes_, places_);
+    for (const auto& [id, box] : rows) write_row(buffer_, frame_, id, box);
+    if (rows.empty()) {
+      buffer_.number(frame_);
+      buffer_.text(D == 2 ? ",,,,,\n" : ",,,,,,,\n");
+    }
+    lab::apply(step, boxes_);
+    places_ = std::max(places_, boxes_.size());
+  }
+
+  void finish() override {
+    if (frame_ == 0) {
+      buffer_.text(bounds_columns<D>);
+      for (const Box<D, Real>& box : boxes_) write_bounds(buffer_, box);
+    }
+    buffer_.flush();
+  }
+
+ private:
+  Buffer buffer_;
+  std::vector<Box<D, Real>> boxes_;
+  std::size_t places_ = 0;  // in the file, where the array never becomes shorter
+  std::size_t frame_ = 0;
+};
+
+}  // namespace
+
+AnyFrameWriter write_csv(std::ostream& stream, int dimension, Precision precision) {
+  return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
+    return std::make_unique<CsvWriter<D, Real>>(stream);
+  });
+}
+
+}  // namespace broadside::lab::readers
