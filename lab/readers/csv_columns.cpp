@@ -215,7 +215,8 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     }
     const int position = of_axis[static_cast<std::size_t>(Role::position)];
     const int size = of_axis[static_cast<std::size_t>(Role::size)];
-    if (position != none && size != none)
+    // Beside bounds on the other two, z and depth need not be those of a box.
+    if (position != none && size != none && (axis < 2 || columns.is_computed()))
       return fmt::format("column '{}' may be a minimum or a centre",
                          names[static_cast<std::size_t>(position)]);
     // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
