@@ -3,6 +3,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +24,7 @@
 #include "lab/measure/contest.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
+#include "lab/readers/swept_mesh.hpp"
 #include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
@@ -35,7 +38,36 @@ struct PairsArguments {
   std::string output = "-";
   std::string order = "sorted";
   bool counts = false;
+  bool is_swept = false;
+  std::string left;  // parts of a swept mesh
+  std::string right;
+  bool excludes_shared = false;
 };
+
+lab::MeshPart read_part(const std::string& option, const std::string& text) {
+  for (const lab::MeshPart part : {lab::MeshPart::vertices, lab::MeshPart::edges, lab::MeshPart::faces}) {
+    if (name(part) == text) return part;
+  }
+  throw Unusable(fmt::format("{} is '{}'; expected vertices, edges or faces", option, text));
+}
+
+void check_swept(const PairsArguments& arguments) {
+  const InputOptions& input = arguments.input;
+  if (!arguments.is_swept) {
+    if (!arguments.left.empty() || !arguments.right.empty() || arguments.excludes_shared)
+      throw Unusable("--left, --right or --exclude-shared without --swept; expected it, and two meshes");
+    return;
+  }
+  if (arguments.files.size() != 2)
+    throw Unusable(fmt::format("--swept with {}; expected two, a mesh and the same mesh later",
+                               lab::counted(arguments.files.size(), "file", "files")));
+  read_part("--left", arguments.left);
+  read_part("--right", arguments.right);
+  if (!input.boxes.empty() || !input.columns.empty() || !input.precision.empty() || input.dimension != 0 ||
+      !arguments.frame.empty())
+    throw Unusable(
+        "--boxes, --columns, --precision, --dimension or --frame with --swept; expected none of them");
+}
 
 void check(const PairsArguments& arguments) {
   if (arguments.files.size() > 2)
@@ -43,6 +75,7 @@ void check(const PairsArguments& arguments) {
                                arguments.files.size()));
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
+  check_swept(arguments);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
@@ -63,13 +96,17 @@ lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path) 
   return read;
 }
 
-/// The pairs within one set of boxes or between two.
+/// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
 class Join {
  public:
   explicit Join(const PairsArguments& arguments) : arguments_(arguments) {
     const lab::Stopwatch watch;
-    for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path));
-    if (is_between()) lab::match(sets_[0], sets_[1]);
+    if (arguments.is_swept) {
+      sweep();
+    } else {
+      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path));
+      if (is_between()) lab::match(sets_[0], sets_[1]);
+    }
     read_ms_ = watch.milliseconds();
   }
 
@@ -78,19 +115,25 @@ class Join {
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
     const lab::Stopwatch watch;
-    if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, arguments_.algorithm, pairs);
-    else
-      lab::join(sets_[0].boxes, arguments_.algorithm, pairs);
+    if (elements_.empty()) {
+      search(pairs);
+    } else {
+      lab::ApartPairs apart(elements_.front(), elements_.back(), pairs);
+      search(apart);
+      pairs.flush();
+    }
     join_ms_ = watch.milliseconds();
   }
 
   /// What was joined and how, and how long it took.
   std::string text(std::uint64_t pairs) const {
     std::string sets;
+    if (arguments_.is_swept) sets = fmt::format("{} to {}: ", arguments_.files[0], arguments_.files[1]);
+    std::string_view separator;
     for (const lab::FrameOfFile& set : sets_) {
-      sets += fmt::format("{}{} ({})", sets.empty() ? "" : " with ", set.name,
-                          lab::counted(lab::size(set.boxes), "box", "boxes"));
+      sets +=
+          fmt::format("{}{} ({})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"));
+      separator = " with ";
     }
     const lab::AnyBoxes& boxes = sets_[0].boxes;
     return fmt::format("{} in {}D: {}, exact in {}; read in {}, joined by {} in {}", sets,
@@ -100,8 +143,28 @@ class Join {
   }
 
  private:
+  void sweep() {
+    const std::vector<std::string>& files = arguments_.files;
+    const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], read_options(arguments_.input));
+    const auto add = [&](const std::string& part) {
+      lab::SweptElements swept = mesh.swept(read_part("", part));
+      sets_.push_back({part, std::move(swept.boxes)});
+      if (arguments_.excludes_shared) elements_.push_back(std::move(swept.elements));
+    };
+    add(arguments_.left);
+    if (arguments_.right != arguments_.left) add(arguments_.right);
+  }
+
+  void search(PairSink& pairs) {
+    if (is_between())
+      lab::join(sets_[0].boxes, sets_[1].boxes, arguments_.algorithm, pairs);
+    else
+      lab::join(sets_[0].boxes, arguments_.algorithm, pairs);
+  }
+
   const PairsArguments& arguments_;
   std::vector<lab::FrameOfFile> sets_;
+  std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
   double read_ms_ = 0;
   double join_ms_ = 0;
 };
@@ -167,6 +230,14 @@ Verb add_pairs(CLI::App& program) {
                    "pair); found: written as they are found, in an order fixed by boxes and algorithm")
       ->capture_default_str();
   verb->add_flag("--count", arguments->counts, "Only count the pairs, and keep none");
+  verb->add_flag("--swept", arguments->is_swept,
+                 "The two files are one mesh at two times: join the boxes that its parts sweep in between");
+  verb->add_option("--left", arguments->left, "With --swept: vertices, edges or faces")->type_name("PART");
+  verb->add_option("--right", arguments->right,
+                   "Likewise; where it is the same part, each pair of two of them is found once")
+      ->type_name("PART");
+  verb->add_flag("--exclude-shared", arguments->excludes_shared,
+                 "With --swept: leave out pairs that have a vertex in common");
   return [arguments] { return run(*arguments); };
 }
 

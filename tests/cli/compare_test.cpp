@@ -125,9 +125,9 @@ TEST(CompareVerb, WritesTheCasesThatHadEndedWhenItIsInterrupted) {
 TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenNoCaseHadEnded) {
   const TemporaryFolder folder;
   const std::string file = folder.put("out.json", "older");
-  Process process({"compare", "--scenes", "uniform", "-n", "100k", "--algorithms", "brute_force", "--budget",
-                   "600", "--json", file});
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  Process process({"compare", "--scenes", "uniform", "-n", "100k", "--algorithms", "grid,brute_force",
+                   "--budget", "600", "--json", file});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
   process.signal(SIGINT);
   const Ended ended = process.wait();
   EXPECT_EQ(ended.status, 130);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -113,6 +114,34 @@ TEST(PairsVerb, TakesAFrameOfAFileThatMoves) {
   EXPECT_THAT(beyond.errors, HasSubstr("frame 2 of a file with 2 frames, counted from 0"));
 }
 
+/// Two triangles with an edge in common, and one far above them that comes down onto them later.
+std::string mesh_with_height(int height) {
+  return "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 3\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" +
+         fmt::format("0 0 {0}\n1 0 {0}\n1 1 {0}\n", height) + "3 0 1 2\n3 0 2 3\n3 4 5 6\n";
+}
+
+TEST(PairsVerb, JoinsThePartsOfAMeshOverTwoTimes) {
+  const TemporaryFolder folder;
+  const std::string before = folder.put("before.ply", mesh_with_height(9));
+  const std::string after = folder.put("after.ply", mesh_with_height(0));
+  const auto pairs = [&](const std::string& later, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"pairs", "--swept", before, later};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const std::vector<std::string> faces = {"--left", "faces", "--right", "faces"};
+  EXPECT_EQ(pairs(before, faces).output, "first,second\n0,1\n");
+  EXPECT_EQ(pairs(after, faces).output, "first,second\n0,1\n0,2\n1,2\n");
+  const std::vector<std::string> apart = {"--left", "vertices", "--right", "faces", "--exclude-shared"};
+  // Bounds touch where triangles do not: vertex 1 is at a corner of face 1's box, and 3 of face 0's.
+  EXPECT_EQ(pairs(before, apart).output, "left,right\n1,1\n3,0\n");
+  const Ended ended = pairs(after, apart);
+  EXPECT_THAT(ended.output, HasSubstr("\n4,0\n"));
+  EXPECT_THAT(ended.errors, HasSubstr("after.ply: vertices (7 boxes) with faces (3 boxes) in 3D: "));
+}
+
 TEST(PairsVerb, ReadsStandardInputAndFollowsAPipe) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);
@@ -158,6 +187,10 @@ TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {
       {{folder.put("bad.csv", "min_x,min_y,max_x,max_y\n0,0,\x1b[2J,1\n")}, {"bad.csv:2", "'\\x1b[2J'"}},
       {{file, solid}, {"in 2D", "in 3D", "--dimension 2"}},
       {{file, "--order", "any"}, {"--order is 'any'", "expected sorted or found"}},
+      {{"--swept", file, "--left", "faces", "--right", "faces"}, {"--swept with 1 file", "expected two"}},
+      {{"--swept", file, file, "--left", "faces"}, {"--right is ''", "expected vertices, edges or faces"}},
+      {{"--swept", file, file, "--left", "faces", "--right", "faces", "--frame", "1"}, {"with --swept"}},
+      {{file, "--exclude-shared"}, {"without --swept"}},
       {{file, "--frame", "-1"}, {"--frame is '-1'", "expected a whole number from 0"}},
       {{file, "--precision", "half"}, {"--precision is 'half'", "expected float or double"}},
       {{file, "--dimension", "4"}, {"--dimension is 4"}},
