@@ -25,25 +25,37 @@ PairFormat pair_format_of(const std::filesystem::path& path) {
   std::error_code ignored;
   const bool is_device =
       std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+  if (extension == ".npy") return PairFormat::npy;
   if (path == "-" || extension == ".csv" || (is_device && extension.empty())) return PairFormat::csv;
   throw FileError(fmt::format("{}: extension '{}' is of no format for pairs; expected .csv or .npy",
                               path.string(), extension));
 }
 
-PairFile::PairFile(std::ostream& stream, PairFormat, bool is_between)
-    : stream_(stream), text_(is_between ? "left,right\n" : "first,second\n") {}
+PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between) : stream_(stream) {
+  if (format == PairFormat::npy)
+    array_.emplace(stream, 2);
+  else
+    text_ = is_between ? "left,right\n" : "first,second\n";
+}
 
 void PairFile::write(std::span<const Pair> pairs) {
   constexpr std::size_t bytes_a_piece = std::size_t{1} << 16;
   for (const Pair pair : pairs) {
+    if (array_) {
+      array_->write(std::array{index(pair.first), index(pair.second)});
+      continue;
+    }
     append(text_, pair.first, ',');
     append(text_, pair.second, '\n');
-    if (text_.size() < bytes_a_piece) continue;
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.clear();
+    if (text_.size() >= bytes_a_piece) write_text();
   }
 }
 
-void PairFile::finish() { stream_.write(text_.data(), static_cast<std::streamsize>(text_.size())); }
+void PairFile::finish() { array_ ? array_->finish() : write_text(); }
+
+void PairFile::write_text() {
+  stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+  text_.clear();
+}
 
 }  // namespace broadside::lab

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
 
 #include "broadside/pair.hpp"
+
+#include "lab/readers/npy_array.hpp"
 
 namespace broadside::lab {
 
@@ -32,8 +34,11 @@ class PairFile {
   void finish();
 
  private:
+  void write_text();
+
   std::ostream& stream_;
-  std::string text_;
+  std::string text_;  // CSV that is not yet written
+  std::optional<NpyArrayWriter<std::uint32_t>> array_;
 };
 
 }  // namespace broadside::lab

@@ -14,8 +14,10 @@ namespace broadside::cli {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 // Boxes 0 and 3 overlap; 1 touches 3 at a corner; 2 is alone.
 const std::string four_boxes =
@@ -158,8 +160,15 @@ TEST(PairsVerb, WritesAFileWholeOrNotAtAll) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.output, "");
   EXPECT_EQ(text_of(folder.file("pairs.csv")), "first,second\n0,3\n1,3\n");
+  const std::string array = folder.file("pairs.npy");
+  for (const std::string order : {"sorted", "found"}) {
+    ASSERT_EQ(run({"pairs", file, "-o", array, "--order", order}).status, 0);
+    const std::string text = text_of(array);
+    EXPECT_THAT(text, AllOf(StartsWith("\x93NUMPY"), HasSubstr("'<u4'"), HasSubstr("(2, 2)")));
+    EXPECT_THAT(text, EndsWith(std::string("\0\0\0\0\3\0\0\0\1\0\0\0\3\0\0\0", 16)));
+  }
   EXPECT_EQ(run({"pairs", folder.put("bad.csv", "min_x\n"), "-o", folder.file("none.csv")}).status, 2);
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"bad.csv", "boxes.csv", "pairs.csv"}));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"bad.csv", "boxes.csv", "pairs.csv", "pairs.npy"}));
   const Ended full = run({"pairs", file, "-o", "/dev/full"});
   EXPECT_EQ(full.status, 2);
   EXPECT_THAT(full.errors, HasSubstr("/dev/full: cannot be written: No space left on device"));
