@@ -10,10 +10,12 @@
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/late_header.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -21,6 +23,7 @@ namespace {
 constexpr std::size_t name_bytes = 128;
 constexpr std::size_t bounds_bytes = 32;
 constexpr std::size_t header_bytes = 2 * name_bytes + 16 + bounds_bytes;
+constexpr std::uint32_t most_of_anything = std::numeric_limits<std::int32_t>::max();
 
 std::uint32_t read_word(const char* bytes) {
   std::uint32_t word = 0;
@@ -63,8 +66,7 @@ Counts read_counts(Input& input) {
         fmt::format("{}: has {} bytes; expected a header of {} bytes", input.name(), size, header_bytes));
   }
   const Counts counts = {read_word(&bytes[2 * name_bytes]), read_word(&bytes[2 * name_bytes + 4])};
-  constexpr std::uint32_t most = std::numeric_limits<std::int32_t>::max();
-  if (counts.boxes > most || counts.steps > most) {
+  if (counts.boxes > most_of_anything || counts.steps > most_of_anything) {
     throw FileError(fmt::format("{}: claims {} boxes and {} steps; expected neither to be negative",
                                 input.name(), static_cast<std::int32_t>(counts.boxes),
                                 static_cast<std::int32_t>(counts.steps)));
@@ -81,113 +83,128 @@ Counts read_counts(Input& input) {
   return {counts.boxes, counts.boxes == 0 ? 0 : counts.steps};
 }
 
-std::vector<Box3> read_frame(Input& input, std::size_t count, std::size_t frame) {
-  const std::size_t begin = header_bytes + frame * count * bounds_bytes;
-  std::vector<Box3> boxes(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    boxes[i] = read_bounds(&input.bytes()[begin + i * bounds_bytes]);
-    if (is_present(boxes[i])) continue;
-    throw FileError(
-        fmt::format("{}: frame {}, box {} has min ({}) and max ({}); expected numbers with min <= max",
-                    input.name(), frame, i, fmt::join(boxes[i].min, ", "), fmt::join(boxes[i].max, ", ")));
+/// Whether every box of every frame lies in the plane z = 0, as when boxes in 2D were written.
+bool is_flat(std::string_view bytes) {
+  for (std::size_t at = header_bytes; at < bytes.size(); at += bounds_bytes) {
+    const Box3 box = read_bounds(&bytes[at]);
+    if (box.min[2] != 0 || box.max[2] != 0) return false;
   }
-  input.passed(begin + count * bounds_bytes);
-  return boxes;
+  return bytes.size() > header_bytes;
 }
 
-/// Whether every box lies in the plane z = 0, as when a 2D history was written.
-bool is_flat(const History<3>& history) {
-  const auto flat = [](const Box3& box) { return box.min[2] == 0 && box.max[2] == 0; };
-  return !history.boxes.empty() && std::ranges::all_of(history.boxes, flat) &&
-         std::ranges::all_of(history.steps,
-                             [&](const Step<3>& step) { return std::ranges::all_of(step.boxes, flat); });
-}
+class BroadmarkFrames final : public FrameReader<3, float> {
+ public:
+  BroadmarkFrames(std::unique_ptr<Input> input, Counts counts) : input_(std::move(input)), counts_(counts) {}
+
+  std::vector<Box3> first() override {
+    boxes_.reserve(counts_.boxes);
+    for (std::size_t i = 0; i < counts_.boxes; ++i) boxes_.push_back(box(i));
+    return boxes_;
+  }
+
+  bool next(Step<3, float>& step) override {
+    if (frame_ == counts_.steps) return false;
+    ++frame_;
+    step = {boxes_.size(), {}, {}};
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      const Box3 now = box(i);
+      if (now == boxes_[i]) continue;
+      boxes_[i] = now;
+      step.changed.push_back(BoxId(i));
+      step.boxes.push_back(now);
+    }
+    return true;
+  }
+
+ private:
+  /// A box of the frame that is being read.
+  Box3 box(std::size_t i) {
+    const std::size_t at = header_bytes + (frame_ * counts_.boxes + i) * bounds_bytes;
+    const Box3 box = read_bounds(&input_->bytes()[at]);
+    if (!is_present(box))
+      throw FileError(
+          fmt::format("{}: frame {}, box {} has min ({}) and max ({}); expected numbers with min <= max",
+                      input_->name(), frame_, i, fmt::join(box.min, ", "), fmt::join(box.max, ", ")));
+    input_->passed(at);
+    return box;
+  }
+
+  std::unique_ptr<Input> input_;
+  Counts counts_;
+  std::size_t frame_ = 0;
+  std::vector<Box3> boxes_;  // of that frame
+};
 
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   const Counts counts = read_counts(*input);
-  History<3> history{read_frame(*input, counts.boxes, 0), {}};
-  std::vector<Box3> before = history.boxes;
-  for (std::uint32_t frame = 1; frame <= counts.steps; ++frame) {
-    std::vector<Box3> now = read_frame(*input, counts.boxes, frame);
-    Step<3> step{now.size(), {}, {}};
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      if (now[i] == before[i]) continue;
-      step.changed.push_back(BoxId(i));
-      step.boxes.push_back(now[i]);
-    }
-    history.steps.push_back(std::move(step));
-    before = std::move(now);
-  }
-  const bool flat = options.dimension != 3 && is_flat(history);
-  AnyFrameReader frames = std::make_unique<HistoryReader<3, float>>(std::move(history));
+  const bool flat = options.dimension != 3 && is_flat(input->bytes());
+  AnyFrameReader frames = std::make_unique<BroadmarkFrames>(std::move(input), counts);
   return flat ? flattened(std::move(frames)) : std::move(frames);
 }
 
-/// Calls `visit` with the boxes of each frame.
-template <int D, typename Visit>
-void for_each_frame(const History<D>& history, Visit visit) {
-  std::vector<Box<D>> boxes = history.boxes;
-  visit(std::size_t{0}, boxes);
-  for (std::size_t frame = 1; frame <= history.steps.size(); ++frame) {
-    lab::apply(history.steps[frame - 1], boxes);
-    visit(frame, boxes);
-  }
-}
-
-template <int D>
-void write(const History<D>& history, std::ostream& stream) {
-  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-  const std::size_t count = history.boxes.size();
-  if (count > most || history.steps.size() > most)
-    throw FileError(fmt::format("{} boxes and {} steps; expected at most {} in an .aabbs file", count,
-                                history.steps.size(), most));
-
-  Box<D> world = absent_box<D>();
-  for_each_frame(history, [&](std::size_t frame, const std::vector<Box<D>>& boxes) {
-    if (boxes.size() != count)
-      throw FileError(fmt::format(
-          "frame {} has {} boxes and the first {}; expected as many in every frame of an .aabbs file", frame,
-          boxes.size(), count));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!is_present(boxes[i]))
-        throw FileError(fmt::format(
-            "frame {}, box {} is absent; expected every box of an .aabbs file to be there", frame, i));
-      for (int axis = 0; axis < D; ++axis) {
-        world.min[axis] = std::min(world.min[axis], boxes[i].min[axis]);
-        world.max[axis] = std::max(world.max[axis], boxes[i].max[axis]);
-      }
-    }
-  });
-
-  std::string bytes = "Broadside";
-  bytes.resize(name_bytes);
-  bytes += "Box";
-  bytes.resize(2 * name_bytes);
-  append_word(bytes, static_cast<std::uint32_t>(count));
-  append_word(bytes, static_cast<std::uint32_t>(history.steps.size()));
-  append_word(bytes, 0);
-  append_word(bytes, 0);
-  append_bounds(bytes, count > 0 ? world : Box<D>{});
-  for_each_frame(history, [&](std::size_t, const std::vector<Box<D>>& boxes) {
-    for (const Box<D>& box : boxes) append_bounds(bytes, box);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.clear();
-  });
-}
-
-/// The header tells how many frames there are: all are kept until the last one is known.
+/// The header tells how many frames there are and what bounds them all: it is written last.
 template <int D>
 class BroadmarkWriter final : public FrameWriter<D, float> {
  public:
-  explicit BroadmarkWriter(std::ostream& stream) : stream_(stream) {}
+  explicit BroadmarkWriter(std::ostream& stream) : file_(stream, header_bytes) {}
 
-  void first(std::span<const Box<D>> boxes) override { history_.boxes.assign(boxes.begin(), boxes.end()); }
-  void next(const Step<D>& step) override { history_.steps.push_back(step); }
-  void finish() override { write(history_, stream_); }
+  void first(std::span<const Box<D>> boxes) override {
+    if (boxes.size() > most_of_anything)
+      throw FileError(
+          fmt::format("{} boxes; expected at most {} in an .aabbs file", boxes.size(), most_of_anything));
+    for (std::size_t i = 0; i < boxes.size(); ++i) take(BoxId(i), boxes[i]);
+    boxes_.assign(boxes.begin(), boxes.end());
+    write_frame();
+  }
+
+  void next(const Step<D>& step) override {
+    if (frame_ == most_of_anything)
+      throw FileError(fmt::format("more steps; expected at most {} in an .aabbs file", most_of_anything));
+    ++frame_;
+    if (step.size != boxes_.size())
+      throw FileError(fmt::format(
+          "frame {} has {} boxes and the first {}; expected as many in every frame of an .aabbs file", frame_,
+          step.size, boxes_.size()));
+    for (std::size_t i = 0; i < step.changed.size(); ++i) take(step.changed[i], step.boxes[i]);
+    lab::apply(step, boxes_);
+    write_frame();
+  }
+
+  void finish() override {
+    std::string header = "Broadside";
+    header.resize(name_bytes);
+    header += "Box";
+    header.resize(2 * name_bytes);
+    append_word(header, static_cast<std::uint32_t>(boxes_.size()));
+    append_word(header, static_cast<std::uint32_t>(frame_));
+    append_word(header, 0);
+    append_word(header, 0);
+    append_bounds(header, boxes_.empty() ? Box<D>{} : world_);
+    file_.finish(header);
+  }
 
  private:
-  std::ostream& stream_;
-  History<D> history_;
+  void take(BoxId id, const Box<D>& box) {
+    if (!is_present(box))
+      throw FileError(fmt::format(
+          "frame {}, box {} is absent; expected every box of an .aabbs file to be there", frame_, index(id)));
+    for (int axis = 0; axis < D; ++axis) {
+      world_.min[axis] = std::min(world_.min[axis], box.min[axis]);
+      world_.max[axis] = std::max(world_.max[axis], box.max[axis]);
+    }
+  }
+
+  void write_frame() {
+    std::string bytes;
+    bytes.reserve(boxes_.size() * bounds_bytes);
+    for (const Box<D>& box : boxes_) append_bounds(bytes, box);
+    file_.write(bytes);
+  }
+
+  LateHeader file_;
+  std::size_t frame_ = 0;
+  std::vector<Box<D>> boxes_;  // of that frame
+  Box<D> world_ = absent_box<D>();
 };
 
 AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
@@ -197,6 +214,21 @@ AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) 
   return std::make_unique<BroadmarkWriter<3>>(stream);
 }
 
+/// A header has no magic bytes: but two names that end in zeros, two counts, two zeros, and bounds.
+bool recognises(std::string_view bytes, std::string_view extension) {
+  if (extension == ".aabbs") return true;
+  if (bytes.size() < header_bytes) return false;
+  for (const std::string_view name : {bytes.substr(0, name_bytes), bytes.substr(name_bytes, name_bytes)}) {
+    const std::size_t end = name.find('\0');
+    if (end == 0 || end == std::string_view::npos) return false;
+    if (std::ranges::any_of(name.substr(0, end), [](char c) { return static_cast<unsigned char>(c) < ' '; }))
+      return false;
+  }
+  const auto word = [&bytes](std::size_t i) { return read_word(&bytes[2 * name_bytes + 4 * i]); };
+  return word(0) <= most_of_anything && word(1) <= most_of_anything && word(2) == 0 && word(3) == 0 &&
+         is_present(read_bounds(&bytes[2 * name_bytes + 16]));
+}
+
 }  // namespace
 
 Format broadmark() {
@@ -204,7 +236,7 @@ Format broadmark() {
       .name = "broadmark",
       .summary = "Broadmark's frames of boxes",
       .extensions = {".aabbs"},
-      .recognises = [](std::string_view, std::string_view extension) { return extension == ".aabbs"; },
+      .recognises = recognises,
       .open = open,
       .create = create,
       .has_doubles = false,
