@@ -9,6 +9,7 @@ Format trace();
 Format csv();
 Format npy();
 Format broadmark();
+Format map();
 Format mesh();
 
 }  // namespace broadside::lab::readers

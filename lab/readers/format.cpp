@@ -62,6 +62,9 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
   if (!options.columns.empty() && !format.has_columns)
     throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
                                 format.name));
+  if (!options.layer.empty() && !format.has_layers)
+    throw FileError(fmt::format("{}: is in format {}, which has no layer '{}'; expected a map", name,
+                                format.name, options.layer));
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;
@@ -89,7 +92,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
-      readers::trace(), readers::csv(), readers::npy(), readers::broadmark(), readers::mesh(),
+      readers::trace(), readers::csv(), readers::npy(), readers::broadmark(), readers::map(), readers::mesh(),
   };
   return list;
 }

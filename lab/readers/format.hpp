@@ -29,6 +29,7 @@ struct ReadOptions {
   std::string format{};   ///< the name of a format; empty: told by the file's content and name
   std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
   std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
+  std::string layer{};    ///< of a map with several, the one to read; empty: all
   int dimension = 0;      ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};
   Progress progress{};
@@ -47,6 +48,7 @@ struct Format {
   std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
   std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
   bool has_columns = false;             ///< whether ReadOptions::columns means something
+  bool has_layers = false;              ///< whether ReadOptions::layer means something
   bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
 
   /// Whether a file that begins with these bytes (Input::beginning_bytes of them) and has this extension is

@@ -1,0 +1,48 @@
+// Maps: GeoJSON (whole, or a value a line) and TopoJSON, in doubles.
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lab/readers/descriptions.hpp"
+#include "lab/readers/map_boxes.hpp"
+#include "lab/readers/map_format.hpp"
+#include "lab/readers/map_text.hpp"
+#include "lab/readers/map_texts.hpp"
+
+namespace broadside::lab::readers {
+namespace {
+
+MapPart part_of(const ReadOptions& options) {
+  if (options.boxes == "segments") return MapPart::segments;
+  return options.boxes == "pieces" ? MapPart::pieces : MapPart::features;
+}
+
+AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+  MapText text(*input);
+  MapBoxes boxes(part_of(options));
+  while (text.next()) {
+    json::object root = text.root();
+    // What the text begins anew overwrites its strings.
+    const std::string type(text.string(text.field(root, "type"), "the type of a map"));
+    if (type == "Topology") {
+      read_topojson(text, options.layer, boxes);
+    } else {
+      if (!options.layer.empty())
+        text.refuse(fmt::format("GeoJSON, which has no layer '{}'", options.layer), "TopoJSON");
+      read_geojson(text, type, boxes);
+    }
+  }
+  return std::make_unique<HistoryReader<2, double>>(History<2, double>{boxes.take(), {}});
+}
+
+}  // namespace
+
+Format map() {
+  Format format = map_description();
+  format.open = open;
+  return format;
+}
+
+}  // namespace broadside::lab::readers

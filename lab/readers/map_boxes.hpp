@@ -1,0 +1,79 @@
+// Boxes gathered from the points of a map: of features, of their pieces, or of the segments of their lines.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+namespace broadside::lab {
+
+/// What of a map the boxes are of.
+enum class MapPart : std::uint8_t {
+  features,  ///< a box a feature, absent where it has no points
+  pieces,    ///< a box a point, line or polygon; those of a multi-geometry apart
+  segments,  ///< a box a segment of a line or of a polygon's rings
+};
+
+/// Gathers boxes while a map is read: points belong to lines, lines to pieces, pieces to features.
+class MapBoxes {
+ public:
+  explicit MapBoxes(MapPart part) : part_(part) {}
+
+  MapPart part() const noexcept { return part_; }
+
+  /// The next line begins; lone points need none.
+  void begin_line() { is_in_line_ = false; }
+
+  /// A point of the line, which a segment joins to the one before; or, where `is_alone`, a point by itself.
+  void add(double x, double y, bool is_alone = false) {
+    const DoubleBox2 point{{x, y}, {x, y}};
+    extend(piece_, point);
+    if (part_ == MapPart::segments && !is_alone) {
+      if (std::exchange(is_in_line_, true)) add_segment(last_, point);
+      last_ = point;
+    }
+  }
+
+  /// The bounds of many points of the piece at once. Makes no segments.
+  void add_bounds(const DoubleBox2& bounds) { extend(piece_, bounds); }
+
+  /// A segment by itself, as a box.
+  void add_segment(const DoubleBox2& box) { boxes_.push_back(box); }
+
+  void end_piece() {
+    if (part_ == MapPart::pieces && !is_absent(piece_)) boxes_.push_back(piece_);
+    extend(feature_, std::exchange(piece_, absent_box<2, double>()));
+  }
+
+  void end_feature() {
+    if (part_ == MapPart::features) boxes_.push_back(feature_);
+    feature_ = absent_box<2, double>();
+  }
+
+  std::vector<DoubleBox2> take() { return std::move(boxes_); }
+
+  /// Makes `box` hold `other` as well.
+  static void extend(DoubleBox2& box, const DoubleBox2& other) {
+    for (int axis = 0; axis < 2; ++axis) {
+      box.min[axis] = box.min[axis] < other.min[axis] ? box.min[axis] : other.min[axis];
+      box.max[axis] = box.max[axis] > other.max[axis] ? box.max[axis] : other.max[axis];
+    }
+  }
+
+ private:
+  void add_segment(DoubleBox2 from, const DoubleBox2& to) {
+    extend(from, to);
+    boxes_.push_back(from);
+  }
+
+  MapPart part_;
+  std::vector<DoubleBox2> boxes_;
+  DoubleBox2 feature_ = absent_box<2, double>();
+  DoubleBox2 piece_ = absent_box<2, double>();
+  DoubleBox2 last_{};
+  bool is_in_line_ = false;
+};
+
+}  // namespace broadside::lab
