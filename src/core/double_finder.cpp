@@ -24,9 +24,11 @@ constexpr std::size_t few_boxes = 256;
 
 constexpr std::size_t most_samples = 256;
 
-/// Into how many squares, a side, the boxes are divided to bring neighbours together in memory.
-constexpr double buckets_per_side = 64;
-constexpr std::size_t bucket_count = 64 * 64;
+/// Neighbours are brought together in memory by squares of so many boxes: a few cache lines of floats.
+constexpr double boxes_per_bucket = 64;
+
+/// Limits the squares to what a bucket_of_ can tell apart.
+constexpr double most_buckets_per_side = 256;
 
 /// `value` as a float about `origin`. Rises with the value, and is finite.
 float rounded(double value, double origin) {
@@ -35,14 +37,22 @@ float rounded(double value, double origin) {
 
 }  // namespace
 
-/// Keeps of the float finder's pairs those that overlap in double and belong to the region.
+/// Keeps of the float finder's pairs those that overlap in double and belong to the region. All boxes of a
+/// region begin before its end on every axis, so only where it begins needs a test.
 template <int D>
 class DoubleFinder<D>::ExactSink final : public PairSink {
  public:
   /// `left_count` as in a PairFinder; pairs of the float finder are then places among left and among right
   /// boxes.
-  ExactSink(const DoubleFinder& owner, std::size_t left_count, const Region& region, PairSink& target)
-      : owner_(&owner), left_count_(left_count), region_(region), target_(&target) {}
+  ExactSink(const DoubleFinder& owner, std::size_t left_count, const Region& region,
+            const std::array<Axis, D>& axes, PairSink& target)
+      : owner_(&owner), left_count_(left_count), target_(&target) {
+    for (int axis = 0; axis < D; ++axis) {
+      bounded_ = bounded_ || region.begin[axis] > -infinity;
+      begin_[axis] = region.begin[axis];
+      rounded_begin_[axis] = rounded(region.begin[axis], axes[axis].origin);
+    }
+  }
 
  private:
   void consume(std::span<const Pair> pairs) override {
@@ -53,28 +63,41 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t a = index(pairs[i].first);
         const std::size_t b = left_count_ + index(pairs[i].second);
-        out[written] = {std::min(owner_->ids_[a], owner_->ids_[b]),
-                        std::max(owner_->ids_[a], owner_->ids_[b])};
-        written += static_cast<std::size_t>(is_pair(owner_->exact_[a], owner_->exact_[b]));
+        const std::uint32_t first = owner_->ids_[a];
+        const std::uint32_t second = owner_->ids_[b];
+        // Which one is the lesser is what no predictor can know, and of min() and max() compilers make a
+        // jump.
+        const std::uint32_t lesser = std::min(first, second);
+        out[written] = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
+        const bool certain = is_pair_for_certain(owner_->floats_[a], owner_->floats_[b]);
+        written +=
+            static_cast<std::size_t>(certain || is_pair(owner_->boxes_[first], owner_->boxes_[second]));
       }
       target_->commit(written);
       pairs = pairs.subspan(count);
     }
   }
 
+  /// Whether the floats alone tell. They do nearly always, so this one jumps where it can.
+  bool is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
+    for (int axis = 0; axis < D; ++axis) {
+      if (a.min[axis] >= b.max[axis] || b.min[axis] >= a.max[axis]) return false;
+      if (bounded_ && std::max(a.min[axis], b.min[axis]) <= rounded_begin_[axis]) return false;
+    }
+    return true;
+  }
+
   bool is_pair(const Box<D, double>& a, const Box<D, double>& b) const {
     bool here = overlap(a, b);
-    for (int axis = 0; axis < D; ++axis) {
-      const double begin = std::max(a.min[axis], b.min[axis]);
-      here &= begin >= region_.begin[axis];
-      here &= begin < region_.end[axis] || region_.end[axis] == infinity;
-    }
+    for (int axis = 0; axis < D; ++axis) here &= std::max(a.min[axis], b.min[axis]) >= begin_[axis];
     return here;
   }
 
   const DoubleFinder* owner_;
   std::size_t left_count_;
-  Region region_;
+  bool bounded_ = false;  // whether the region begins anywhere on any axis
+  std::array<double, D> begin_;
+  std::array<float, D> rounded_begin_;
   PairSink* target_;
 };
 
@@ -97,15 +120,16 @@ void DoubleFinder<D>::find_valid(std::span<const Box<D, double>> boxes, PairSink
 
 template <int D>
 void DoubleFinder<D>::search(std::size_t begin, std::size_t end, const Region& region, PairSink& pairs) {
+  const std::size_t count = end - begin;
   std::array<Axis, D> axes;
-  for (int axis = 0; axis < D; ++axis) axes[axis] = survey(begin, end, region, axis);
+  for (int axis = 0; axis < D; ++axis) axes[axis] = sample(places(begin, end), region, axis);
+  measure(places(begin, end), region, axes);
   const auto coarsest =
       static_cast<int>(std::ranges::max_element(axes, {}, &Axis::coarseness) - axes.begin());
-  const double at = axes[coarsest].middle;
+  const double at = axes[coarsest].origin;
 
   const std::size_t top = stack_.size();
   std::size_t upper = top;
-  const std::size_t count = end - begin;
   if (count > few_boxes && axes[coarsest].coarseness > tolerated_coarseness) {
     for (std::size_t i = begin; i < end; ++i) {
       if (boxes_[stack_[i]].min[coarsest] < at) stack_.push_back(stack_[i]);
@@ -119,7 +143,7 @@ void DoubleFinder<D>::search(std::size_t begin, std::size_t end, const Region& r
   const std::size_t most = count / 8 * 7;
   if (all == top || upper - top > most || all - upper > most) {
     stack_.resize(top);
-    search_floats({stack_.data() + begin, count}, axes, region, pairs);
+    search_floats(places(begin, end), region, axes, pairs);
     return;
   }
   Region half = region;
@@ -132,56 +156,73 @@ void DoubleFinder<D>::search(std::size_t begin, std::size_t end, const Region& r
 }
 
 template <int D>
-typename DoubleFinder<D>::Axis DoubleFinder<D>::survey(std::size_t begin, std::size_t end,
+typename DoubleFinder<D>::Axis DoubleFinder<D>::sample(std::span<const std::uint32_t> places,
                                                        const Region& region, int axis) {
-  double low = infinity;
-  double high = -infinity;
-  const auto widen = [&](double coordinate) {
-    const double within = std::clamp(coordinate, region.begin[axis], region.end[axis]);
-    if (!std::isfinite(within)) return;
-    low = std::min(low, within);
-    high = std::max(high, within);
-  };
-  for (std::size_t i = begin; i < end; ++i) {
-    widen(boxes_[stack_[i]].min[axis]);
-    widen(boxes_[stack_[i]].max[axis]);
-  }
-  if (!(low < high)) return {low == high ? low : 0, low == high ? low : 0, 0, 0};
-
   minima_.clear();
   extents_.clear();
-  const std::size_t count = end - begin;
-  const std::size_t samples = std::min(count, most_samples);
+  const std::size_t samples = std::min(places.size(), most_samples);
   for (std::size_t i = 0; i < samples; ++i) {
-    const Box<D, double>& box = boxes_[stack_[begin + (2 * i + 1) * count / (2 * samples)]];
-    minima_.push_back(box.min[axis]);
-    extents_.push_back(box.max[axis] > box.min[axis] ? box.max[axis] - box.min[axis] : 0);
+    const Box<D, double>& box = boxes_[places[(2 * i + 1) * places.size() / (2 * samples)]];
+    const double min = std::clamp(box.min[axis], region.begin[axis], region.end[axis]);
+    if (std::isfinite(min)) minima_.push_back(min);
+    const double extent = box.max[axis] > box.min[axis] ? box.max[axis] - box.min[axis] : 0;
+    extents_.push_back(std::min(extent, std::numeric_limits<double>::max()));
   }
   const auto median = [](std::vector<double>& values) {
+    if (values.empty()) return 0.0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
-  return {low, high, (high - low) * rounding / median(extents_), median(minima_)};
+  const double origin = median(minima_);
+  Axis found{.origin = origin, .extent = median(extents_), .low = origin, .high = origin, .coarseness = 0};
+  for (const double min : minima_) {
+    found.low = std::min(found.low, min);
+    found.high = std::max(found.high, min);
+  }
+  return found;
 }
 
 template <int D>
-void DoubleFinder<D>::search_floats(std::span<const std::uint32_t> places, const std::array<Axis, D>& axes,
-                                    const Region& region, PairSink& pairs) {
+void DoubleFinder<D>::measure(std::span<const std::uint32_t> places, const Region& region,
+                              std::array<Axis, D>& axes) {
+  buckets_per_side_ = static_cast<std::size_t>(std::clamp(
+      std::sqrt(static_cast<double>(places.size()) / boxes_per_bucket), 1.0, most_buckets_per_side));
+  const auto last = static_cast<double>(buckets_per_side_ - 1);
+  std::array<double, 2> per_unit;
+  for (int axis = 0; axis < 2; ++axis) per_unit[axis] = (last + 1) / (axes[axis].high - axes[axis].low);
+  const auto slot = [&](const Box<D, double>& box, int axis) {
+    const double at = (box.min[axis] - axes[axis].low) * per_unit[axis];
+    // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
+    return static_cast<std::size_t>(std::min(last, std::max(0.0, at)));
+  };
+  std::array<double, D> farthest{};
+  bucket_of_.resize(std::max(bucket_of_.size(), places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Box<D, double>& box = boxes_[places[i]];
+    for (int axis = 0; axis < D; ++axis) {
+      for (const double coordinate : {box.min[axis], box.max[axis]}) {
+        const double within = std::clamp(coordinate, region.begin[axis], region.end[axis]);
+        const double distance = std::abs(within) < infinity ? std::abs(within - axes[axis].origin) : 0;
+        farthest[axis] = std::max(farthest[axis], distance);
+      }
+    }
+    bucket_of_[i] = static_cast<std::uint16_t>(slot(box, 1) * buckets_per_side_ + slot(box, 0));
+  }
+  for (int axis = 0; axis < D; ++axis)
+    axes[axis].coarseness = farthest[axis] > 0 ? farthest[axis] * rounding / axes[axis].extent : 0;
+}
+
+template <int D>
+void DoubleFinder<D>::search_floats(std::span<const std::uint32_t> places, const Region& region,
+                                    const std::array<Axis, D>& axes, PairSink& pairs) {
   const auto left =
       static_cast<std::size_t>(std::ranges::lower_bound(places, this->left_count()) - places.begin());
-  ids_.clear();
-  exact_.clear();
-  gather(places.first(left), axes);
-  gather(places.subspan(left), axes);
+  ids_.resize(places.size());
   floats_.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (int axis = 0; axis < D; ++axis) {
-      floats_[i].min[axis] = rounded(exact_[i].min[axis], axes[axis].low);
-      floats_[i].max[axis] = rounded(exact_[i].max[axis], axes[axis].low);
-    }
-  }
-  ExactSink exact(*this, left, region, pairs);
+  gather(places, 0, left, axes);
+  gather(places, left, places.size(), axes);
+  ExactSink exact(*this, left, region, axes, pairs);
   const std::span<const Box<D>> floats = floats_;
   if (this->left_count() == 0)
     finder_->find(floats, exact);
@@ -196,33 +237,22 @@ void DoubleFinder<D>::search_floats(std::span<const std::uint32_t> places, const
 }
 
 template <int D>
-void DoubleFinder<D>::gather(std::span<const std::uint32_t> places, const std::array<Axis, D>& axes) {
-  // Pairs are of boxes near each other, and each is looked up again in double: where the boxes are far more
-  // than a cache holds, that would be a miss for each pair if they lay as they came.
-  std::array<double, 2> per_unit;
-  for (int axis = 0; axis < 2; ++axis)
-    per_unit[axis] =
-        axes[axis].high > axes[axis].low ? buckets_per_side / (axes[axis].high - axes[axis].low) : 0;
-  const auto slot = [&](const Box<D, double>& box, int axis) {
-    const double at = (box.min[axis] - axes[axis].low) * per_unit[axis];
-    return static_cast<std::size_t>(std::min(buckets_per_side - 1, std::max(0.0, at)));
-  };
-  bucket_of_.resize(places.size());
-  bucket_ends_.assign(bucket_count, 0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Box<D, double>& box = boxes_[places[i]];
-    const std::size_t bucket = slot(box, 1) * static_cast<std::size_t>(buckets_per_side) + slot(box, 0);
-    bucket_of_[i] = static_cast<std::uint16_t>(bucket);
-    ++bucket_ends_[bucket];
-  }
-  std::uint32_t total = static_cast<std::uint32_t>(ids_.size());
-  for (std::uint32_t& end : bucket_ends_) total += std::exchange(end, total);
-  ids_.resize(total);
-  exact_.resize(total);
-  for (std::size_t i = 0; i < places.size(); ++i) {
+void DoubleFinder<D>::gather(std::span<const std::uint32_t> places, std::size_t begin, std::size_t end,
+                             const std::array<Axis, D>& axes) {
+  // Pairs are of boxes near each other, and each is looked up again: where the boxes are more than a cache
+  // holds, that would be a miss for each pair if they lay as they came.
+  bucket_ends_.assign(buckets_per_side_ * buckets_per_side_, 0);
+  for (std::size_t i = begin; i < end; ++i) ++bucket_ends_[bucket_of_[i]];
+  auto total = static_cast<std::uint32_t>(begin);
+  for (std::uint32_t& bucket_end : bucket_ends_) total += std::exchange(bucket_end, total);
+  for (std::size_t i = begin; i < end; ++i) {
     const std::uint32_t to = bucket_ends_[bucket_of_[i]]++;
-    ids_[to] = BoxId{places[i]};
-    exact_[to] = boxes_[places[i]];
+    ids_[to] = places[i];
+    const Box<D, double>& box = boxes_[places[i]];
+    for (int axis = 0; axis < D; ++axis) {
+      floats_[to].min[axis] = rounded(box.min[axis], axes[axis].origin);
+      floats_[to].max[axis] = rounded(box.max[axis], axes[axis].origin);
+    }
   }
 }
 

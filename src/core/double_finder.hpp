@@ -14,10 +14,11 @@ namespace broadside::core {
 /// Finds pairs of boxes of doubles exactly, through any finder of floats.
 ///
 /// Subtracting an origin and rounding to float never puts two coordinates into the wrong order, at worst it
-/// makes them equal. So boxes that overlap in double overlap in float as well, and what is left is to test
-/// the float finder's pairs in double. That costs much only where rounding makes many boxes touch that lie
-/// apart; there the boxes are split into regions, each with an origin of its own. A pair is reported in the
-/// region that holds the greater of the two minima on every axis.
+/// makes them equal. So boxes that overlap in double overlap in float as well; and boxes that overlap in
+/// float by more than touching overlap in double. What is left is to test in double those of the float
+/// finder's pairs that only touch. That costs much only where rounding makes many boxes touch that lie apart;
+/// there the boxes are split into regions, each with an origin of its own. A pair is reported in the region
+/// that holds the greater of the two minima on every axis.
 template <int D>
 class DoubleFinder final : public PairFinder<D, double> {
  public:
@@ -30,12 +31,13 @@ class DoubleFinder final : public PairFinder<D, double> {
     std::array<double, D> end;
   };
 
-  /// What a region's boxes look like on one axis.
+  /// What a region's boxes look like on one axis, by a sample of them.
   struct Axis {
-    double low;         // the finite bounds of their coordinates within the region
-    double high;        //
-    double coarseness;  // how far rounding may move a coordinate, over the median of the boxes' extents
-    double middle;      // the median of a sample of minima
+    double origin;      // the median of the minima
+    double extent;      // and of the extents
+    double low;         // the least and
+    double high;        // the greatest of the minima
+    double coarseness;  // how far rounding may move a coordinate in the region, over the extent
   };
 
   class ExactSink;
@@ -45,25 +47,34 @@ class DoubleFinder final : public PairFinder<D, double> {
   /// Reports the region's pairs. Its boxes are those whose places are [begin, end) of the stack, ascending.
   void search(std::size_t begin, std::size_t end, const Region& region, PairSink& pairs);
 
-  Axis survey(std::size_t begin, std::size_t end, const Region& region, int axis);
+  std::span<const std::uint32_t> places(std::size_t begin, std::size_t end) const {
+    return {stack_.data() + begin, end - begin};
+  }
 
-  /// Reports the pairs of the boxes at `places` as floats about the axes' lower bounds.
-  void search_floats(std::span<const std::uint32_t> places, const std::array<Axis, D>& axes,
-                     const Region& region, PairSink& pairs);
+  Axis sample(std::span<const std::uint32_t> places, const Region& region, int axis);
 
-  /// Appends boxes to ids_ and exact_, those near each other in space near each other in the arrays.
-  void gather(std::span<const std::uint32_t> places, const std::array<Axis, D>& axes);
+  /// Sets the coarseness of the axes, and the bucket of each box.
+  void measure(std::span<const std::uint32_t> places, const Region& region, std::array<Axis, D>& axes);
+
+  /// Reports the pairs of the boxes at `places`, which were the last to be measured, as floats.
+  void search_floats(std::span<const std::uint32_t> places, const Region& region,
+                     const std::array<Axis, D>& axes, PairSink& pairs);
+
+  /// Writes the boxes `begin` to `end` of those measured to the same stretch of ids_ and floats_, those near
+  /// each other in space near each other in memory.
+  void gather(std::span<const std::uint32_t> places, std::size_t begin, std::size_t end,
+              const std::array<Axis, D>& axes);
 
   std::unique_ptr<PairFinder<D>> finder_;
   std::span<const Box<D, double>> boxes_;
   std::vector<std::uint32_t> stack_;
   std::vector<double> minima_;
   std::vector<double> extents_;
-  std::vector<BoxId> ids_;             // of the boxes being searched as floats
-  std::vector<Box<D, double>> exact_;  // the boxes themselves
-  std::vector<Box<D>> floats_;         // and as floats
+  std::vector<std::uint32_t> ids_;  // places of the boxes being searched as floats,
+  std::vector<Box<D>> floats_;      // and these
   std::vector<std::uint16_t> bucket_of_;
   std::vector<std::uint32_t> bucket_ends_;
+  std::size_t buckets_per_side_ = 1;
   Statistics statistics_;
   bool counted_ = false;
 };

@@ -34,6 +34,7 @@ const std::vector<Rule>& rules() {
       {"lab/readers/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/", lab},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
       {"examples/", lab + R"(|<broadside/[a-z_]+\.hpp>)"},

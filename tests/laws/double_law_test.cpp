@@ -1,5 +1,6 @@
 // The law for boxes of doubles: the pairs of brute force in double, through every algorithm.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -57,6 +58,25 @@ Boxes<D> boxes_at(Dice& dice, std::size_t count, const std::vector<double>& site
   return boxes;
 }
 
+/// A row of boxes at each of `sites`, several at each place, that touch their neighbours, or overlap or miss
+/// them by the last bit of a double: as floats they all touch.
+template <int D>
+Boxes<D> lattice(Dice& dice, std::size_t count, const std::vector<double>& sites) {
+  const auto nearly = [&dice](double at) {
+    return std::array{std::nextafter(at, -1e10), at, std::nextafter(at, 1e10)}[dice.below(3)];
+  };
+  Boxes<D> boxes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double site = sites[i % sites.size()];
+    for (int axis = 0; axis < D; ++axis) {
+      const auto step = static_cast<double>(axis == 0 ? i / sites.size() / 24 : dice.below(3));
+      boxes[i].min[axis] = nearly(site + step * 0.1);
+      boxes[i].max[axis] = nearly(site + (step + 1) * 0.1);
+    }
+  }
+  return boxes;
+}
+
 template <int D>
 std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
   Dice dice(21);
@@ -83,18 +103,9 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     }
   }
   inputs.push_back({"integers above 2^24", integers});
-  // Neighbours that touch, or miss each other by the last bit of a double.
-  Boxes<D> lattice;
-  for (int i = 0; i < 200; ++i) {
-    Box<D, double> box;
-    for (int axis = 0; axis < D; ++axis) {
-      const double at = 4.0e6 / 3 + (axis == 0 ? i : dice.whole(0, 2)) * 0.1;
-      box.min[axis] = at;
-      box.max[axis] = dice.one_in(2) ? at + 0.1 : std::nextafter(at + 0.1, 0.0);
-    }
-    lattice.push_back(box);
-  }
-  inputs.push_back({"touching to the last bit", lattice});
+  inputs.push_back({"touching to the last bit", lattice<D>(dice, 600, {4.0e6 / 3})});
+  // So far from each other that they are split, and that in the middle of the second.
+  inputs.push_back({"touching at the border of regions", lattice<D>(dice, 1200, {-1e9, 4.0e6 / 3, 1e9})});
   if (algorithm.infinite_boxes) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Boxes<D> boxes = boxes_at<D>(dice, 400, {1e6}, side, 1);

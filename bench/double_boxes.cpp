@@ -1,0 +1,178 @@
+// What boxes of doubles cost over the same boxes as floats: double_boxes [BOXES [ROUNDS]].
+//
+// Every way of asking for pairs is timed with floats and with doubles in turns, round by round, and after
+// each call its pairs are compared, as a set, with those of all other calls.
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "broadside/broadside.hpp"
+
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/machine.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::bench {
+namespace {
+
+constexpr std::array<std::string_view, 3> own_algorithms = {"grid", "sweep_and_prune", "quadtree"};
+
+/// Takes as many doubles as floats can tell apart to others, in the same order, that no float holds. So the
+/// boxes' pairs stay the same, and each of them has to be found in double.
+constexpr double scale = 3.14159265358979324;
+
+/// How pairs are asked for.
+enum class Call { once, kept_finder, between };
+constexpr std::array<Call, 3> calls = {Call::once, Call::kept_finder, Call::between};
+
+std::string_view name(Call call) {
+  constexpr std::array<std::string_view, 3> names = {"find_pairs", "find, kept", "between"};
+  return names[static_cast<std::size_t>(call)];
+}
+
+/// A set of pairs, as far as a hash can tell.
+struct PairSet {
+  std::uint64_t count = 0;
+  std::uint64_t hash = 0;
+
+  friend bool operator==(const PairSet&, const PairSet&) = default;
+};
+
+PairSet set_of(std::span<const Pair> pairs) {
+  PairSet set{.count = pairs.size()};
+  for (const Pair pair : pairs) set.hash += hash(pair);
+  return set;
+}
+
+/// One precision's side of a comparison.
+template <int D, typename Real>
+class Side {
+ public:
+  Side(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
+      : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(make_finder<D, Real>(algorithm)) {}
+
+  /// Asks once; returns the pairs. The time goes to the samples if `keep`.
+  PairSet run(bool keep) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<Pair> pairs = std::move(pairs_);
+    pairs.clear();
+    const Clock::time_point start = Clock::now();
+    ask(pairs);
+    const std::chrono::duration<double> time = Clock::now() - start;
+    if (keep) samples_.push_back(time.count());
+    const PairSet set = set_of(pairs);
+    if (call_ == Call::kept_finder) pairs_ = std::move(pairs);
+    return set;
+  }
+
+  std::span<const double> samples() const { return samples_; }
+
+ private:
+  void ask(std::vector<Pair>& pairs) {
+    const std::size_t half = boxes_.size() / 2;
+    switch (call_) {
+      case Call::once:
+        pairs = find_pairs(boxes_, algorithm_);
+        return;
+      case Call::between:
+        pairs = find_pairs(boxes_.first(half), boxes_.subspan(half), algorithm_);
+        return;
+      case Call::kept_finder:
+        PairCollector collector(pairs);
+        finder_->find(boxes_, collector);
+    }
+  }
+
+  std::span<const Box<D, Real>> boxes_;
+  std::string_view algorithm_;
+  Call call_;
+  std::unique_ptr<PairFinder<D, Real>> finder_;
+  std::vector<Pair> pairs_;
+  std::vector<double> samples_;
+};
+
+template <int D>
+std::vector<Box<D>> uniform_boxes(std::size_t count) {
+  const lab::NamedScene uniform = lab::find_scene("uniform");
+  return lab::make_history<D>(uniform.scene, uniform.spec, {.boxes = count}).boxes;
+}
+
+template <int D>
+std::vector<Box<D, double>> scaled(std::span<const Box<D>> boxes) {
+  std::vector<Box<D, double>> result(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      result[i].min[axis] = boxes[i].min[axis] * scale;
+      result[i].max[axis] = boxes[i].max[axis] * scale;
+    }
+  }
+  return result;
+}
+
+/// Times the calls in one dimension and prints a line for each. Throws std::runtime_error if two sets of
+/// pairs differ that should not.
+template <int D>
+void compare_precisions(std::size_t count, std::size_t rounds) {
+  const std::vector<Box<D>> floats = uniform_boxes<D>(count);
+  const std::vector<Box<D, double>> doubles = scaled<D>(floats);
+  for (const Call call : calls) {
+    std::optional<PairSet> expected;
+    for (const std::string_view algorithm : own_algorithms) {
+      Side<D, float> in_float(floats, algorithm, call);
+      Side<D, double> in_double(doubles, algorithm, call);
+      // Round 0 warms up.
+      for (std::size_t round = 0; round <= rounds; ++round) {
+        for (const PairSet& found : {in_float.run(round > 0), in_double.run(round > 0)}) {
+          if (found != expected.value_or(found))
+            throw std::runtime_error(fmt::format(
+                "{} in {}D gave {} pairs that are not the {} of the call before; expected one set for all",
+                algorithm, D, found.count, expected->count));
+          expected = found;
+        }
+      }
+      std::vector<double> ratios;
+      for (std::size_t i = 0; i < rounds; ++i)
+        ratios.push_back(in_double.samples()[i] / in_float.samples()[i]);
+      fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>10}{:>8.2f}\n", fmt::format("{}D", D), algorithm,
+                 name(call), lab::grouped(expected->count),
+                 lab::rounded(lab::median(in_float.samples()) * 1e3),
+                 lab::rounded(lab::median(in_double.samples()) * 1e3), lab::median(ratios));
+      std::fflush(stdout);
+    }
+  }
+}
+
+void run(std::size_t count, std::size_t rounds) {
+  const lab::Machine machine = lab::this_machine();
+  fmt::print("uniform, {} boxes, {} rounds; {}, {} cores; {}\n", lab::grouped(count), rounds, machine.cpu,
+             machine.cores, lab::this_build().compiler);
+  fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>10}{:>8}\n", "", "algorithm", "call", "pairs", "float ms",
+             "double ms", "ratio");
+  compare_precisions<2>(count, rounds);
+  compare_precisions<3>(count, rounds);
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int argc, char** argv) {
+  try {
+    const auto argument = [&](int place, std::size_t standard) {
+      return argc > place ? std::stoul(argv[place]) : standard;
+    };
+    broadside::bench::run(argument(1, 1'000'000), argument(2, 9));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "double_boxes: {}\n", error.what());
+    return 1;
+  }
+}
