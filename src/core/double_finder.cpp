@@ -52,6 +52,7 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
       begin_[axis] = region.begin[axis];
       rounded_begin_[axis] = rounded(region.begin[axis], axes[axis].origin);
     }
+    exact_ = owner.exact_ && !bounded_;
   }
 
  private:
@@ -59,32 +60,48 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
       Pair* const out = target_->room(count);
-      std::size_t written = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t a = index(pairs[i].first);
-        const std::size_t b = left_count_ + index(pairs[i].second);
-        const std::uint32_t first = owner_->ids_[a];
-        const std::uint32_t second = owner_->ids_[b];
-        // Which one is the lesser is what no predictor can know, and of min() and max() compilers make a
-        // jump.
-        const std::uint32_t lesser = std::min(first, second);
-        out[written] = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
-        const bool certain = is_pair_for_certain(owner_->floats_[a], owner_->floats_[b]);
-        written +=
-            static_cast<std::size_t>(certain || is_pair(owner_->boxes_[first], owner_->boxes_[second]));
-      }
-      target_->commit(written);
+      target_->commit(keep(pairs.first(count), out));
       pairs = pairs.subspan(count);
     }
   }
 
-  /// Whether the floats alone tell. They do nearly always, so this one jumps where it can.
-  bool is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
-    for (int axis = 0; axis < D; ++axis) {
-      if (a.min[axis] >= b.max[axis] || b.min[axis] >= a.max[axis]) return false;
-      if (bounded_ && std::max(a.min[axis], b.min[axis]) <= rounded_begin_[axis]) return false;
+  /// Writes those of up to max_room pairs that are to be kept, as ids, and returns how many.
+  std::size_t keep(std::span<const Pair> pairs, Pair* out) const {
+    // Without jumps, since what a predictor cannot know are the order of ids and, where many boxes touch,
+    // which pairs are certain.
+    std::array<Pair, max_room> uncertain;
+    std::size_t uncertain_count = 0;
+    std::size_t kept = 0;
+    for (const Pair places : pairs) {
+      const std::size_t a = index(places.first);
+      const std::size_t b = left_count_ + index(places.second);
+      const std::uint32_t first = owner_->ids_[a];
+      const std::uint32_t second = owner_->ids_[b];
+      const std::uint32_t lesser = std::min(first, second);
+      const Pair pair = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
+      const bool certain = exact_ || is_pair_for_certain(owner_->floats_[a], owner_->floats_[b]);
+      out[kept] = pair;
+      kept += static_cast<std::size_t>(certain);
+      uncertain[uncertain_count] = pair;
+      uncertain_count += static_cast<std::size_t>(!certain);
     }
-    return true;
+    for (const Pair pair : std::span(uncertain).first(uncertain_count)) {
+      out[kept] = pair;
+      kept += static_cast<std::size_t>(
+          is_pair(owner_->boxes_[index(pair.first)], owner_->boxes_[index(pair.second)]));
+    }
+    return kept;
+  }
+
+  /// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
+  bool is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
+    bool certain = true;
+    for (int axis = 0; axis < D; ++axis) {
+      certain &= a.min[axis] < b.max[axis];
+      certain &= b.min[axis] < a.max[axis];
+      certain &= !bounded_ || std::max(a.min[axis], b.min[axis]) > rounded_begin_[axis];
+    }
+    return certain;
   }
 
   bool is_pair(const Box<D, double>& a, const Box<D, double>& b) const {
@@ -95,7 +112,8 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
 
   const DoubleFinder* owner_;
   std::size_t left_count_;
-  bool bounded_ = false;  // whether the region begins anywhere on any axis
+  bool bounded_ = false;  // whether the region begins anywhere, on any axis
+  bool exact_;            // whether every pair of the float finder is one
   std::array<double, D> begin_;
   std::array<float, D> rounded_begin_;
   PairSink* target_;
@@ -196,6 +214,7 @@ void DoubleFinder<D>::measure(std::span<const std::uint32_t> places, const Regio
     // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
     return static_cast<std::size_t>(std::min(last, std::max(0.0, at)));
   };
+  bool exact = true;
   std::array<double, D> farthest{};
   bucket_of_.resize(std::max(bucket_of_.size(), places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -205,10 +224,12 @@ void DoubleFinder<D>::measure(std::span<const std::uint32_t> places, const Regio
         const double within = std::clamp(coordinate, region.begin[axis], region.end[axis]);
         const double distance = std::abs(within) < infinity ? std::abs(within - axes[axis].origin) : 0;
         farthest[axis] = std::max(farthest[axis], distance);
+        exact &= axes[axis].origin + rounded(coordinate, axes[axis].origin) == coordinate;
       }
     }
     bucket_of_[i] = static_cast<std::uint16_t>(slot(box, 1) * buckets_per_side_ + slot(box, 0));
   }
+  exact_ = exact;
   for (int axis = 0; axis < D; ++axis)
     axes[axis].coarseness = farthest[axis] > 0 ? farthest[axis] * rounding / axes[axis].extent : 0;
 }

@@ -16,9 +16,9 @@ namespace broadside::core {
 /// Subtracting an origin and rounding to float never puts two coordinates into the wrong order, at worst it
 /// makes them equal. So boxes that overlap in double overlap in float as well; and boxes that overlap in
 /// float by more than touching overlap in double. What is left is to test in double those of the float
-/// finder's pairs that only touch. That costs much only where rounding makes many boxes touch that lie apart;
-/// there the boxes are split into regions, each with an origin of its own. A pair is reported in the region
-/// that holds the greater of the two minima on every axis.
+/// finder's pairs that only touch, unless rounding has lost nothing. That costs much only where rounding
+/// makes many boxes touch that lie apart; there the boxes are split into regions, each with an origin of its
+/// own. A pair is reported in the region that holds the greater of the two minima on every axis.
 template <int D>
 class DoubleFinder final : public PairFinder<D, double> {
  public:
@@ -53,7 +53,7 @@ class DoubleFinder final : public PairFinder<D, double> {
 
   Axis sample(std::span<const std::uint32_t> places, const Region& region, int axis);
 
-  /// Sets the coarseness of the axes, and the bucket of each box.
+  /// Sets the coarseness of the axes, the bucket of each box, and exact_.
   void measure(std::span<const std::uint32_t> places, const Region& region, std::array<Axis, D>& axes);
 
   /// Reports the pairs of the boxes at `places`, which were the last to be measured, as floats.
@@ -75,6 +75,7 @@ class DoubleFinder final : public PairFinder<D, double> {
   std::vector<std::uint16_t> bucket_of_;
   std::vector<std::uint32_t> bucket_ends_;
   std::size_t buckets_per_side_ = 1;
+  bool exact_ = false;  // whether floats tell all coordinates apart that differ
   Statistics statistics_;
   bool counted_ = false;
 };

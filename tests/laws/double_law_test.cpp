@@ -103,6 +103,16 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     }
   }
   inputs.push_back({"integers above 2^24", integers});
+  // The same, but for the last bits of some.
+  Boxes<D> short_above = integers;
+  Boxes<D> short_below = integers;
+  for (std::size_t i = 0; i < count; i += 3) {
+    if (integers[i].min[0] == integers[i].max[0]) continue;
+    short_above[i].max[0] = std::nextafter(integers[i].max[0], 0);
+    short_below[i].min[0] = std::nextafter(integers[i].min[0], 2e9);
+  }
+  inputs.push_back({"integers and maxima just below", short_above});
+  inputs.push_back({"integers and minima just above", short_below});
   inputs.push_back({"touching to the last bit", lattice<D>(dice, 600, {4.0e6 / 3})});
   // So far from each other that they are split, and that in the middle of the second.
   inputs.push_back({"touching at the border of regions", lattice<D>(dice, 1200, {-1e9, 4.0e6 / 3, 1e9})});
