@@ -35,6 +35,9 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
+  verb.add_option("--layer", options.layer,
+                  "The layer of a map in TopoJSON, such as counties (standard: all)")
+      ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")
       ->type_name("LIST");
@@ -51,6 +54,7 @@ lab::ReadOptions read_options(const InputOptions& options, const std::string& pa
   lab::ReadOptions read;
   read.format = options.format;
   read.boxes = options.boxes;
+  read.layer = options.layer;
   read.columns = options.columns;
   read.dimension = options.dimension;
   if (options.dimension != 0) check_dimension(options.dimension);

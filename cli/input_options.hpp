@@ -13,12 +13,13 @@ namespace broadside::cli {
 struct InputOptions {
   std::string format;
   std::string boxes;
+  std::string layer;
   std::string columns;
   std::string precision;
   int dimension = 0;
 };
 
-/// Adds --format, --boxes and --columns, for a verb that has other uses for the rest.
+/// Adds --format, --boxes, --layer and --columns, for a verb that has other uses for the rest.
 void add_file_options(CLI::App& verb, InputOptions& options);
 
 /// Adds those, --precision and --dimension.

@@ -63,10 +63,11 @@ void check_swept(const PairsArguments& arguments) {
                                lab::counted(arguments.files.size(), "file", "files")));
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
-  if (!input.boxes.empty() || !input.columns.empty() || !input.precision.empty() || input.dimension != 0 ||
-      !arguments.frame.empty())
+  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
+      input.dimension != 0 || !arguments.frame.empty())
     throw Unusable(
-        "--boxes, --columns, --precision, --dimension or --frame with --swept; expected none of them");
+        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
+        "them");
 }
 
 void check(const PairsArguments& arguments) {

@@ -32,7 +32,7 @@ std::vector<Part> quick_parts() {
       {{"uniform", "clustered"}, {10'000}, {0.1}, 20},
       {{"churn"}, {1'000}, {0}, 20},
       {{"box2d_rain", "box2d_pyramid", "bullet_free_fall"}, {1'000}, {0}, 30},
-      {{"bunny"}, {0}},
+      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
   };
 }
 
@@ -45,7 +45,7 @@ std::vector<Part> long_parts() {
       {{"churn"}, {1'000, 10'000}, {0}, 50},
       {{"box2d_rain", "box2d_tumbler", "box2d_pyramid"}, {1'000, 5'000}, {0}, 60},
       {{"bullet_free_fall", "bullet_brownian", "bullet_moving_gravity"}, {1'000, 5'000}, {0}, 60},
-      {{"bunny"}, {0}},
+      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
   };
 }
 

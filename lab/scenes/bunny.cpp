@@ -1,20 +1,9 @@
 // The triangles of the Stanford bunny: a surface, where boxes are many in space but few on a line through it.
-#include <cstdlib>
-#include <filesystem>
-
 #include "lab/readers/descriptions.hpp"
+#include "lab/scenes/data_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 
 namespace broadside::lab::generated {
-namespace {
-
-/// Where scripts/setup puts the mesh.
-std::filesystem::path mesh_path() {
-  const char* const folder = std::getenv("BROADSIDE_DATA");
-  return std::filesystem::path(folder != nullptr ? folder : BROADSIDE_DATA_FOLDER) / "bunny.obj";
-}
-
-}  // namespace
 
 Scene bunny() {
   Scene scene{.name = "bunny",
@@ -23,10 +12,8 @@ Scene bunny() {
               .kind = SceneKind::file,
               .fixed_count = true,
               .fixed_seed = true};
-  const std::filesystem::path path = mesh_path();
-  std::error_code ignored;
-  scene.missing = std::filesystem::exists(path, ignored) ? readers::mesh().missing
-                                                         : path.string() + " is missing; run scripts/setup";
+  const std::filesystem::path path = data_file("bunny.obj");
+  scene.missing = missing_data(path, readers::mesh().missing);
   scene.boxes_2d = [path](const Settings&, std::size_t, std::uint64_t) {
     return read_file(path).in_2d.value().boxes;
   };

@@ -17,5 +17,7 @@ Scene thin();
 Scene terdiman();
 Scene churn();
 Scene bunny();
+Scene counties();
+Scene coastlines();
 
 }  // namespace broadside::lab::generated

@@ -32,7 +32,7 @@ struct SceneList {
   SceneList() {
     for (const std::vector<Scene>& more : {recordings::box2d(), recordings::bullet()})
       scenes.insert(scenes.end(), more.begin(), more.end());
-    scenes.push_back(generated::bunny());
+    scenes.insert(scenes.end(), {generated::bunny(), generated::counties(), generated::coastlines()});
     // Not std::ranges' version: clang 14 cannot compile what it returns.
     const auto missing = std::stable_partition(scenes.begin(), scenes.end(),
                                                [](const Scene& scene) { return scene.missing.empty(); });

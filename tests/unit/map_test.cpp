@@ -1,5 +1,6 @@
 // Maps: the boxes of their features, pieces and segments, and what is wrong with those that are refused.
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "files.hpp"
 #include "lab/readers/descriptions.hpp"
 #include "lab/readers/format.hpp"
+#include "lab/scenes/descriptions.hpp"
 #include "message.hpp"
 
 namespace broadside::lab {
@@ -230,6 +232,27 @@ TEST_F(MapTest, RefusesNestingThatWouldTakeTheStack) {
   EXPECT_THAT(refusal_of(nested(100'000)), HasSubstr("nested more than 32 deep"));
   EXPECT_THAT(refusal_of(R"({"type":"Polygon","coordinates":)" + std::string(100'000, '[')),
               HasSubstr("a.json"));
+}
+
+TEST_F(MapTest, MakesScenesOfTheMapsThatWereFetched) {
+  setenv("BROADSIDE_DATA", path("").c_str(), 1);
+  EXPECT_THAT(generated::counties().missing,
+              AllOf(HasSubstr("counties.topojson"), HasSubstr("scripts/setup")));
+  std::string text = topology;
+  put("counties.topojson", text.replace(text.find("squares"), 7, "counties"));
+  text = topology;
+  put("land.topojson", text.replace(text.find("\"line\""), 6, "\"land\""));
+  const Scene counties = generated::counties();
+  const Scene coastlines = generated::coastlines();
+  unsetenv("BROADSIDE_DATA");
+  const auto count = [](const Scene& scene, const std::string& spec) {
+    return make_history<2>(scene, Spec::parse(spec), {}).boxes.size();
+  };
+  EXPECT_EQ(count(counties, "counties"), 4u);
+  EXPECT_EQ(count(counties, "counties:boxes=segments"), 7u);
+  EXPECT_EQ(count(coastlines, "coastlines"), 2u) << "a box an island, though all are one feature";
+  EXPECT_EQ(count(coastlines, "coastlines:boxes=segments"), 6u);
+  EXPECT_FALSE(counties.has_dimension(3));
 }
 
 }  // namespace
