@@ -41,7 +41,8 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
-const Format& readable_format(Input& input, std::string_view name) {
+const Format& readable_format(Input& input, const ReadOptions& options) {
+  const std::string_view name = options.format;
   const std::string_view begin = input.beginning();
   for (const Format& format : formats()) {
     const bool is_it = name.empty() ? format.recognises(begin, input.extension()) : format.name == name;
@@ -53,6 +54,9 @@ const Format& readable_format(Input& input, std::string_view name) {
     throw FileError(
         fmt::format("{}: unknown format '{}'; expected one of: {}", input.name(), name, listed(can_be_read)));
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
+  // A table whose own names nobody knows is one by those that the user gives.
+  const auto table = std::ranges::find_if(formats(), &Format::has_columns);
+  if (!options.columns.empty() && table != formats().end()) return *table;
   throw FileError(
       fmt::format("{}: is in no format known here; expected one of: {}", input.name(), listed(can_be_read)));
 }
@@ -99,7 +103,7 @@ std::span<const Format> formats() {
 
 BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
   auto input = std::make_unique<Input>(path, options.progress);
-  const Format& format = readable_format(*input, options.format);
+  const Format& format = readable_format(*input, options);
   std::string name = input->name();
   check_options(format, name, options);
   AnyFrameReader frames = format.open(std::move(input), options);

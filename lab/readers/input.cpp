@@ -99,9 +99,9 @@ Input::Input(const std::filesystem::path& path, Progress progress) : progress_(s
     refuse();
   }
   // Standard input may begin in the middle of a file.
-  is_regular_ = S_ISREG(status.st_mode) && path != "-";
+  is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor_, 0, SEEK_CUR) == 0);
   if (is_regular_) {
-    path_ = path;
+    if (path != "-") path_ = path;
     size_ = static_cast<std::uint64_t>(status.st_size);
   }
   if (progress_) next_report_ = bytes_a_report;

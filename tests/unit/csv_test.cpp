@@ -134,6 +134,10 @@ TEST_F(CsvTable, TakesTheColumnsThatTheUserNames) {
   EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n2,1,8,5\n-2,-1,1e10,0\n", options), expected)
       << "whatever the table says";
 
+  EXPECT_EQ((history_of<2, double>(put("a.txt", "p q r s\n2 1 8 5\n-2 -1 1e10 0\n"), options).boxes),
+            expected)
+      << "whatever the file is called";
+
   EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,maxy,-"),
               AllOf(HasSubstr("bad.csv:1: 4 columns"), HasSubstr("the 5 that --columns names")));
   EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,colour"), HasSubstr("--columns names 'colour'"));

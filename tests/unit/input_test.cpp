@@ -1,14 +1,14 @@
 // Inputs: the same bytes whether they are mapped, piped or in memory, at once or in pieces.
 #include "lab/readers/input.hpp"
 
-#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,6 +16,7 @@
 #include "files.hpp"
 #include "lab/readers/format.hpp"
 #include "message.hpp"
+#include "pipe.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -24,37 +25,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 using InputTest = Files;
-
-/// A pipe into which a thread writes, and the path at which it can be opened.
-class Pipe {
- public:
-  explicit Pipe(std::string text)
-      : writer_([this, text = std::move(text)] {
-          // In pieces, as a program writes that computes in between.
-          for (std::size_t begin = 0; begin < text.size(); begin += 1000) {
-            const std::string piece = text.substr(begin, 1000);
-            if (::write(ends_[1], piece.data(), piece.size()) != static_cast<ssize_t>(piece.size())) break;
-          }
-          ::close(ends_[1]);
-        }) {}
-
-  ~Pipe() {
-    writer_.join();
-    ::close(ends_[0]);
-  }
-
-  std::string path() const { return "/dev/fd/" + std::to_string(ends_[0]); }
-
- private:
-  std::array<int, 2> ends_ = make_ends();
-  std::thread writer_;
-
-  static std::array<int, 2> make_ends() {
-    std::array<int, 2> ends{};
-    if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe; expected one");
-    return ends;
-  }
-};
 
 /// Some 250 kB: more than any buffer here holds.
 std::string long_text() {
@@ -126,6 +96,43 @@ TEST_F(InputTest, IsRefusedWhereItCannotBeRead) {
   EXPECT_THAT(message_of<FileError>([] { Input("/proc/self/mem").beginning(); }),
               HasSubstr("/proc/self/mem: cannot be read"));
   EXPECT_THAT(message_of<FileError>([] { Input("/proc/self/mem").bytes(); }), HasSubstr("cannot be read"));
+}
+
+/// Standard input comes from a file while this exists, from the byte on at which it is opened.
+class StandardInput {
+ public:
+  StandardInput(const std::filesystem::path& path, off_t begin) : before_(::dup(STDIN_FILENO)) {
+    const int file = ::open(path.c_str(), O_RDONLY);
+    ::lseek(file, begin, SEEK_SET);
+    ::dup2(file, STDIN_FILENO);
+    ::close(file);
+  }
+  ~StandardInput() {
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+  }
+  StandardInput(const StandardInput&) = delete;
+  StandardInput& operator=(const StandardInput&) = delete;
+
+ private:
+  int before_;
+};
+
+TEST_F(InputTest, IsStandardInputFromWhereItStands) {
+  const std::string text = long_text();
+  for (const std::size_t begin : {0, 3, 100'000}) {
+    {
+      const StandardInput file(put("a.txt", text), static_cast<off_t>(begin));
+      Input at_once("-");
+      EXPECT_EQ(at_once.beginning(), text.substr(begin, Input::beginning_bytes));
+      EXPECT_EQ(at_once.bytes(), text.substr(begin));
+      EXPECT_EQ(at_once.name(), "standard input");
+      EXPECT_TRUE(at_once.path().empty()) << "by then it may stand elsewhere";
+    }
+    const StandardInput file(path("a.txt"), static_cast<off_t>(begin));
+    Input in_pieces("-");
+    EXPECT_EQ(stream_text(in_pieces), text.substr(begin));
+  }
 }
 
 TEST_F(InputTest, TellsHowFarItIsAndOfHowMuch) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "lab/readers/write_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
+#include "pipe.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -265,6 +267,21 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("extension '.obj'"),
                                     HasSubstr("expected one of: trace (.btrace), csv (.csv), ")));
+  }
+}
+
+TEST_F(Files, AreReadThroughAPipeAndToldByTheirContent) {
+  const History<3> history{{{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 0.5F}, {0, 9, 0.5F}}}, {}};
+  for (const Format& format : formats()) {
+    if (!format.create) continue;
+    const std::string name = "a" + format.extensions.front();
+    write_scene(history, path(name));
+    const Pipe pipe(text_of(name));
+    ReadOptions options;
+    options.precision = Precision::float32;
+    const BoxFile file = open_file(pipe.path(), options);
+    EXPECT_EQ(file.format->name, format.name);
+    EXPECT_EQ((std::get<std::unique_ptr<FrameReader<3, float>>>(file.frames)->first()), history.boxes);
   }
 }
 
