@@ -46,6 +46,10 @@ class PairFinder {
   /// ever written; the library's own algorithms do not even look for one. Throws as find() does.
   void find_between(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right, PairSink& pairs);
 
+  /// The same for two sets that lie one behind the other: the first `left_count` <= boxes.size() boxes are
+  /// the left set. Where none is absent this saves copying them.
+  void find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
+
   /// What the last find() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
 

@@ -248,7 +248,7 @@ void DoubleFinder<D>::search_floats(std::span<const std::uint32_t> places, const
   if (this->left_count() == 0)
     finder_->find(floats, exact);
   else
-    finder_->find_between(floats.first(left), floats.subspan(left), exact);
+    finder_->find_between(floats, left, exact);
   if (const auto& found = finder_->statistics()) {
     statistics_.tests += found->tests;
     statistics_.references += found->references;

@@ -40,11 +40,38 @@ class RenamingSink final : public PairSink {
   PairSink* target_;
 };
 
-/// Checks one of two sets; a box at fault is named as one of `side`.
+/// Passes on pairs between the boxes before place `left_count` and the others, as places in those two sets.
+class CrossingSink final : public PairSink {
+ public:
+  CrossingSink(std::size_t left_count, PairSink& target)
+      : left_count_(static_cast<std::uint32_t>(left_count)), target_(&target) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    while (!pairs.empty()) {
+      const std::size_t count = std::min(pairs.size(), max_room);
+      Pair* const out = target_->room(count);
+      std::size_t written = 0;
+      for (const Pair pair : pairs.first(count)) {
+        const std::uint32_t first = index(pair.first);
+        const std::uint32_t second = index(pair.second);
+        out[written] = {BoxId{first}, BoxId{second - left_count_}};
+        written += static_cast<std::size_t>(first < left_count_ && second >= left_count_);
+      }
+      target_->commit(written);
+      pairs = pairs.subspan(count);
+    }
+  }
+
+  std::uint32_t left_count_;
+  PairSink* target_;
+};
+
+/// Checks one of two sets and returns how many boxes are absent; a box at fault is named as one of `side`.
 template <int D, typename Real>
-void check_side(std::span<const Box<D, Real>> boxes, const char* side) {
+std::size_t check_side(std::span<const Box<D, Real>> boxes, const char* side) {
   try {
-    core::check_boxes(boxes);
+    return core::check_boxes(boxes);
   } catch (const InvalidInput& error) {
     throw InvalidInput(error.index(), std::string(side) + " " + error.what());
   }
@@ -100,6 +127,26 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
     if (left_count_ == 0 || left_count_ == present_.size()) return;
     RenamingSink crossing(ids_, left_count_, pairs);
     find_valid(present_, crossing);
+    crossing.flush();
+  });
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                       PairSink& pairs) {
+  const std::span<const Box<D, Real>> left = boxes.first(left_count);
+  const std::span<const Box<D, Real>> right = boxes.subspan(left_count);
+  core::check_count(boxes.size());
+  if (check_side(left, "left") + check_side(right, "right") > 0) {
+    find_between(left, right, pairs);
+    return;
+  }
+  statistics_.reset();
+  left_count_ = left_count;
+  deliver(pairs, [&] {
+    if (left.empty() || right.empty()) return;
+    CrossingSink crossing(left_count, pairs);
+    find_valid(boxes, crossing);
     crossing.flush();
   });
 }

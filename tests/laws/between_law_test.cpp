@@ -55,6 +55,25 @@ TEST_P(BetweenLaw, FindsEachPairAcrossOnceAndNoneWithin) {
   });
 }
 
+TEST_P(BetweenLaw, FindsTheSamePairsOfTwoSetsInOneArray) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    for (const Input<D>& input : hard_inputs<D>(algorithm())) {
+      const std::span<const Box<D>> boxes = input.boxes;
+      for (const std::size_t left_count : {std::size_t{0}, boxes.size() / 3, boxes.size()}) {
+        std::vector<Pair> pairs;
+        PairCollector collector(pairs);
+        finder->find_between(boxes, left_count, collector);
+        std::ranges::sort(pairs);
+        const std::span<const Box<D>> left = boxes.first(left_count);
+        const std::span<const Box<D>> right = boxes.subspan(left_count);
+        EXPECT_EQ(pairs, reference<D>({left.begin(), left.end()}, {right.begin(), right.end()}))
+            << input.name << ", the left " << left_count;
+      }
+    }
+  });
+}
+
 TEST_P(BetweenLaw, LeavesNoTraceInLaterSearches) {
   in_dimension([&]<int D>() {
     const Input<D> input = hard_inputs<D>(algorithm()).front();
