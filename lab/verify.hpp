@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -23,29 +26,46 @@ struct Divergence {
   std::string text;       ///< a sentence that names the algorithm, the frame, the pair and both boxes
 };
 
+/// Boxes for a function that is told their dimension and precision.
+template <int D, typename Real>
+using BoxSpan = std::type_identity_t<std::span<const Box<D, Real>>>;
+
 /// Every pair of overlapping boxes, by the definition and nothing else: the independent reference. Sorted.
 /// Cost n^2 / 2 tests. Absent boxes pair with nothing.
-template <int D>
-std::vector<Pair> reference_pairs(std::span<const Box<D>> boxes);
+template <int D, typename Real = float>
+std::vector<Pair> reference_pairs(BoxSpan<D, Real> boxes);
+
+/// Where expected pairs come from, sorted: reference_pairs, or something cheaper that is trusted.
+template <int D, typename Real>
+using ExpectedPairs = std::type_identity_t<std::function<std::vector<Pair>(std::span<const Box<D, Real>>)>>;
 
 /// What differs first between `found`, in any order, and the sorted `expected`; empty if they are equal as
 /// sets and each pair of `found` is there once.
 std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected);
 
 /// The same divergence, with the algorithm's name, what was looked at, the frame and both boxes in its text.
-template <int D>
+template <int D, typename Real = float>
 Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
-                     std::span<const Box<D>> boxes);
+                     BoxSpan<D, Real> boxes);
 
-/// Whether `finder` gives the reference's pairs on `boxes`. `name` is for the divergence's text.
-template <int D>
-std::optional<Divergence> check_finder(PairFinder<D>& finder, std::span<const Box<D>> boxes,
-                                       std::string_view name);
+/// Whether `finder` gives the expected pairs on `boxes`. `name` is for the divergence's text.
+template <int D, typename Real>
+std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
+                                       std::string_view name,
+                                       const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
 
 /// Whether `tracker`, over the whole history, gives in each frame exactly the events that lead from the
-/// reference's pairs of the frame before to this frame's, sorted.
-template <int D>
-std::optional<Divergence> check_tracker(PairTracker<D>& tracker, const History<D>& history,
-                                        std::string_view name);
+/// expected pairs of the frame before to this frame's, sorted.
+template <int D, typename Real>
+std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const History<D, Real>& history,
+                                        std::string_view name,
+                                        const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
+
+/// What differs first between a frame's events, as a tracker gave them, and those that lead from the sorted
+/// pairs `before` to `now`; empty if nothing does and the events are sorted.
+template <int D, typename Real = float>
+std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
+                                       std::span<const Pair> before, std::span<const Pair> now,
+                                       std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes);
 
 }  // namespace broadside::lab

@@ -71,16 +71,18 @@ std::string unfit(const Contender& contender, int dimension, bool infinite) {
   return {};
 }
 
-template <int D>
-bool any_infinite(std::span<const Box<D>> boxes) {
-  return std::ranges::any_of(boxes, [](const Box<D>& box) {
-    const auto infinite = [](float coordinate) { return std::isinf(coordinate); };
+template <int D, typename Real>
+bool any_infinite(std::type_identity_t<std::span<const Box<D, Real>>> boxes) {
+  return std::ranges::any_of(boxes, [](const Box<D, Real>& box) {
+    const auto infinite = [](Real coordinate) { return std::isinf(coordinate); };
     return is_present(box) &&
            (std::ranges::any_of(box.min, infinite) || std::ranges::any_of(box.max, infinite));
   });
 }
 
-template bool any_infinite(std::span<const Box<2>>);
-template bool any_infinite(std::span<const Box<3>>);
+template bool any_infinite<2, float>(std::span<const Box2>);
+template bool any_infinite<3, float>(std::span<const Box3>);
+template bool any_infinite<2, double>(std::span<const DoubleBox2>);
+template bool any_infinite<3, double>(std::span<const DoubleBox3>);
 
 }  // namespace broadside::lab

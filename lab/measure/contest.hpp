@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "lab/catalogue.hpp"
 #include "lab/measure/allocation.hpp"
@@ -71,7 +72,7 @@ void count_memory(Measurement& entry, const std::optional<Allocation>& allocatio
 std::string unfit(const Contender& contender, int dimension, bool infinite);
 
 /// Whether any of the boxes reaches to infinity, absent ones aside.
-template <int D>
-bool any_infinite(std::span<const Box<D>> boxes);
+template <int D, typename Real = float>
+bool any_infinite(std::type_identity_t<std::span<const Box<D, Real>>> boxes);
 
 }  // namespace broadside::lab

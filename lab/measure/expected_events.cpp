@@ -32,7 +32,7 @@ ExpectedEvents events_by_definition(const History<D>& history) {
   ExpectedEvents expected;
   std::vector<Pair> before;
   replay(history, [&](const Frame<D>& frame) {
-    std::vector<Pair> now = reference_pairs(frame.boxes);
+    std::vector<Pair> now = reference_pairs<D>(frame.boxes);
     expected.frames.push_back({without(now, before), without(before, now)});
     before = std::move(now);
   });
@@ -85,7 +85,7 @@ std::string difference(const Events& found, const Events& expected, std::string_
     const Pair unsorted = *std::ranges::is_sorted_until(list);
     divergence = Divergence{Divergence::Kind::extra, unsorted, frame, "events are not sorted by id"};
   }
-  return explained(*std::move(divergence), name, begun_differs ? "begun:" : "ended:", frame, boxes).text;
+  return explained<D>(*std::move(divergence), name, begun_differs ? "begun:" : "ended:", frame, boxes).text;
 }
 
 template ExpectedEvents expected_events(const Reference&, const History<2>&);

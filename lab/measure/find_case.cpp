@@ -61,7 +61,7 @@ class FindCase {
 
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
-    entry.reason = unfit(contender, D, any_infinite(boxes_of(0)));
+    entry.reason = unfit(contender, D, any_infinite<D>(boxes_of(0)));
     if (!entry.reason.empty()) return false;
     const double budget = contest_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
@@ -152,8 +152,8 @@ class FindCase {
     auto divergence = kept ? compare_pairs(pairs_, expected.pairs)
                            : compare_pairs(pairs_, expected.reference.template pairs<D>(boxes_of(input)));
     if (!divergence) return {};
-    return explained(*std::move(divergence), contestant.entry->algorithm,
-                     fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
+    return explained<D>(*std::move(divergence), contestant.entry->algorithm,
+                        fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
         .text;
   }
 
@@ -166,9 +166,9 @@ class FindCase {
     std::vector<Pair> pairs = reference.pairs<D>(boxes_of(input));
     Expectation expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
     if (!reference.is_definition()) {
-      if (auto divergence = check_sample(boxes_of(input), pairs))
+      if (auto divergence = check_sample<D>(boxes_of(input), pairs))
         expected.fault =
-            explained(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input)).text;
+            explained<D>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input)).text;
     }
     if (pairs.size() <= most_pairs_kept) expected.pairs = std::move(pairs);
     expectations_.push_back(std::make_unique<Expectation>(std::move(expected)));

@@ -30,23 +30,23 @@ std::string Reference::text() const {
   return fmt::format("{} + {} sampled boxes", algorithm_->name, sampled_boxes);
 }
 
-template <int D>
-std::unique_ptr<PairFinder<D>> Reference::finder() const {
-  return is_definition() ? nullptr : make_finder<D>(*algorithm_, Spec{algorithm_->name, {}});
+template <int D, typename Real>
+std::unique_ptr<PairFinder<D, Real>> Reference::finder() const {
+  return is_definition() ? nullptr : make_finder<D, Real>(*algorithm_, Spec{algorithm_->name, {}});
 }
 
-template <int D>
-std::vector<Pair> Reference::pairs(std::span<const Box<D>> boxes) const {
-  if (is_definition()) return reference_pairs(boxes);
+template <int D, typename Real>
+std::vector<Pair> Reference::pairs(BoxSpan<D, Real> boxes) const {
+  if (is_definition()) return reference_pairs<D, Real>(boxes);
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  finder<D>()->find(boxes, collector);
+  finder<D, Real>()->find(boxes, collector);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-template <int D>
-std::optional<Divergence> check_sample(std::span<const Box<D>> boxes, std::span<const Pair> pairs) {
+template <int D, typename Real>
+std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs) {
   std::vector<bool> sampled(boxes.size(), false);
   std::vector<Pair> expected;
   for (const std::size_t i : sample_of(boxes.size(), sampled_boxes)) {
@@ -81,11 +81,17 @@ std::vector<std::size_t> sample_of(std::size_t size, std::size_t count) {
   return chosen;
 }
 
-template std::unique_ptr<PairFinder<2>> Reference::finder() const;
-template std::unique_ptr<PairFinder<3>> Reference::finder() const;
-template std::vector<Pair> Reference::pairs(std::span<const Box<2>>) const;
-template std::vector<Pair> Reference::pairs(std::span<const Box<3>>) const;
-template std::optional<Divergence> check_sample(std::span<const Box<2>>, std::span<const Pair>);
-template std::optional<Divergence> check_sample(std::span<const Box<3>>, std::span<const Pair>);
+template std::unique_ptr<PairFinder<2, float>> Reference::finder() const;
+template std::vector<Pair> Reference::pairs<2, float>(BoxSpan<2, float>) const;
+template std::optional<Divergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>);
+template std::unique_ptr<PairFinder<2, double>> Reference::finder() const;
+template std::vector<Pair> Reference::pairs<2, double>(BoxSpan<2, double>) const;
+template std::optional<Divergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>);
+template std::unique_ptr<PairFinder<3, float>> Reference::finder() const;
+template std::vector<Pair> Reference::pairs<3, float>(BoxSpan<3, float>) const;
+template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>);
+template std::unique_ptr<PairFinder<3, double>> Reference::finder() const;
+template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>) const;
+template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>);
 
 }  // namespace broadside::lab

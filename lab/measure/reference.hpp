@@ -37,13 +37,16 @@ class Reference {
 
   bool is_definition() const noexcept { return algorithm_ == nullptr; }
 
+  /// The algorithm that they come from; null if it is the definition.
+  const Algorithm* algorithm() const noexcept { return algorithm_; }
+
   /// The expected pairs, sorted. Nothing but the definition can be relied on before check_sample().
-  template <int D>
-  std::vector<Pair> pairs(std::span<const Box<D>> boxes) const;
+  template <int D, typename Real = float>
+  std::vector<Pair> pairs(BoxSpan<D, Real> boxes) const;
 
   /// A finder of the expected pairs; null if they come from the definition.
-  template <int D>
-  std::unique_ptr<PairFinder<D>> finder() const;
+  template <int D, typename Real = float>
+  std::unique_ptr<PairFinder<D, Real>> finder() const;
 
   friend bool operator==(const Reference&, const Reference&) = default;
 
@@ -53,8 +56,8 @@ class Reference {
 
 /// Compares sampled boxes with all others by the definition: what differs first from `pairs`, or empty. Where
 /// the boxes are no more than the sample all are compared. Cost: the sample times the boxes.
-template <int D>
-std::optional<Divergence> check_sample(std::span<const Box<D>> boxes, std::span<const Pair> pairs);
+template <int D, typename Real = float>
+std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs);
 
 /// The hash of a set of pairs, as PairHasher computes it.
 std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;

@@ -139,7 +139,7 @@ class Tracked {
     LimitedCollector begun(begun_chunks);
     LimitedCollector ended(ended_chunks);
     tracker_->update({boxes, changed}, begun, ended);
-    std::vector<Pair> now = lab::reference_pairs(std::span<const Box<D>>(boxes));
+    std::vector<Pair> now = lab::reference_pairs<D>(boxes);
     std::vector<Pair> expected_begun;
     std::vector<Pair> expected_ended;
     std::ranges::set_difference(now, pairs_, std::back_inserter(expected_begun));

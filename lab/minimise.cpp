@@ -1,0 +1,138 @@
+// Failing inputs made small by delta debugging.
+#include "lab/minimise.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace broadside::lab {
+namespace {
+
+/// Drops from `items` what `still_fails` does without.
+template <typename Item>
+void drop_what_can_go(std::vector<Item>& items, const std::function<bool()>& still_fails,
+                      const std::function<bool()>& stop) {
+  for (std::size_t part = items.size(); part > 0; part /= 2) {
+    for (std::size_t begin = 0; begin < items.size();) {
+      if (stop && stop()) return;
+      std::vector<Item> all = items;
+      const std::size_t end = std::min(begin + part, items.size());
+      items.erase(items.begin() + static_cast<std::ptrdiff_t>(begin),
+                  items.begin() + static_cast<std::ptrdiff_t>(end));
+      if (still_fails()) continue;
+      items = std::move(all);
+      begin += part;
+    }
+  }
+}
+
+/// Whether no step changes a box beyond both its own frame and the one before.
+template <int D, typename Real>
+bool is_valid(const History<D, Real>& history) {
+  std::size_t known = history.boxes.size();
+  for (const Step<D, Real>& step : history.steps) {
+    const std::size_t size = std::max(known, step.size);
+    if (std::ranges::any_of(step.changed, [size](BoxId id) { return index(id) >= size; })) return false;
+    known = step.size;
+  }
+  return true;
+}
+
+/// How many places there are in the frame that has the most.
+template <int D, typename Real>
+std::size_t places_of(const History<D, Real>& history) {
+  std::size_t places = history.boxes.size();
+  for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
+  return places;
+}
+
+/// The history of the places in `kept`, which are ascending, alone.
+template <int D, typename Real>
+History<D, Real> only(const std::vector<std::size_t>& kept, const History<D, Real>& history) {
+  const auto below = [&kept](std::size_t place) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(kept, place) - kept.begin());
+  };
+  History<D, Real> rest;
+  for (const std::size_t place : kept) {
+    if (place < history.boxes.size()) rest.boxes.push_back(history.boxes[place]);
+  }
+  for (const Step<D, Real>& step : history.steps) {
+    Step<D, Real> less{below(step.size), {}, {}};
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      const std::size_t place = below(index(step.changed[i]));
+      if (place == kept.size() || kept[place] != index(step.changed[i])) continue;
+      less.changed.push_back(BoxId(place));
+      less.boxes.push_back(step.boxes[i]);
+    }
+    rest.steps.push_back(std::move(less));
+  }
+  return rest;
+}
+
+/// Drops the places of the array that can go.
+template <int D, typename Real>
+void drop_places(History<D, Real>& history, const HistoryFails<D, Real>& fails,
+                 const std::function<bool()>& stop) {
+  const History<D, Real> whole = std::move(history);
+  std::vector<std::size_t> kept(places_of(whole));
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  drop_what_can_go(
+      kept, [&] { return fails(only(kept, whole)); }, stop);
+  history = only(kept, whole);
+}
+
+/// Drops the changes of a step that can go.
+template <int D, typename Real>
+void drop_changes(Step<D, Real>& step, const std::function<bool()>& still_fails,
+                  const std::function<bool()>& stop) {
+  const Step<D, Real> whole = step;
+  std::vector<std::size_t> kept(whole.changed.size());
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  const auto take_kept = [&] {
+    step.changed.clear();
+    step.boxes.clear();
+    for (const std::size_t i : kept) {
+      step.changed.push_back(whole.changed[i]);
+      step.boxes.push_back(whole.boxes[i]);
+    }
+  };
+  drop_what_can_go(
+      kept,
+      [&] {
+        take_kept();
+        return still_fails();
+      },
+      stop);
+  take_kept();
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
+              const std::function<bool()>& stop) {
+  drop_what_can_go(
+      boxes, [&] { return fails(boxes); }, stop);
+}
+
+template <int D, typename Real>
+void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
+              const std::function<bool()>& stop) {
+  const std::function<bool()> still_fails = [&] { return is_valid(history) && fails(history); };
+  drop_what_can_go(history.steps, still_fails, stop);
+  drop_places(history, fails, stop);
+  // Where boxes are gone, more frames can go.
+  drop_what_can_go(history.steps, still_fails, stop);
+  for (Step<D, Real>& step : history.steps) drop_changes(step, still_fails, stop);
+}
+
+template void minimise(std::vector<Box2>&, const BoxesFail<2, float>&, const std::function<bool()>&);
+template void minimise(std::vector<Box3>&, const BoxesFail<3, float>&, const std::function<bool()>&);
+template void minimise(std::vector<DoubleBox2>&, const BoxesFail<2, double>&, const std::function<bool()>&);
+template void minimise(std::vector<DoubleBox3>&, const BoxesFail<3, double>&, const std::function<bool()>&);
+template void minimise(History<2>&, const HistoryFails<2, float>&, const std::function<bool()>&);
+template void minimise(History<3>&, const HistoryFails<3, float>&, const std::function<bool()>&);
+template void minimise(History<2, double>&, const HistoryFails<2, double>&, const std::function<bool()>&);
+template void minimise(History<3, double>&, const HistoryFails<3, double>&, const std::function<bool()>&);
+
+}  // namespace broadside::lab

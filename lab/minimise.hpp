@@ -1,0 +1,35 @@
+// Failing inputs made small by delta debugging (Zeller and Hildebrandt 2002): whatever can go goes, as long
+// as the failure remains.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+/// Whether boxes, or a history of them, still fail. What it throws ends the search.
+template <int D, typename Real>
+using BoxesFail = std::type_identity_t<std::function<bool(std::span<const Box<D, Real>>)>>;
+template <int D, typename Real>
+using HistoryFails = std::type_identity_t<std::function<bool(const History<D, Real>&)>>;
+
+/// Drops boxes without which `boxes`, which fail, still fail; halves first, then ever smaller parts, down to
+/// single boxes. None that is left can go alone. Calls `fails` about as often as there are boxes left times
+/// the logarithm of how many there were. `stop`, where there is one, ends it early.
+template <int D, typename Real>
+void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
+              const std::function<bool()>& stop = {});
+
+/// Likewise a history: drops frames, places of the array (those behind move up), and changes.
+template <int D, typename Real>
+void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
+              const std::function<bool()>& stop = {});
+
+}  // namespace broadside::lab
