@@ -65,12 +65,13 @@ Divergence explained(Divergence divergence, std::string_view name, std::string_v
 
 template <int D, typename Real>
 std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
-                                       std::string_view name, const ExpectedPairs<D, Real>& expected) {
+                                       std::string_view name, const ExpectedPairs<D, Real>& expected,
+                                       std::size_t frame) {
   std::vector<Pair> found;
   PairCollector collector(found);
   finder.find(boxes, collector);
   if (auto divergence = compare_pairs(std::move(found), expected(boxes)))
-    return explained<D, Real>(*std::move(divergence), name, "search:", 0, boxes);
+    return explained<D, Real>(*std::move(divergence), name, "search:", frame, boxes);
   return std::nullopt;
 }
 
@@ -121,7 +122,7 @@ template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
 template Divergence explained<2, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<2, float>);
 template std::optional<Divergence> check_finder(PairFinder<2, float>&, BoxSpan<2, float>, std::string_view,
-                                                const ExpectedPairs<2, float>&);
+                                                const ExpectedPairs<2, float>&, std::size_t);
 template std::optional<Divergence> check_tracker(PairTracker<2, float>&, const History<2, float>&,
                                                  std::string_view, const ExpectedPairs<2, float>&);
 template std::optional<Divergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
@@ -131,7 +132,7 @@ template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
 template Divergence explained<2, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<2, double>);
 template std::optional<Divergence> check_finder(PairFinder<2, double>&, BoxSpan<2, double>, std::string_view,
-                                                const ExpectedPairs<2, double>&);
+                                                const ExpectedPairs<2, double>&, std::size_t);
 template std::optional<Divergence> check_tracker(PairTracker<2, double>&, const History<2, double>&,
                                                  std::string_view, const ExpectedPairs<2, double>&);
 template std::optional<Divergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
@@ -141,7 +142,7 @@ template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
 template Divergence explained<3, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<3, float>);
 template std::optional<Divergence> check_finder(PairFinder<3, float>&, BoxSpan<3, float>, std::string_view,
-                                                const ExpectedPairs<3, float>&);
+                                                const ExpectedPairs<3, float>&, std::size_t);
 template std::optional<Divergence> check_tracker(PairTracker<3, float>&, const History<3, float>&,
                                                  std::string_view, const ExpectedPairs<3, float>&);
 template std::optional<Divergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
@@ -151,7 +152,7 @@ template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
 template Divergence explained<3, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<3, double>);
 template std::optional<Divergence> check_finder(PairFinder<3, double>&, BoxSpan<3, double>, std::string_view,
-                                                const ExpectedPairs<3, double>&);
+                                                const ExpectedPairs<3, double>&, std::size_t);
 template std::optional<Divergence> check_tracker(PairTracker<3, double>&, const History<3, double>&,
                                                  std::string_view, const ExpectedPairs<3, double>&);
 template std::optional<Divergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,

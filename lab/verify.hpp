@@ -48,11 +48,12 @@ template <int D, typename Real = float>
 Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
                      BoxSpan<D, Real> boxes);
 
-/// Whether `finder` gives the expected pairs on `boxes`. `name` is for the divergence's text.
+/// Whether `finder` gives the expected pairs on `boxes`. `name` and `frame` are for the divergence's text.
 template <int D, typename Real>
 std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
                                        std::string_view name,
-                                       const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
+                                       const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>,
+                                       std::size_t frame = 0);
 
 /// Whether `tracker`, over the whole history, gives in each frame exactly the events that lead from the
 /// expected pairs of the frame before to this frame's, sorted.

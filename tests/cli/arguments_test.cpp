@@ -58,8 +58,8 @@ struct Refusal {
 
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
-      {{}, {"no verb", "expected one of: compare, pairs, convert"}},
-      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, pairs, convert"}},
+      {{}, {"no verb", "expected one of: compare, pairs, verify"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, pairs, verify"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
       {{"compare", "--algorithms", "gird"}, {"'gird'", "expected one of: ", "grid"}},
       {{"compare", "--algorithms", "grid:cell=-1"}, {"grid: cell is '-1'", "expected a number"}},

@@ -1,0 +1,83 @@
+// broadside verify: the law on a file, and where an algorithm breaks it, a small file that shows how.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/input_options.hpp"
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "cli/verbs.hpp"
+#include "lab/verify_file.hpp"
+
+namespace broadside::cli {
+namespace {
+
+struct VerifyArguments {
+  std::string file;
+  InputOptions input;
+  lab::VerifyOptions options;
+  std::string counterexample;
+};
+
+Exit run(const VerifyArguments& arguments) {
+  on_signal(OnSignal::end);
+  lab::VerifyOptions options = arguments.options;
+  if (!(options.budget_seconds > 0))
+    throw Unusable(
+        fmt::format("--budget is {}; expected a number of seconds above 0", options.budget_seconds));
+  if (!arguments.counterexample.empty()) {
+    check_writable("--counterexample", arguments.counterexample);
+    lab::writable_format(arguments.counterexample);
+    options.counterexample = arguments.counterexample;
+  }
+  ProgressLine progress;
+  options.watch.stop = interrupted;
+  options.watch.progress = [&](std::string_view what) { progress.show(what); };
+  const lab::Catalogue catalogue;
+  lab::BoxFile file = open_input(arguments.input, arguments.file);
+  on_signal(OnSignal::note_then_end);
+  try {
+    const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
+    progress.clear();
+    if (!verification.warning.empty()) say(verification.warning);
+    fmt::print("{}", lab::text_of(verification));
+    return verification.all_verified() ? Exit::fine : Exit::failed;
+  } catch (const lab::Stopped&) {
+    throw Interruption();
+  }
+}
+
+}  // namespace
+
+Verb add_verify(CLI::App& program) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App* const verb = program.add_subcommand(
+      "verify",
+      "Checks on a file that algorithms find exactly the pairs there are, in every frame, and that they "
+      "track "
+      "what changes between frames; in the precision of the input. Where one fails, writes a small file that "
+      "shows it, and ends with status 1.");
+  verb->add_option("file", arguments->file, "The file; - is standard input")->required();
+  verb->add_option(
+          "--algorithms", arguments->options.algorithms,
+          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between")
+      ->capture_default_str();
+  verb->add_option("--budget", arguments->options.budget_seconds,
+                   "Seconds that each algorithm may take; one that would need more for a frame is skipped, "
+                   "one that needs more for all stops there")
+      ->capture_default_str();
+  verb->add_option("--counterexample", arguments->counterexample,
+                   "Where the small file is written (standard: counterexample.csv, or .btrace where boxes "
+                   "move)")
+      ->type_name("FILE");
+  add_input_options(*verb, arguments->input);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace broadside::cli

@@ -1,0 +1,84 @@
+// broadside verify: what it says of algorithms and of files.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+
+namespace broadside::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(VerifyVerb, ChecksEveryFrameOfAFileWithEveryAlgorithm) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("moving.btrace");
+  ASSERT_EQ(run({"scene", "churn", "-n", "50", "--frames", "6", "-o", file}).status, 0);
+  const Ended ended = run({"verify", file});
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("in 2D, as floats, 7 frames, "),
+                                  HasSubstr("  grid                   verified  against brute_force\n"),
+                                  HasSubstr("  paper_quadtree         verified  against brute_force\n")));
+  EXPECT_THAT(ended.errors, IsEmpty());
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"moving.btrace"});
+}
+
+TEST(VerifyVerb, ChecksInThePrecisionOfTheInputFromAPipeToo) {
+  const Ended ended = shell(
+      "$BROADSIDE scene uniform -n 500 --dimension 3 -o - --to csv | "
+      "$BROADSIDE verify - --algorithms own,paper_grid");
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("standard input: 500 boxes in 3D, as doubles, 1 frame, "),
+                                  HasSubstr("  paper_grid       skipped   does not do 3D\n")));
+}
+
+TEST(VerifyVerb, SaysWhatItDidNotRead) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("moving.btrace");
+  ASSERT_EQ(run({"scene", "churn", "-n", "50", "--frames", "6", "-o", file}).status, 0);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 5);
+  const Ended ended = run({"verify", file, "--algorithms", "grid"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors, HasSubstr("is cut off in frame 6"));
+  EXPECT_THAT(ended.output, HasSubstr("6 frames"));
+}
+
+TEST(VerifyVerb, RefusesWhatItCannotUseAndSaysWhy) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n");
+  const std::string late = folder.put("late.csv",
+                                      "frame,box,min_x,min_y,max_x,max_y\n"
+                                      "0,0,0,0,1,1\n"
+                                      "1,0,0,0,1,-1\n");
+  struct Refusal {
+    std::vector<std::string> arguments;
+    std::vector<std::string> message;
+  };
+  const std::vector<Refusal> refusals = {
+      {{}, {"file"}},
+      {{folder.file("missing.csv")}, {"missing.csv", "No such file"}},
+      {{"/"}, {"Is a directory"}},
+      {{folder.put("empty.csv", "")}, {"empty.csv", "empty"}},
+      {{late}, {"late.csv:3", "min <= max"}},
+      {{file, "--algorithms", "gird"}, {"'gird'", "grid"}},
+      {{file, "--budget", "0"}, {"--budget is 0", "above 0"}},
+      {{file, "--counterexample", folder.file("out.ply")}, {"out.ply", "'.ply'"}},
+      {{file, "--counterexample", "/nowhere/out.csv"}, {"no folder '/nowhere'"}},
+  };
+  for (const Refusal& refusal : refusals) {
+    std::vector<std::string> arguments = {"verify"};
+    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 2) << ended.errors;
+    EXPECT_THAT(ended.output, IsEmpty());
+    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace broadside::cli
