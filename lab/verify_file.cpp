@@ -10,6 +10,7 @@
 
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
+#include "lab/smallest_failure.hpp"
 #include "lab/verify_history.hpp"
 
 namespace broadside::lab {

@@ -1,10 +1,9 @@
-// The law on a history of boxes: every algorithm in every frame, and the smallest history on which one fails.
+// The law on a history of boxes: every algorithm in every frame.
 #include "lab/verify_history.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <new>
 #include <optional>
 #include <utility>
 
@@ -14,8 +13,7 @@
 
 #include "lab/measure/estimate.hpp"
 #include "lab/measure/reference.hpp"
-#include "lab/minimise.hpp"
-#include "lab/numbers.hpp"
+#include "lab/smallest_failure.hpp"
 #include "lab/verify.hpp"
 
 namespace broadside::lab {
@@ -24,24 +22,8 @@ namespace {
 /// What the definition may take over all frames, in tests of two boxes: some seconds.
 constexpr double most_tests_by_definition = 4e9;
 
-/// The most boxes whose expected pairs are the definition's while a failure is made smaller.
-constexpr std::size_t most_boxes_made_smaller_by_definition = 2'000;
-
 /// In how many frames a reference is sampled.
 constexpr std::size_t sampled_frames = 20;
-
-/// Runs something of an algorithm's that says what is wrong: that, or what it threw.
-std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run) {
-  try {
-    return run();
-  } catch (const Stopped&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;  // the machine's fault
-  } catch (const std::exception& thrown) {
-    return fmt::format("{} threw: {}", algorithm, thrown.what());
-  }
-}
 
 /// The pairs that are expected of some contenders in the frame that is being looked at.
 struct Expectation {
@@ -275,82 +257,13 @@ HistoryVerdicts verify_history(const History<D, Real>& history, std::span<const 
   return HistoryCheck<D, Real>(history, contenders, known, options).run();
 }
 
-template <int D, typename Real>
-std::string fault_on(const History<D, Real>& history, const Contender& contender,
-                     std::span<const Algorithm> known) {
-  const Algorithm& algorithm = *contender.algorithm;
-  const std::string name = contender.spec.text();
-  const auto expected = [&](std::span<const Box<D, Real>> boxes) {
-    const Reference reference(algorithm, known, boxes.size(), most_boxes_made_smaller_by_definition);
-    return reference.pairs<D, Real>(boxes);
-  };
-  return fault_of(name, [&]() -> std::string {
-    const auto finder = make_finder<D, Real>(algorithm, contender.spec);
-    std::vector<Box<D, Real>> boxes = history.boxes;
-    for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
-      if (frame > 0) lab::apply(history.steps[frame - 1], boxes);
-      if (const auto divergence = check_finder<D, Real>(*finder, boxes, name, expected, frame))
-        return divergence->text;
-    }
-    if (history.steps.empty()) return {};
-    const auto tracker = make_tracker<D, Real>(algorithm, contender.spec);
-    const auto divergence = check_tracker<D, Real>(*tracker, history, name, expected);
-    return divergence ? divergence->text : "";
-  });
-}
-
-template <int D, typename Real>
-std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history, std::size_t frame,
-                                                 const Contender& contender, std::span<const Algorithm> known,
-                                                 const VerifyOptions& options) {
-  const auto fails = [&](const History<D, Real>& some) {
-    options.watch.at(fmt::format("{}, making the failure smaller: {} frames", contender.spec.text(),
-                                 some.steps.size() + 1));
-    return !fault_on<D, Real>(some, contender, known).empty();
-  };
-  const Stopwatch watch;
-  const auto stop = [&] { return watch.milliseconds() > options.budget_seconds * 1e3; };
-  History<D, Real> alone{history.boxes, {}};
-  for (std::size_t i = 0; i < frame; ++i) lab::apply(history.steps[i], alone.boxes);
-  if (fails(alone)) {
-    minimise(
-        alone.boxes,
-        [&](std::span<const Box<D, Real>> boxes) {
-          return fails({{boxes.begin(), boxes.end()}, {}});
-        },
-        stop);
-    return alone;
-  }
-  History<D, Real> all = history;
-  all.steps.resize(frame);
-  if (!fails(all)) return std::nullopt;
-  minimise(all, fails, stop);
-  return all;
-}
-
 template HistoryVerdicts verify_history(const History<2, float>&, std::span<const Contender>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template std::string fault_on(const History<2, float>&, const Contender&, std::span<const Algorithm>);
-template std::optional<History<2, float>> smallest_failure(const History<2, float>&, std::size_t,
-                                                           const Contender&, std::span<const Algorithm>,
-                                                           const VerifyOptions&);
 template HistoryVerdicts verify_history(const History<2, double>&, std::span<const Contender>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template std::string fault_on(const History<2, double>&, const Contender&, std::span<const Algorithm>);
-template std::optional<History<2, double>> smallest_failure(const History<2, double>&, std::size_t,
-                                                            const Contender&, std::span<const Algorithm>,
-                                                            const VerifyOptions&);
 template HistoryVerdicts verify_history(const History<3, float>&, std::span<const Contender>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template std::string fault_on(const History<3, float>&, const Contender&, std::span<const Algorithm>);
-template std::optional<History<3, float>> smallest_failure(const History<3, float>&, std::size_t,
-                                                           const Contender&, std::span<const Algorithm>,
-                                                           const VerifyOptions&);
 template HistoryVerdicts verify_history(const History<3, double>&, std::span<const Contender>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template std::string fault_on(const History<3, double>&, const Contender&, std::span<const Algorithm>);
-template std::optional<History<3, double>> smallest_failure(const History<3, double>&, std::size_t,
-                                                            const Contender&, std::span<const Algorithm>,
-                                                            const VerifyOptions&);
 
 }  // namespace broadside::lab
