@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <utility>
+
+#include "lab/readers/mesh_content.hpp"
+#include "lab/readers/ply.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -55,11 +59,29 @@ void keep_first(IndexedMesh& mesh, const std::vector<std::uint32_t>& first) {
 
 }  // namespace
 
+IndexedMesh read_mesh(Input& input) {
+  const bool is_ply = mesh_content(input.beginning()) == "ply" || input.extension() == ".ply";
+  return is_ply ? read_ply(input) : import_mesh(input);
+}
+
 void weld(IndexedMesh& mesh, IndexedMesh* later) {
   if (mesh.has_own_vertices) return;
   const std::vector<std::uint32_t> first = first_in_place(mesh, later == nullptr ? mesh : *later);
   keep_first(mesh, first);
   if (later != nullptr) keep_first(*later, first);
+}
+
+void triangulate(IndexedMesh& mesh) {
+  std::vector<std::uint32_t> corners;
+  corners.reserve(mesh.corners.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const std::uint32_t> face = mesh.face(f);
+    for (std::size_t i = 2; i < face.size(); ++i)
+      corners.insert(corners.end(), {face[0], face[i - 1], face[i]});
+  }
+  mesh.corners = std::move(corners);
+  mesh.face_ends.resize(mesh.corners.size() / 3);
+  for (std::size_t f = 0; f < mesh.face_ends.size(); ++f) mesh.face_ends[f] = 3 * (f + 1);
 }
 
 std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh) {

@@ -28,15 +28,15 @@ struct IndexedMesh {
   }
 };
 
-/// Whether polygons with more than three corners stay whole or become triangles.
-enum class MeshFaces : std::uint8_t { polygons, triangles };
+/// Reads a mesh: PLY by read_ply(), other formats by import_mesh(). Throws FileError.
+IndexedMesh read_mesh(Input& input);
 
 /// Reads a mesh through assimp: all parts of the file's scene, put where they are in it, one after the other.
 /// Lines and points are no faces. Throws FileError, also if a face names a vertex that is not there.
 ///
-/// In PLY and OFF the vertices are the file's own. Of other formats assimp gives each face (or each part)
-/// vertices of its own; see weld().
-IndexedMesh import_mesh(Input& input, MeshFaces faces);
+/// In OFF the vertices are the file's own. Of other formats assimp gives each face (or each part) vertices of
+/// its own; see weld().
+IndexedMesh import_mesh(Input& input);
 
 /// What is missing in this build for import_mesh() and how to get it; empty where it works.
 std::string mesh_import_missing();
@@ -48,6 +48,9 @@ bool is_mesh_extension(std::string_view extension);
 /// it came first. `later` is nullptr or the same mesh at another time, with as many vertices and the same
 /// faces: vertices become one if they are in the same place at both times.
 void weld(IndexedMesh& mesh, IndexedMesh* later = nullptr);
+
+/// Makes each polygon a fan of triangles around its first corner.
+void triangulate(IndexedMesh& mesh);
 
 /// The sides of all faces, each once whichever way around it is named: the lower vertex first, in order.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh);

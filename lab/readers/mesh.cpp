@@ -15,8 +15,11 @@ namespace {
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   const std::string part = options.boxes.empty() ? "triangles" : options.boxes;
   const bool are_triangles = part == "triangles";
-  IndexedMesh mesh = import_mesh(*input, are_triangles ? MeshFaces::triangles : MeshFaces::polygons);
-  if (!are_triangles) weld(mesh);
+  IndexedMesh mesh = read_mesh(*input);
+  if (are_triangles)
+    triangulate(mesh);
+  else
+    weld(mesh);
   const MeshElements elements(mesh, are_triangles     ? MeshPart::faces
                                     : part == "edges" ? MeshPart::edges
                                                       : MeshPart::vertices);
@@ -32,7 +35,7 @@ Format mesh() {
       .name = "mesh",
       .summary = "triangle meshes; seen along the z axis in 2D",
       .extensions = {".ply", ".obj", ".stl", ".off", ".gltf", ".glb", ".dae", ".3ds"},
-      .parts = {{"triangles", "a box a triangle; of a polygon, the triangles that make it up"},
+      .parts = {{"triangles", "a box a triangle; a polygon is a fan of them"},
                 {"edges", "a box a side of a triangle or polygon, each side once"},
                 {"vertices", "a box without extent a vertex"}},
       .is_seen_flat = true,

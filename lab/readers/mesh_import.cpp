@@ -1,4 +1,4 @@
-// Meshes through assimp: PLY, OBJ, STL, glTF and what else it reads.
+// Meshes through assimp: OBJ, STL, glTF and what else it reads.
 //
 // Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
 #include <cmath>
@@ -7,14 +7,12 @@
 #include <utility>
 
 #include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include "lab/readers/format.hpp"
 #include "lab/readers/indexed_mesh.hpp"
 #include "lab/readers/mesh_content.hpp"
-#include "lab/readers/ply_claims.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -23,7 +21,7 @@ namespace {
   throw FileError(fmt::format("{}: {}; expected a mesh", input.name(), found));
 }
 
-/// assimp trusts the places of vertices that a file gives, in its later steps as well.
+/// assimp trusts the numbers of vertices that a file gives.
 void check_corners(const Input& input, const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
@@ -83,7 +81,7 @@ class Collector {
 
 }  // namespace
 
-IndexedMesh import_mesh(Input& input, MeshFaces faces) {
+IndexedMesh import_mesh(Input& input) {
   Assimp::Importer importer;
   const std::string_view content = mesh_content(input.beginning());
   const std::string extension = input.extension();
@@ -91,7 +89,6 @@ IndexedMesh import_mesh(Input& input, MeshFaces faces) {
   const aiScene* scene = nullptr;
   try {
     // A file may name others beside it; what comes through a pipe, or under another name, cannot.
-    if (content == "ply") check_ply_claims(input.bytes(), input.name());
     if (is_named && !input.path().empty()) {
       scene = importer.ReadFile(input.path().string(), 0);
     } else {
@@ -100,15 +97,14 @@ IndexedMesh import_mesh(Input& input, MeshFaces faces) {
     }
     if (scene == nullptr) refuse(input, importer.GetErrorString());
     check_corners(input, *scene);
-    if (faces == MeshFaces::triangles) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   } catch (const FileError&) {
     throw;
   } catch (const std::exception& error) {
     refuse(input, error.what());
   }
-  if (scene == nullptr || scene->mRootNode == nullptr) refuse(input, importer.GetErrorString());
+  if (scene->mRootNode == nullptr) refuse(input, importer.GetErrorString());
   IndexedMesh mesh = Collector(input, *scene).collect();
-  mesh.has_own_vertices = content == "ply" || content == "off";
+  mesh.has_own_vertices = content == "off";
   return mesh;
 }
 

@@ -7,9 +7,7 @@
 
 namespace broadside::lab {
 
-IndexedMesh import_mesh(Input& input, MeshFaces) {
-  throw FileError(input.name() + ": " + mesh_import_missing());
-}
+IndexedMesh import_mesh(Input& input) { throw FileError(input.name() + ": " + mesh_import_missing()); }
 
 std::string mesh_import_missing() {
   return "libassimp-dev was missing at configure time; install it and configure again";

@@ -11,7 +11,7 @@
 namespace broadside::lab {
 namespace {
 
-IndexedMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+IndexedMesh read_one(const std::filesystem::path& path, const ReadOptions& options) {
   Input input(path, options.progress);
   const bool is_mesh = options.format.empty()
                            ? readers::mesh().recognises(input.beginning(), input.extension())
@@ -19,7 +19,7 @@ IndexedMesh read_mesh(const std::filesystem::path& path, const ReadOptions& opti
   if (!is_mesh)
     throw FileError(fmt::format("{}: is {}; expected a mesh, such as a PLY file", input.name(),
                                 options.format.empty() ? "none that is known here" : options.format));
-  return import_mesh(input, MeshFaces::polygons);
+  return lab::read_mesh(input);
 }
 
 }  // namespace
@@ -62,8 +62,8 @@ SweptElements SweptMesh::swept(MeshPart part) const {
 
 SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesystem::path& after,
                           const ReadOptions& options) {
-  IndexedMesh first = read_mesh(before, options);
-  IndexedMesh second = read_mesh(after, options);
+  IndexedMesh first = read_one(before, options);
+  IndexedMesh second = read_one(after, options);
   return {std::move(first), before.string(), std::move(second), after.string()};
 }
 

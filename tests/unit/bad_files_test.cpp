@@ -165,9 +165,54 @@ std::vector<BadFile> bad_traces() {
   };
 }
 
+std::vector<BadFile> bad_maps() {
+  const auto point = [](const std::string& coordinates) {
+    return R"({"type":"Point","coordinates":)" + coordinates + "}";
+  };
+  const std::string arcs =
+      R"({"type":"Topology","arcs":[[[0,0],[1,1]]],"objects":{"a":{"type":"LineString","arcs":)";
+  return {
+      {"map",
+       "truncated",
+       R"({"type":"Point","coordinates":[1,2])",
+       {"byte 35: the text ends", "',' or '}'"}},
+      {"map", "wrong_magic", "PK\x03\x04 and more", {"byte 0: 'PK", "is no JSON here", "a value"}},
+      {"map", "absurd_count", arcs + "[2147483648]}}}", {"feature 0: arc 2147483648", "one of 1"}},
+      {"map", "nan", point("[NaN,1]"), {"byte 31: 'NaN' is no JSON", "a value"}},
+      {"map", "inverted", arcs + "[-2]}}}", {"feature 0: arc -2", "one of 1"}},
+      {"map", "text_for_numbers", point("[\"one\",1]"), {"byte 31, feature 0: '\"one\"'", "a number"}},
+      {"map", "missing_columns", point("[1]"), {"feature 0: a position of 1 number", "at least 2"}},
+      {"map", "empty", "", {"byte 0: the text ends", "a value"}},
+  };
+}
+
+std::vector<BadFile> bad_meshes() {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 5\n3 0 1 2\n";
+  const auto with = [&](const std::string& old, const std::string& now) {
+    std::string text = ply;
+    return text.replace(text.find(old), old.size(), now);
+  };
+  return {
+      {"mesh", "truncated", ply.substr(0, ply.size() - 3), {"byte ", "the file ends", "a whole number"}},
+      {"mesh", "wrong_magic", "plz" + ply.substr(3), {":1: 'plz'", "'ply'"}},
+      {"mesh",
+       "absurd_count",
+       with("vertex 3", "vertex 2147483648"),
+       {":3: claims 2147483648 of the element 'vertex'", "at most"}},
+      {"mesh", "nan", with("0 1 5", "0 1 nan"), {"face 0 has a vertex at (0, 1, nan)", "finite"}},
+      {"mesh", "inverted", with("3 0 1 2", "3 0 1 -2"), {"face 0 names the vertex -2", "one from 0"}},
+      {"mesh", "text_for_numbers", with("0 1 5", "0 one 5"), {"byte ", "'one'", "a number"}},
+      {"mesh", "missing_columns", with("property float z\n", ""), {"no z", "x, y and z"}},
+      {"mesh", "empty", "", {":1: the file ends in its header", "'end_header'"}},
+  };
+}
+
 std::vector<BadFile> bad_files() {
   std::vector<BadFile> all;
-  for (const auto& some : {bad_tables(), bad_arrays(), bad_broadmark(), bad_traces()})
+  for (const auto& some :
+       {bad_tables(), bad_arrays(), bad_broadmark(), bad_traces(), bad_maps(), bad_meshes()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

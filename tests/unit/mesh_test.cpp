@@ -74,17 +74,6 @@ TEST_F(MeshTest, IsRecognisedByContentWhateverItIsCalled) {
   EXPECT_EQ(boxes_of(put("ply.txt", ply("0")), "").size(), 3u);
 }
 
-TEST_F(MeshTest, RefusesWhatItsHeaderClaimsBeforeMakingRoomForIt) {
-  std::string text = ply("0");
-  text.replace(text.find("vertex 6"), 8, "vertex 2147483648");
-  EXPECT_THAT(
-      refusal(put("a.ply", text)),
-      AllOf(HasSubstr("a.ply: claims 2147483648 of the element 'vertex'"), HasSubstr("expected at most")));
-  text = ply("0");
-  text.replace(text.find("face 2"), 6, "face 99999999999999999999999");
-  EXPECT_THAT(refusal(put("a.ply", text)), HasSubstr("of the element 'face'"));
-}
-
 TEST_F(MeshTest, RefusesFacesOfVerticesThatAreNotThere) {
   std::string text = ply("0");
   text.replace(text.find("3 2 1 4"), 7, "3 2 1 7");

@@ -250,7 +250,8 @@ TEST_F(Mesh, IsTheBoundsOfItsTrianglesInOrder) {
 TEST_F(Mesh, RefusesWhatIsNone) {
   if (!has_meshes()) GTEST_SKIP() << "assimp is missing";
   EXPECT_THAT(refusal(put("bad.ply", "ply\nnonsense")),
-              AllOf(HasSubstr("bad.ply"), HasSubstr("expected a mesh")));
+              AllOf(HasSubstr("bad.ply:2: 'nonsense'"), HasSubstr("expected 'format'")));
+  EXPECT_THAT(refusal(put("bad.stl", "nonsense")), AllOf(HasSubstr("bad.stl"), HasSubstr("expected a mesh")));
   EXPECT_THAT(refusal(put("empty.obj", "")), HasSubstr("empty.obj"));
   EXPECT_THAT(refusal(put("points.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")), HasSubstr("points.obj"));
   EXPECT_THAT(refusal(put("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), HasSubstr("nan.obj"));
