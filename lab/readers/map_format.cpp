@@ -12,9 +12,7 @@ namespace {
 
 // Much is JSON that is no map, but no other format has these: such a file is told what is wrong with it as a
 // map.
-std::vector<std::string> extensions() {
-  return {".geojson", ".topojson", ".json", ".geojsonl", ".geojsons", ".ndjson"};
-}
+std::vector<std::string> extensions() { return {".geojson", ".topojson", ".json", ".geojsonl", ".ndjson"}; }
 
 /// Whether the bytes begin an object that says early on to be a map, or a geometry.
 bool says_map(std::string_view bytes) {
