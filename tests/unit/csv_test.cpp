@@ -1,4 +1,5 @@
 // Tables as people have them: names and spellings of columns, separators, numbers.
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -215,6 +216,26 @@ TEST_F(CsvTable, HoldsTheSameBoxesInWhicheverPrecisionItIsRead) {
   EXPECT_EQ((history_of<2, float>(path("a.csv")).boxes), floats.boxes);
   EXPECT_EQ((history_of<2, double>(path("a.csv")).boxes),
             (std::vector<DoubleBox2>{{{double{0.1F}, double{1.0F / 3}}, {16777216, double{3.4e38F}}}}));
+}
+
+TEST_F(CsvTable, GivesBackMoreBoxesThanAnyBufferHolds) {
+  History<2, double> history;
+  for (int i = 0; i < 50'000; ++i)
+    history.boxes.push_back(i % 7 == 0 ? absent_box<2, double>()
+                                       : DoubleBox2{{1.0 / (i + 1), -i / 3.0}, {i + 0.1, 1e9 / (i + 1)}});
+  write_scene(history, path("a.csv"));
+  EXPECT_EQ((history_of<2, double>(path("a.csv")).boxes), history.boxes);
+  history.steps.push_back({history.boxes.size(), {}, {}});
+  for (std::uint32_t i = 0; i < history.boxes.size(); i += 2) {
+    history.steps[0].changed.push_back(BoxId(i));
+    history.steps[0].boxes.push_back({{0, 0}, {1.0 * i, 1.0 / (i + 1)}});
+  }
+  write_scene(history, path("b.csv"));
+  const auto again = history_of<2, double>(path("b.csv"));
+  EXPECT_EQ(again.boxes, history.boxes);
+  ASSERT_EQ(again.steps.size(), 1u);
+  EXPECT_EQ(again.steps[0].changed, history.steps[0].changed);
+  EXPECT_EQ(again.steps[0].boxes, history.steps[0].boxes);
 }
 
 TEST_F(CsvTable, IsRecognisedByItsFirstLine) {
