@@ -12,7 +12,6 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/readers/format.hpp"
-#include "lab/report/columns.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
@@ -33,6 +32,28 @@ std::string values_of(const Tunable& tunable) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "whole number" : "number";
   const std::string range = range_of(tunable);
   return range.empty() ? kind : kind + " " + range;
+}
+
+/// Prints `begin` and then the text's words, in lines that a terminal of usual width holds; each line of the
+/// text begins where the first does.
+void print_wrapped(const std::string& begin, std::string_view text) {
+  constexpr std::size_t widest = 110;
+  fmt::print("{}", begin);
+  std::size_t column = begin.size();
+  std::string_view space;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    if (!space.empty() && column + 1 + word.size() > widest) {
+      fmt::print("\n{:{}}", "", begin.size());
+      column = begin.size();
+      space = "";
+    }
+    fmt::print("{}{}", space, word);
+    column += space.size() + word.size();
+    space = " ";
+  }
+  fmt::print("\n");
 }
 
 /// An algorithm or a scene: a line for itself and one for each of its tunables.
@@ -64,11 +85,13 @@ void print(std::string_view title, const std::vector<Entry>& entries) {
   }
   fmt::print("{}\n", title);
   for (const Entry& entry : entries) {
-    fmt::print("  {:<{}}  {:<{}}  {:<5}  {}\n", entry.name, name_width, entry.kind, kind_width,
-               entry.dimensions, entry.summary);
+    print_wrapped(fmt::format("  {:<{}}  {:<{}}  {:<5}  ", entry.name, name_width, entry.kind, kind_width,
+                              entry.dimensions),
+                  entry.summary);
     for (const Tunable& tunable : entry.tunables) {
-      fmt::print("      :{}=  {} ({}; standard {})\n", tunable.name, tunable.summary, values_of(tunable),
-                 tunable.standard);
+      print_wrapped(
+          fmt::format("      :{}=  ", tunable.name),
+          fmt::format("{} ({}; standard {})", tunable.summary, values_of(tunable), tunable.standard));
     }
   }
   fmt::print("\n");
@@ -86,14 +109,20 @@ Exit run() {
     scenes.push_back({scene.name, std::string(name(scene.kind)), "", "not there: " + scene.missing, {}});
   print("Scenes", scenes);
 
-  lab::Columns formats("<<<<");
+  fmt::print("File formats\n");
   for (const lab::Format& format : lab::formats()) {
-    const bool written = bool(format.create);
-    formats.add({format.name, written ? "read, written" : "read",
-                 fmt::format("{}", fmt::join(format.extensions, " ")),
-                 format.missing.empty() ? format.summary : "not there: " + format.missing});
+    const std::string_view access = !format.create ? "read" : !format.open ? "written" : "read, written";
+    print_wrapped(
+        fmt::format("  {:<10} {:<13}  ", format.name, access),
+        fmt::format("{} ({})", format.missing.empty() ? format.summary : "not there: " + format.missing,
+                    fmt::join(format.extensions, " ")));
+    std::string_view standard = "; standard";
+    for (const lab::Part& part : format.parts) {
+      print_wrapped(fmt::format("      --boxes {}  ", part.name),
+                    fmt::format("{}{}", part.summary, standard));
+      standard = "";
+    }
   }
-  fmt::print("File formats\n{}", formats.text("  "));
   return Exit::fine;
 }
 

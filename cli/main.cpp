@@ -43,6 +43,7 @@ Exit run(const std::vector<std::string>& arguments) {
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
       {"compare", broadside::cli::add_compare(program, arguments)},
       {"pairs", broadside::cli::add_pairs(program)},
+      {"info", broadside::cli::add_info(program)},
       {"verify", broadside::cli::add_verify(program)},
       {"convert", broadside::cli::add_convert(program)},
       {"scene", broadside::cli::add_scene(program)},

@@ -20,6 +20,7 @@ using Verb = std::function<Exit()>;
 Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
 Verb add_scene(CLI::App& program);
 Verb add_pairs(CLI::App& program);
+Verb add_info(CLI::App& program);
 Verb add_verify(CLI::App& program);
 Verb add_convert(CLI::App& program);
 Verb add_list(CLI::App& program);

@@ -15,12 +15,13 @@
 namespace broadside {
 namespace {
 
-/// A box for add() and move(): an absent one is what remove() is for.
+/// Refuses what is no box for add() and move(): an absent one is what remove() is for.
 template <int D, typename Real>
-void check_present(const Box<D, Real>& box, std::size_t slot) {
-  core::check_box(box, slot);
-  if (is_absent(box))
-    throw InvalidInput(slot, "the box for slot " + std::to_string(slot) + " is absent; expected a box");
+void check_present(const Box<D, Real>& box, std::uint32_t slot) {
+  if (is_present(box)) return;
+  const std::string name = "the box for slot " + std::to_string(slot);
+  if (is_absent(box)) throw InvalidInput(slot, name + " is absent; expected a box");
+  core::refuse_box(box, slot, name);
 }
 
 }  // namespace

@@ -9,10 +9,9 @@
 #include "broadside/error.hpp"
 
 namespace broadside::core {
-namespace {
 
 template <int D, typename Real>
-[[noreturn]] void refuse(const Box<D, Real>& box, std::size_t index) {
+void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name) {
   std::ostringstream message;
   message.imbue(std::locale::classic());  // whatever the program has made of the global one
   message.precision(std::numeric_limits<Real>::max_digits10);
@@ -20,7 +19,7 @@ template <int D, typename Real>
     for (int axis = 0; axis < D; ++axis) message << (axis == 0 ? "(" : ", ") << point[axis];
     message << ')';
   };
-  message << "box " << index << " has min ";
+  message << name << " has min ";
   print(box.min);
   message << " and max ";
   print(box.max);
@@ -28,11 +27,9 @@ template <int D, typename Real>
   throw InvalidInput(index, message.str());
 }
 
-}  // namespace
-
 template <int D, typename Real>
 void check_box(const Box<D, Real>& box, std::size_t index) {
-  if (!is_present(box) && !is_absent(box)) refuse(box, index);
+  if (!is_present(box) && !is_absent(box)) refuse_box(box, index, "box " + std::to_string(index));
 }
 
 template <int D, typename Real>
@@ -52,6 +49,10 @@ void check_count(std::size_t count) {
     throw InvalidInput(most, std::to_string(count) + " boxes; expected at most " + std::to_string(most));
 }
 
+template void refuse_box(const Box<2>&, std::size_t, const std::string&);
+template void refuse_box(const Box<3>&, std::size_t, const std::string&);
+template void refuse_box(const DoubleBox2&, std::size_t, const std::string&);
+template void refuse_box(const DoubleBox3&, std::size_t, const std::string&);
 template void check_box(const Box<2>&, std::size_t);
 template void check_box(const Box<3>&, std::size_t);
 template void check_box(const DoubleBox2&, std::size_t);

@@ -9,6 +9,10 @@
 
 namespace broadside::core {
 
+/// Throws InvalidInput with the box's values, which `name` goes before.
+template <int D, typename Real>
+[[noreturn]] void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name);
+
 /// Throws InvalidInput, naming `index` and the box's values, unless `box` is present or absent.
 template <int D, typename Real>
 void check_box(const Box<D, Real>& box, std::size_t index);

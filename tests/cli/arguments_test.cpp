@@ -1,5 +1,6 @@
 // What the program says of itself, and of arguments that it cannot use.
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,12 @@ TEST(List, NamesEveryAlgorithmSceneAndFormat) {
     EXPECT_THAT(ended.output, HasSubstr("\n  " + scene.name + " "));
   for (const lab::Format& format : lab::formats())
     EXPECT_THAT(ended.output, HasSubstr("\n  " + format.name + " "));
+  for (const lab::Format& format : lab::formats()) {
+    for (const lab::Part& part : format.parts)
+      EXPECT_THAT(ended.output, HasSubstr("\n      --boxes " + part.name + "  "));
+  }
+  std::istringstream lines(ended.output);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
 struct Refusal {
@@ -58,8 +65,8 @@ struct Refusal {
 
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
-      {{}, {"no verb", "expected one of: compare, pairs, verify"}},
-      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, pairs, verify"}},
+      {{}, {"no verb", "expected one of: compare, pairs, info, verify"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, pairs, info, verify"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
       {{"compare", "--algorithms", "gird"}, {"'gird'", "expected one of: ", "grid"}},
       {{"compare", "--algorithms", "grid:cell=-1"}, {"grid: cell is '-1'", "expected a number"}},

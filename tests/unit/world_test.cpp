@@ -213,8 +213,12 @@ TEST_F(WorldTest, RefusesWrongBoxesAndStaysAsItIs) {
   EXPECT_EQ(world_.update().begun.size(), 1u);
 }
 
-TEST_F(WorldTest, SaysWhyAnAbsentBoxIsRefused) {
+TEST_F(WorldTest, SaysWhyABoxIsRefusedAndForWhichSlot) {
   const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(9));
+  EXPECT_TRUE(message_of<InvalidInput>([&] {
+                world_.move(b, {{0, 2}, {1, 1}});
+              }).starts_with("the box for slot 1 has min (0, 2) and max (1, 1); expected numbers"));
   EXPECT_EQ(message_of<InvalidInput>([&] { world_.move(a, absent_box<2>()); }),
             "the box for slot 0 is absent; expected a box");
 }

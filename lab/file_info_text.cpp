@@ -1,0 +1,113 @@
+// What a file of boxes holds, as text.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lab/file_info.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+
+namespace broadside::lab {
+namespace {
+
+std::string axes_text(const FileInfo& info) {
+  Columns table("<>>>>>>>>>");
+  table.add({"axis", "from", "to", "extent min", "1 %", "25 %", "50 %", "75 %", "99 %", "max"});
+  constexpr std::string_view names = "xyz";
+  for (std::size_t axis = 0; axis < info.axes.size(); ++axis) {
+    const AxisInfo& along = info.axes[axis];
+    const bool is_there = along.min <= along.max;
+    std::vector<std::string> row = {std::string(1, names[axis]),
+                                    is_there ? fmt::format("{:.6g}", along.min) : "-",
+                                    is_there ? fmt::format("{:.6g}", along.max) : "-"};
+    for (const double extent : along.extents) row.push_back(fmt::format("{:.4g}", extent));
+    table.add(std::move(row));
+  }
+  return table.text("  ");
+}
+
+/// A line for each power of two; at most so many, the smallest sizes together in the first.
+std::string sizes_text(const FileInfo& info) {
+  if (info.sizes.empty()) return {};
+  constexpr std::size_t most_lines = 16;
+  constexpr double longest_bar = 40;
+  std::vector<SizeBin> bins = info.sizes;
+  const bool is_merged = bins.size() > most_lines;
+  while (bins.size() > most_lines) {
+    bins[1].boxes += bins[0].boxes;
+    bins.erase(bins.begin());
+  }
+  const auto most = static_cast<double>(std::ranges::max(bins, {}, &SizeBin::boxes).boxes);
+  Columns table(">><");
+  table.add({"longest side", "boxes", ""});
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const double from = std::ldexp(1, bins[i].exponent);
+    const std::string range = i == 0 && is_merged ? fmt::format("below {:.4g}", 2 * from)
+                                                  : fmt::format("{:.4g} to {:.4g}", from, 2 * from);
+    const double bar = std::ceil(longest_bar * static_cast<double>(bins[i].boxes) / most);
+    table.add({range, grouped(bins[i].boxes), std::string(static_cast<std::size_t>(bar), '#')});
+  }
+  return table.text("  ");
+}
+
+std::string motion_text(const FileInfo& info) {
+  if (info.frames < 2) return {};
+  return fmt::format(
+      "  {} frames after the first: {:.3g} % of the boxes move in one (least {:.3g} %, most {:.3g} %), {} "
+      "are "
+      "added, {} removed\n",
+      grouped(info.frames - 1), 100 * info.moving[1], 100 * info.moving[0], 100 * info.moving[2],
+      grouped(info.added), grouped(info.removed));
+}
+
+/// "all", "none" or "7 of 12".
+std::string share(std::uint64_t some, std::uint64_t all) {
+  return some == all ? "all" : some == 0 ? "none" : fmt::format("{} of {}", grouped(some), grouped(all));
+}
+
+std::string coordinates_text(const FileInfo& info) {
+  if (info.coordinates == 0) return {};
+  std::string text = fmt::format("  {}: {} whole", counted(info.coordinates, "coordinate", "coordinates"),
+                                 share(info.whole, info.coordinates));
+  if (info.precision == Precision::float64) {
+    text += fmt::format(", {} exactly floats", share(info.exactly_floats, info.coordinates));
+    if (info.exactly_floats < info.coordinates) text += " (--precision float rounds the others)";
+  }
+  return text + '\n';
+}
+
+std::string reading_text(const FileInfo& info) {
+  const double seconds = std::max(info.seconds, 1e-9);
+  const double boxes_a_second = static_cast<double>(info.boxes) / seconds;
+  std::string text = fmt::format("  read in {}: ", duration(info.seconds));
+  if (info.bytes > 0) {
+    const auto bytes_a_second = static_cast<std::uint64_t>(static_cast<double>(info.bytes) / seconds);
+    text += fmt::format("{}, {} a second, ", bytes(info.bytes), bytes(bytes_a_second));
+  }
+  return text + fmt::format("{} boxes a second\n", grouped(static_cast<std::uint64_t>(boxes_a_second)));
+}
+
+}  // namespace
+
+std::string text_of(const FileInfo& info) {
+  std::string text = fmt::format("{}: {}, {} in {}D, as {}s, {}\n", info.file, info.format,
+                                 counted(info.present, "box", "boxes"), info.dimension, name(info.precision),
+                                 counted(info.frames, "frame", "frames"));
+  if (info.absent > 0)
+    text += fmt::format("  {} without a box\n", counted(info.absent, "place is", "places are"));
+  text += motion_text(info);
+  text += coordinates_text(info);
+  if (info.points + info.flat + info.infinite > 0)
+    text += fmt::format("  {}, {} without extent on some axis, {} infinite\n",
+                        counted(info.points, "point", "points"), grouped(info.flat), grouped(info.infinite));
+  text += reading_text(info) + '\n' + axes_text(info);
+  const std::string sizes = sizes_text(info);
+  return sizes.empty() ? text : text + '\n' + sizes;
+}
+
+}  // namespace broadside::lab
