@@ -43,10 +43,9 @@ class CsvRows {
     if ((filled_ & bounds) == 0) return absent_box<D, Real>();
     if ((filled_ & bounds) != bounds) refuse_empty();
     Box<D, Real> box;
-    for (int axis = 0; axis < D; ++axis) {
-      const double first = values_[static_cast<std::size_t>(CsvColumns::first + axis)];
-      const double second = values_[static_cast<std::size_t>(CsvColumns::second + axis)];
-      const auto [min, max] = bounds_of(table_.columns.forms[static_cast<std::size_t>(axis)], first, second);
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const auto [min, max] = bounds_of(table_.columns.forms[axis], values_[CsvColumns::first + axis],
+                                        values_[CsvColumns::second + axis]);
       box.min[axis] = static_cast<Real>(min);
       box.max[axis] = static_cast<Real>(max);
     }
