@@ -1,5 +1,6 @@
 // Files: what is written is read back, and what is wrong is refused by name and place.
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -283,6 +284,26 @@ TEST_F(Files, AreReadThroughAPipeAndToldByTheirContent) {
     const BoxFile file = open_file(pipe.path(), options);
     EXPECT_EQ(file.format->name, format.name);
     EXPECT_EQ((std::get<std::unique_ptr<FrameReader<3, float>>>(file.frames)->first()), history.boxes);
+  }
+}
+
+TEST_F(Files, TellHowFarTheyHaveBeenRead) {
+  // Some 20 MB in each format: there is a report every 8 MB.
+  const History<3> history{std::vector<Box3>(800'000, Box3{{1.5, 2.5, 3.5}, {4.5, 5.5, 6.5}}), {}};
+  for (const std::string name : {"a.csv", "a.npy", "a.aabbs"}) {
+    write_scene(history, path(name));
+    std::vector<std::uint64_t> reports;
+    ReadOptions options;
+    options.precision = Precision::float32;
+    options.progress = [&](std::uint64_t done, std::uint64_t total) {
+      EXPECT_LE(done, total) << name;
+      EXPECT_EQ(total, std::filesystem::file_size(path(name))) << name;
+      reports.push_back(done);
+    };
+    const BoxFile file = open_file(path(name), options);
+    EXPECT_EQ((std::get<std::unique_ptr<FrameReader<3, float>>>(file.frames)->first()), history.boxes);
+    EXPECT_GE(reports.size(), 2u) << name;
+    EXPECT_TRUE(std::ranges::is_sorted(reports)) << name;
   }
 }
 
