@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lab/readers/mesh_content.hpp"
+#include "lab/readers/obj.hpp"
 #include "lab/readers/ply.hpp"
 
 namespace broadside::lab {
@@ -60,8 +61,10 @@ void keep_first(IndexedMesh& mesh, const std::vector<std::uint32_t>& first) {
 }  // namespace
 
 IndexedMesh read_mesh(Input& input) {
-  const bool is_ply = mesh_content(input.beginning()) == "ply" || input.extension() == ".ply";
-  return is_ply ? read_ply(input) : import_mesh(input);
+  const std::string_view content = mesh_content(input.beginning());
+  const std::string extension = input.extension();
+  if (content == "ply" || extension == ".ply") return read_ply(input);
+  return content == "obj" || extension == ".obj" ? read_obj(input) : import_mesh(input);
 }
 
 void weld(IndexedMesh& mesh, IndexedMesh* later) {

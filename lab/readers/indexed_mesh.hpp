@@ -28,7 +28,7 @@ struct IndexedMesh {
   }
 };
 
-/// Reads a mesh: PLY by read_ply(), other formats by import_mesh(). Throws FileError.
+/// Reads a mesh: PLY by read_ply(), OBJ by read_obj(), other formats by import_mesh(). Throws FileError.
 IndexedMesh read_mesh(Input& input);
 
 /// Reads a mesh through assimp: all parts of the file's scene, put where they are in it, one after the other.

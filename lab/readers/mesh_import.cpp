@@ -1,4 +1,4 @@
-// Meshes through assimp: OBJ, STL, glTF and what else it reads.
+// Meshes through assimp: STL, glTF and what else it reads.
 //
 // Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
 #include <cmath>

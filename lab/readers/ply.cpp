@@ -16,6 +16,7 @@
 
 #include "lab/readers/format.hpp"
 #include "lab/readers/ply_header.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -72,7 +73,7 @@ class PlyNumbers {
     if (encoding_ != PlyEncoding::text) return;
     skip_blanks();
     if (at_ < bytes_.size())
-      refuse(word(""), "the end of the file, after the elements that the header claims");
+      refuse(shown(word("")), "the end of the file, after the elements that the header claims");
   }
 
   [[noreturn]] void refuse(std::string_view found, std::string_view expected) const {
@@ -119,15 +120,9 @@ class PlyNumbers {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size()) {
       at_ = begin;
-      refuse(shown(text), fmt::format("{}", expected));
+      refuse(shown(text), expected);
     }
     return number;
-  }
-
-  static std::string shown(std::string_view text) {
-    std::string shown(text.substr(0, 24));
-    for (char& c : shown) c = c > ' ' && c <= '~' ? c : '?';
-    return "'" + shown + "'";
   }
 
   std::string_view bytes_;

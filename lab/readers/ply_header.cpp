@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "lab/readers/format.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -136,13 +137,7 @@ class HeaderReader {
   }
 
   [[noreturn]] void refuse(std::string_view expected) const {
-    throw FileError(fmt::format("{}:{}: {}; expected {}", file_, number_, shown_line(), expected));
-  }
-
-  std::string shown_line() const {
-    std::string shown(line_.substr(0, 60));
-    for (char& c : shown) c = c >= ' ' && c <= '~' ? c : '?';
-    return "'" + shown + "'";
+    throw FileError(fmt::format("{}:{}: {}; expected {}", file_, number_, shown(line_), expected));
   }
 
   std::string_view bytes_;

@@ -40,8 +40,8 @@ class SweptMesh {
 };
 
 /// Reads a mesh at two times from two files. Of the options, only `format` and `progress` mean something:
-/// coordinates are floats, as read_mesh() gives them. In PLY and OFF, vertices and faces have the numbers
-/// that they have in the files. Throws FileError.
+/// coordinates are floats, as read_mesh() gives them. In PLY, OBJ and OFF, vertices and faces have the
+/// numbers that they have in the files. Throws FileError.
 SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesystem::path& after,
                           const ReadOptions& options = {});
 

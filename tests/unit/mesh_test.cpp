@@ -1,6 +1,6 @@
 // Meshes: their triangles, edges and vertices, and what they sweep from one time to the next.
 #include <algorithm>
-#include <fstream>
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
@@ -58,19 +58,35 @@ TEST_F(MeshTest, GivesTrianglesEdgesOrVertices) {
               HasSubstr("expected one of: triangles, edges, vertices"));
 }
 
+/// Triangles as text in STL, which has no vertices that are shared.
+std::string stl(const std::vector<std::array<std::array<float, 2>, 3>>& triangles) {
+  std::string text = "solid a\n";
+  for (const auto& triangle : triangles) {
+    text += "facet normal 0 0 1\nouter loop\n";
+    for (const auto& [x, y] : triangle)
+      text += "vertex " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid a\n";
+}
+
 TEST_F(MeshTest, MakesVerticesInOnePlaceOneWhereTheFileHasNoneOfItsOwn) {
-  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv -0 0 0\nf 1 2 3\nf 2 4 3\nf 5 2 3\n";
-  EXPECT_EQ(boxes_of(put("a.obj", obj), "vertices").size(), 4u);
-  EXPECT_EQ(boxes_of(put("a.obj", obj), "edges").size(), 5u);
+  const auto file = put(
+      "a.stl", stl({{{{0, 0}, {1, 0}, {0, 1}}}, {{{1, 0}, {1, 1}, {0, 1}}}, {{{-0.0F, 0}, {1, 0}, {0, 1}}}}));
+  EXPECT_EQ(boxes_of(file, "vertices").size(), 4u);
+  EXPECT_EQ(boxes_of(file, "edges").size(), 5u);
+}
+
+TEST_F(MeshTest, KeepsTheVerticesOfAnObjFile) {
+  const auto file = put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 0\nf 1 2 3\nf 2 4 3\nf 5 2 3\n");
+  EXPECT_EQ(boxes_of(file, "vertices").size(), 5u);
+  EXPECT_EQ(boxes_of(file, "edges").size(), 7u);
 }
 
 TEST_F(MeshTest, IsRecognisedByContentWhateverItIsCalled) {
   const std::string obj = "# made by hand\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  const std::string stl =
-      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
-      "endfacet\nendsolid a\n";
   EXPECT_EQ(boxes_of(put("obj.dat", obj), "").size(), 1u);
-  EXPECT_EQ(boxes_of(put("stl", stl), "").size(), 1u);
+  EXPECT_EQ(boxes_of(put("stl", stl({{{{0, 0}, {1, 0}, {0, 1}}}})), "").size(), 1u);
   EXPECT_EQ(boxes_of(put("ply.txt", ply("0")), "").size(), 3u);
 }
 
@@ -132,11 +148,10 @@ TEST_F(MeshTest, LeavesOutPairsThatShareAVertex) {
 TEST_F(MeshTest, SweepsMeshesWithoutVerticesOfTheirOwnByTheirPlacesAtBothTimes) {
   // Two triangles that share a side at both times; a third has a corner in one place with the first at one
   // time alone.
-  const auto at = [](const std::string& x) {
-    return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv " + x +
-           " 0 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 2 4 3\nf 5 6 7\n";
+  const auto at = [](float x) {
+    return stl({{{{0, 0}, {1, 0}, {0, 1}}}, {{{1, 0}, {1, 1}, {0, 1}}}, {{{x, 0}, {-1, 0}, {-1, -1}}}});
   };
-  const SweptMesh mesh = read_swept_mesh(put("0.obj", at("0")), put("1.obj", at("-0.5")));
+  const SweptMesh mesh = read_swept_mesh(put("0.stl", at(0)), put("1.stl", at(-0.5F)));
   EXPECT_EQ(mesh.swept(MeshPart::vertices).boxes.size(), 7u);
   EXPECT_THAT(apart(mesh, MeshPart::faces, MeshPart::faces),
               ElementsAre(Pair{BoxId{0}, BoxId{2}}, Pair{BoxId{1}, BoxId{2}}));
