@@ -58,11 +58,11 @@ std::string sizes_text(const FileInfo& info) {
 std::string motion_text(const FileInfo& info) {
   if (info.frames < 2) return {};
   return fmt::format(
-      "  {} frames after the first: {:.3g} % of the boxes move in one (least {:.3g} %, most {:.3g} %), {} "
+      "  {} after the first: {:.3g} % of the boxes move in one (least {:.3g} %, most {:.3g} %), {} "
       "are "
       "added, {} removed\n",
-      grouped(info.frames - 1), 100 * info.moving[1], 100 * info.moving[0], 100 * info.moving[2],
-      grouped(info.added), grouped(info.removed));
+      counted(info.frames - 1, "frame", "frames"), 100 * info.moving[1], 100 * info.moving[0],
+      100 * info.moving[2], grouped(info.added), grouped(info.removed));
 }
 
 /// "all", "none" or "7 of 12".

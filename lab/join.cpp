@@ -7,6 +7,8 @@
 
 #include "broadside/find_pairs.hpp"
 
+#include "lab/numbers.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -21,8 +23,8 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
     has_more = frames.next(step);
   }
   if (at < frame)
-    throw FileError(fmt::format("{}: frame {} of a file with {} frames, counted from 0; expected one of them",
-                                name, frame, at + 1));
+    throw FileError(fmt::format("{}: frame {} of a file with {}, counted from 0; expected one that it has",
+                                name, frame, counted(at + 1, "frame", "frames")));
   return {std::move(name), std::move(boxes), has_more || frame > 0, frames.warning()};
 }
 

@@ -57,7 +57,7 @@ std::vector<const Measurement*> in_order(const CaseResult& result) {
 }
 
 std::string name_of(const Case& of) {
-  return fmt::format("{}, {}D, {} boxes", of.scene, of.dimension, grouped(of.boxes));
+  return fmt::format("{}, {}D, {}", of.scene, of.dimension, counted(of.boxes, "box", "boxes"));
 }
 
 /// What the results were compared with: "quadtree or sweep_and_prune + 200 sampled boxes".
@@ -78,11 +78,11 @@ std::string heading(const CaseResult& result) {
   const Case& of = result.of;
   std::string text = name_of(of);
   if (of.mode == Mode::track)
-    text += fmt::format(", {:.3g} % moving, {} frames", of.moving * 100, grouped(of.frames));
+    text += fmt::format(", {:.3g} % moving, {}", of.moving * 100, counted(of.frames, "frame", "frames"));
   for (const Measurement& measurement : result.measurements) {
     if (measurement.outcome != Outcome::verified || !measurement.pairs) continue;
-    text +=
-        fmt::format(", {} pairs{}", grouped(*measurement.pairs), of.mode == Mode::track ? " at the end" : "");
+    text += fmt::format(", {}{}", counted(*measurement.pairs, "pair", "pairs"),
+                        of.mode == Mode::track ? " at the end" : "");
     break;
   }
   const std::string references = references_of(result);
@@ -180,13 +180,10 @@ std::string summary_of(const Comparison& comparison) {
         failures.push_back(name_of(result.of) + ": " + measurement.reason);
     }
   }
-  const auto plural = [](std::size_t count, std::string_view what) {
-    return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
-  };
 
   std::string text;
   if (comparison.cases.size() > 1) {
-    text += fmt::format("All {}\n", plural(comparison.cases.size(), "case"));
+    text += fmt::format("All {}\n", counted(comparison.cases.size(), "case", "cases"));
     Columns columns("<>>><");
     columns.add({"algorithm", "cases", "fastest", "ratio to the fastest, geometric mean", ""});
     for (const Standing& standing : standings(comparison)) {
@@ -197,7 +194,7 @@ std::string summary_of(const Comparison& comparison) {
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);
-  text += plural(measured, "measurement");
+  text += counted(measured, "measurement", "measurements");
   text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
   if (skipped > 0) text += fmt::format("; {} skipped", grouped(skipped));
   if (comparison.stopped) text += "; stopped before the end";

@@ -1,7 +1,11 @@
 // broadside pairs: what it finds, counts and writes, and what it says of input that it cannot use.
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -175,6 +179,28 @@ TEST(PairsVerb, WritesAFileWholeOrNotAtAll) {
   const Ended no_room = shell("$BROADSIDE pairs " + file + " > /dev/full");
   EXPECT_EQ(no_room.status, 2);
   EXPECT_THAT(no_room.errors, HasSubstr("standard output: cannot be written"));
+}
+
+TEST(PairsVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("boxes.npy");
+  ASSERT_EQ(run({"scene", "one_point", "-n", "4000", "-o", file}).status, 0);
+  for (const std::string order : {"sorted", "found"}) {
+    for (const int milliseconds : {1, 50, 150}) {
+      const std::string output = folder.file("pairs.npy");
+      Process process({"pairs", file, "--order", order, "-o", output});
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      process.signal(SIGINT);
+      const int status = process.wait().status;
+      if (folder.names() == std::vector<std::string>{"boxes.npy"}) {
+        EXPECT_EQ(status, 130);
+      } else {
+        EXPECT_EQ(folder.names(), (std::vector<std::string>{"boxes.npy", "pairs.npy"}));
+        EXPECT_GT(std::filesystem::file_size(output), 8u * 4000 * 3999 / 2);
+        std::filesystem::remove(output);
+      }
+    }
+  }
 }
 
 TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {

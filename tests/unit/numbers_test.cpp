@@ -42,5 +42,11 @@ TEST(Bytes, HaveTheUnitThatSuitsThem) {
   EXPECT_EQ(bytes(1'300'000'000), "1.30 GB");
 }
 
+TEST(Counted, SaysOneAndManyAsPeopleDo) {
+  EXPECT_EQ(counted(0, "box", "boxes"), "0 boxes");
+  EXPECT_EQ(counted(1, "box", "boxes"), "1 box");
+  EXPECT_EQ(counted(1234, "box", "boxes"), "1,234 boxes");
+}
+
 }  // namespace
 }  // namespace broadside::lab
