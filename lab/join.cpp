@@ -47,7 +47,7 @@ AnyBoxes widened(const AnyBoxes& boxes) {
 
 }  // namespace
 
-std::size_t size(const AnyBoxes& boxes) noexcept {
+std::size_t size(const AnyBoxes& boxes) {
   return std::visit([](const auto& list) { return list.size(); }, boxes);
 }
 

@@ -18,7 +18,7 @@ namespace broadside::lab {
 using AnyBoxes =
     std::variant<std::vector<Box2>, std::vector<Box3>, std::vector<DoubleBox2>, std::vector<DoubleBox3>>;
 
-std::size_t size(const AnyBoxes& boxes) noexcept;
+std::size_t size(const AnyBoxes& boxes);
 int dimension(const AnyBoxes& boxes) noexcept;
 Precision precision(const AnyBoxes& boxes) noexcept;
 
