@@ -24,11 +24,13 @@ constexpr std::size_t few_boxes = 256;
 
 constexpr std::size_t most_samples = 256;
 
-/// Neighbours are brought together in memory by squares of so many boxes: a few cache lines of floats.
+/// Neighbours are brought together in memory by squares, in 3D cubes, of so many boxes: some cache lines of
+/// floats.
 constexpr double boxes_per_bucket = 64;
 
-/// Limits the squares to what a bucket_of_ can tell apart.
-constexpr double most_buckets_per_side = 256;
+/// Limits the buckets to as many as a bucket_of_ can tell apart.
+template <int D>
+constexpr double most_buckets_per_side = D == 2 ? 256 : 40;
 
 /// `value` as a float about `origin`. Rises with the value, and is finite.
 float rounded(double value, double origin) {
@@ -204,22 +206,25 @@ typename DoubleFinder<D>::Axis DoubleFinder<D>::sample(std::span<const std::uint
 template <int D>
 void DoubleFinder<D>::measure(std::span<const std::uint32_t> places, const Region& region,
                               std::array<Axis, D>& axes) {
-  buckets_per_side_ = static_cast<std::size_t>(std::clamp(
-      std::sqrt(static_cast<double>(places.size()) / boxes_per_bucket), 1.0, most_buckets_per_side));
-  const auto last = static_cast<double>(buckets_per_side_ - 1);
-  std::array<double, 2> per_unit;
-  for (int axis = 0; axis < 2; ++axis) per_unit[axis] = (last + 1) / (axes[axis].high - axes[axis].low);
-  const auto slot = [&](const Box<D, double>& box, int axis) {
-    const double at = (box.min[axis] - axes[axis].low) * per_unit[axis];
-    // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
-    return static_cast<std::size_t>(std::min(last, std::max(0.0, at)));
-  };
+  const double buckets = static_cast<double>(places.size()) / boxes_per_bucket;
+  const double per_side = std::floor(std::clamp(std::pow(buckets, 1.0 / D), 1.0, most_buckets_per_side<D>));
+  bucket_count_ = 1;
+  std::array<double, D> per_unit;
+  for (int axis = 0; axis < D; ++axis) {
+    bucket_count_ *= static_cast<std::size_t>(per_side);
+    per_unit[axis] = per_side / (axes[axis].high - axes[axis].low);
+  }
   bool exact = true;
   std::array<double, D> farthest{};
   bucket_of_.resize(std::max(bucket_of_.size(), places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Box<D, double>& box = boxes_[places[i]];
+    std::uint32_t bucket = 0;
     for (int axis = 0; axis < D; ++axis) {
+      // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
+      const double at =
+          std::min(per_side - 1, std::max(0.0, (box.min[axis] - axes[axis].low) * per_unit[axis]));
+      bucket = bucket * static_cast<std::uint32_t>(per_side) + static_cast<std::uint32_t>(at);
       for (const double coordinate : {box.min[axis], box.max[axis]}) {
         const double within = std::clamp(coordinate, region.begin[axis], region.end[axis]);
         const double distance = std::abs(within) < infinity ? std::abs(within - axes[axis].origin) : 0;
@@ -227,7 +232,7 @@ void DoubleFinder<D>::measure(std::span<const std::uint32_t> places, const Regio
         exact &= axes[axis].origin + rounded(coordinate, axes[axis].origin) == coordinate;
       }
     }
-    bucket_of_[i] = static_cast<std::uint16_t>(slot(box, 1) * buckets_per_side_ + slot(box, 0));
+    bucket_of_[i] = static_cast<std::uint16_t>(bucket);
   }
   exact_ = exact;
   for (int axis = 0; axis < D; ++axis)
@@ -262,7 +267,7 @@ void DoubleFinder<D>::gather(std::span<const std::uint32_t> places, std::size_t 
                              const std::array<Axis, D>& axes) {
   // Pairs are of boxes near each other, and each is looked up again: where the boxes are more than a cache
   // holds, that would be a miss for each pair if they lay as they came.
-  bucket_ends_.assign(buckets_per_side_ * buckets_per_side_, 0);
+  bucket_ends_.assign(bucket_count_, 0);
   for (std::size_t i = begin; i < end; ++i) ++bucket_ends_[bucket_of_[i]];
   auto total = static_cast<std::uint32_t>(begin);
   for (std::uint32_t& bucket_end : bucket_ends_) total += std::exchange(bucket_end, total);

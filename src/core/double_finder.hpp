@@ -74,7 +74,7 @@ class DoubleFinder final : public PairFinder<D, double> {
   std::vector<Box<D>> floats_;      // and these
   std::vector<std::uint16_t> bucket_of_;
   std::vector<std::uint32_t> bucket_ends_;
-  std::size_t buckets_per_side_ = 1;
+  std::size_t bucket_count_ = 1;
   bool exact_ = false;  // whether floats tell all coordinates apart that differ
   Statistics statistics_;
   bool counted_ = false;
