@@ -40,6 +40,16 @@ class DoubleFinder final : public PairFinder<D, double> {
     double coarseness;  // how far rounding may move a coordinate in the region, over the extent
   };
 
+  /// Places among the boxes, ascending.
+  struct Places {
+    const std::uint32_t* list;  // none: all there are
+    std::size_t size;
+
+    std::uint32_t operator[](std::size_t i) const {
+      return list == nullptr ? static_cast<std::uint32_t>(i) : list[i];
+    }
+  };
+
   class ExactSink;
 
   void find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) override;
@@ -47,35 +57,33 @@ class DoubleFinder final : public PairFinder<D, double> {
   /// Reports the region's pairs. Its boxes are those whose places are [begin, end) of the stack, ascending.
   void search(std::size_t begin, std::size_t end, const Region& region, PairSink& pairs);
 
-  std::span<const std::uint32_t> places(std::size_t begin, std::size_t end) const {
-    return {stack_.data() + begin, end - begin};
+  Places places(std::size_t begin, std::size_t end) const {
+    return {stack_.empty() ? nullptr : stack_.data() + begin, end - begin};
   }
 
-  Axis sample(std::span<const std::uint32_t> places, const Region& region, int axis);
+  Axis sample(const Places& places, const Region& region, int axis);
 
-  /// Sets the coarseness of the axes, the bucket of each box, and exact_.
-  void measure(std::span<const std::uint32_t> places, const Region& region, std::array<Axis, D>& axes);
+  /// Sets the coarseness of the axes and exact_, and puts each box into a bucket.
+  void measure(const Places& places, const Region& region, std::array<Axis, D>& axes);
 
   /// Reports the pairs of the boxes at `places`, which were the last to be measured, as floats.
-  void search_floats(std::span<const std::uint32_t> places, const Region& region,
-                     const std::array<Axis, D>& axes, PairSink& pairs);
+  void search_floats(const Places& places, const Region& region, const std::array<Axis, D>& axes,
+                     PairSink& pairs);
 
-  /// Writes the boxes `begin` to `end` of those measured to the same stretch of ids_ and floats_, those near
-  /// each other in space near each other in memory.
-  void gather(std::span<const std::uint32_t> places, std::size_t begin, std::size_t end,
-              const std::array<Axis, D>& axes);
+  /// Sets ids_ and floats_, bucket by bucket. Returns how many boxes are of the left set.
+  std::size_t gather(const Places& places, const std::array<Axis, D>& axes);
 
   std::unique_ptr<PairFinder<D>> finder_;
   std::span<const Box<D, double>> boxes_;
-  std::vector<std::uint32_t> stack_;
+  std::vector<std::uint32_t> stack_;  // empty until the boxes are split
   std::vector<double> minima_;
   std::vector<double> extents_;
   std::vector<std::uint32_t> ids_;  // places of the boxes being searched as floats,
   std::vector<Box<D>> floats_;      // and these
   std::vector<std::uint16_t> bucket_of_;
   std::vector<std::uint32_t> bucket_ends_;
-  std::size_t bucket_count_ = 1;
-  bool exact_ = false;  // whether floats tell all coordinates apart that differ
+  std::size_t bucket_count_ = 1;  // for each of the two sets
+  bool exact_ = false;            // whether floats tell all coordinates apart that differ
   Statistics statistics_;
   bool counted_ = false;
 };
