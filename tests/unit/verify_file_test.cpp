@@ -159,5 +159,23 @@ TEST(VerifyHistory, FindsTheFaultInAReferenceThatIsWrong) {
   EXPECT_THAT(checked.verdicts[1].reason, HasSubstr("pair (24998, 24999) is missing"));
 }
 
+TEST(VerifyHistory, SamplesAReferenceThatIsWrongInTheSameWayAsTheContender) {
+  std::vector<Box2> boxes;
+  for (int i = 0; i < 25'000; ++i) {
+    const auto x = static_cast<float>(i);
+    boxes.push_back({{x, 0}, {x + 1, 1}});
+  }
+  const Algorithm blind = spoilt("blind", [](std::vector<Pair>& pairs, std::size_t) { pairs.clear(); });
+  Algorithm reference = blind;
+  reference.name = "quadtree";
+  const std::vector<Algorithm> known = {reference};
+  const std::vector<Contender> contenders = {{&blind, Spec{"blind", {}}}};
+  const HistoryVerdicts checked = verify_history<2, float>({boxes, {}}, contenders, known, {});
+  ASSERT_EQ(checked.verdicts.size(), 2u);
+  EXPECT_NE(checked.verdicts[0].outcome, Outcome::verified);
+  EXPECT_EQ(checked.verdicts[1].algorithm, "quadtree");
+  EXPECT_EQ(checked.verdicts[1].outcome, Outcome::failed);
+}
+
 }  // namespace
 }  // namespace broadside::lab
