@@ -18,7 +18,7 @@ class GeoJson {
     if (type == "FeatureCollection") {
       for (auto result : text_.array(text_.field(root, "features"), "an array of features")) {
         text_.begin_feature();
-        read_feature(text_.object(text_.element(std::move(result)), "a feature"));
+        read_feature(text_.object(text_.element(result), "a feature"));
       }
     } else if (type == "Feature") {
       text_.begin_feature();
@@ -26,7 +26,7 @@ class GeoJson {
     } else if (type == "GeometryCollection") {
       for (auto result : text_.array(text_.field(root, "geometries"), "an array of geometries")) {
         text_.begin_feature();
-        read_geometry(text_.object(text_.element(std::move(result)), "a geometry"), 1);
+        read_geometry(text_.object(text_.element(result), "a geometry"), 1);
         boxes_.end_feature();
       }
     } else {
@@ -50,7 +50,7 @@ class GeoJson {
       if (nested == most_nested_collections)
         text_.refuse(fmt::format("collections nested more than {} deep", nested), "fewer");
       for (auto result : text_.array(text_.field(geometry, "geometries"), "an array of geometries"))
-        read_geometry(text_.object(text_.element(std::move(result)), "a geometry"), nested + 1);
+        read_geometry(text_.object(text_.element(result), "a geometry"), nested + 1);
       return;
     }
     const GeometryKind* const kind = GeometryKind::find(type);
@@ -64,10 +64,10 @@ class GeoJson {
     } else if (depth == 1 && kind.has_lines) {
       boxes_.begin_line();
       for (auto result : text_.array(value, "an array of positions"))
-        read_position(text_.element(std::move(result)), false);
+        read_position(text_.element(result), false);
     } else {
       for (auto result : text_.array(value, "an array"))
-        read_coordinates(text_.element(std::move(result)), kind, depth - 1);
+        read_coordinates(text_.element(result), kind, depth - 1);
     }
     if (depth == kind.piece_depth) boxes_.end_piece();
   }
@@ -76,7 +76,7 @@ class GeoJson {
     double place[2] = {};
     int count = 0;
     for (auto result : text_.array(value, "a position: an array of numbers")) {
-      json::value number = text_.element(std::move(result));
+      json::value number = text_.element(result);
       // What follows is an altitude, or somebody's own.
       if (count < 2) place[count] = text_.number(number);
       ++count;

@@ -52,8 +52,8 @@ class TopoJson {
       Point sum = {0, 0};
       DoubleBox2 last{};
       bool is_first = true;
-      for (auto position : text_.array(text_.element(std::move(result)), "an arc: an array of positions")) {
-        const Point read = read_point(text_.element(std::move(position)));
+      for (auto position : text_.array(text_.element(result), "an arc: an array of positions")) {
+        const Point read = read_point(text_.element(position));
         sum = has_transform_ ? Point{sum[0] + read[0], sum[1] + read[1]} : read;
         const Point place = placed(sum);
         const DoubleBox2 point{place, place};
@@ -75,7 +75,7 @@ class TopoJson {
     bool is_found = wanted.empty();
     std::string known;
     for (auto result : text_.object(text_.field(root, "objects"), "an object of layers")) {
-      json::field field = text_.element(std::move(result));
+      json::field field = text_.element(result);
       const std::string_view name = text_.element(field.unescaped_key());
       if (!wanted.empty() && name != wanted) {
         known += (known.empty() ? "" : ", ") + std::string(name);
@@ -98,7 +98,7 @@ class TopoJson {
     }
     for (auto result : text_.array(text_.field(layer, "geometries"), "an array of geometries")) {
       text_.begin_feature();
-      json::object geometry = text_.object(text_.element(std::move(result)), "a geometry");
+      json::object geometry = text_.object(text_.element(result), "a geometry");
       read_geometry(geometry, type_of(geometry), 1);
       boxes_.end_feature();
     }
@@ -116,7 +116,7 @@ class TopoJson {
       if (nested == most_nested_collections)
         text_.refuse(fmt::format("collections nested more than {} deep", nested), "fewer");
       for (auto result : text_.array(text_.field(geometry, "geometries"), "an array of geometries")) {
-        json::object inner = text_.object(text_.element(std::move(result)), "a geometry");
+        json::object inner = text_.object(text_.element(result), "a geometry");
         read_geometry(inner, type_of(inner), nested + 1);
       }
       return;
@@ -131,11 +131,9 @@ class TopoJson {
       const Point place = placed(read_point(value));
       boxes_.add(place[0], place[1], true);
     } else if (depth == 1 && kind.has_lines) {
-      for (auto result : text_.array(value, "an array of arcs' numbers"))
-        use_arc(text_.element(std::move(result)));
+      for (auto result : text_.array(value, "an array of arcs' numbers")) use_arc(text_.element(result));
     } else {
-      for (auto result : text_.array(value, "an array"))
-        read_nested(text_.element(std::move(result)), kind, depth - 1);
+      for (auto result : text_.array(value, "an array")) read_nested(text_.element(result), kind, depth - 1);
     }
     if (depth == kind.piece_depth) boxes_.end_piece();
   }
@@ -154,7 +152,7 @@ class TopoJson {
     Point point{};
     std::size_t count = 0;
     for (auto result : text_.array(value, "an array of two numbers")) {
-      json::value number = text_.element(std::move(result));
+      json::value number = text_.element(result);
       if (count < 2) point[count] = text_.number(number);
       ++count;
     }
