@@ -31,9 +31,12 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
 }  // namespace
 
 Format mesh() {
+  // Without assimp, PLY and OBJ are still read.
+  const std::string missing = mesh_import_missing();
   return {
       .name = "mesh",
-      .summary = "triangle meshes; seen along the z axis in 2D",
+      .summary = missing.empty() ? "triangle meshes; seen along the z axis in 2D"
+                                 : "triangle meshes in PLY and OBJ; for others, " + missing,
       .extensions = {".ply", ".obj", ".stl", ".off", ".gltf", ".glb", ".dae", ".3ds"},
       .parts = {{"triangles", "a box a triangle; a polygon is a fan of them"},
                 {"edges", "a box a side of a triangle or polygon, each side once"},
@@ -44,7 +47,6 @@ Format mesh() {
             return !mesh_content(bytes).empty() || is_mesh_extension(extension);
           },
       .open = open,
-      .missing = mesh_import_missing(),
   };
 }
 
