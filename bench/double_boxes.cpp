@@ -4,13 +4,17 @@
 // each call its pairs are compared, as a set, with those of all other calls.
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -61,21 +65,30 @@ class Side {
   Side(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
       : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(make_finder<D, Real>(algorithm)) {}
 
-  /// Asks once; returns the pairs. The time goes to the samples if `keep`.
+  /// Asks once; returns the pairs. The times go to the samples if `keep`.
   PairSet run(bool keep) {
     using Clock = std::chrono::steady_clock;
     std::vector<Pair> pairs = std::move(pairs_);
     pairs.clear();
     const Clock::time_point start = Clock::now();
+    const std::clock_t busy_start = std::clock();
     ask(pairs);
+    const std::clock_t busy_end = std::clock();
     const std::chrono::duration<double> time = Clock::now() - start;
-    if (keep) samples_.push_back(time.count());
+    if (keep) {
+      samples_.push_back(time.count());
+      busy_samples_.push_back(static_cast<double>(busy_end - busy_start));
+    }
     const PairSet set = set_of(pairs);
     if (call_ == Call::kept_finder) pairs_ = std::move(pairs);
     return set;
   }
 
+  /// Seconds by the clock on the wall.
   std::span<const double> samples() const { return samples_; }
+
+  /// Time of the processor, which other programs disturb less; in an unspecified unit.
+  std::span<const double> busy_samples() const { return busy_samples_; }
 
  private:
   void ask(std::vector<Pair>& pairs) {
@@ -99,7 +112,14 @@ class Side {
   std::unique_ptr<PairFinder<D, Real>> finder_;
   std::vector<Pair> pairs_;
   std::vector<double> samples_;
+  std::vector<double> busy_samples_;
 };
+
+double median_ratio(std::span<const double> over, std::span<const double> under) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < over.size(); ++i) ratios.push_back(over[i] / under[i]);
+  return lab::median(ratios);
+}
 
 template <int D>
 std::vector<Box<D>> uniform_boxes(std::size_t count) {
@@ -140,13 +160,12 @@ void compare_precisions(std::size_t count, std::size_t rounds) {
           expected = found;
         }
       }
-      std::vector<double> ratios;
-      for (std::size_t i = 0; i < rounds; ++i)
-        ratios.push_back(in_double.samples()[i] / in_float.samples()[i]);
-      fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>10}{:>8.2f}\n", fmt::format("{}D", D), algorithm,
+      fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>11}{:>7.2f}{:>10.2f}\n", fmt::format("{}D", D), algorithm,
                  name(call), lab::grouped(expected->count),
                  lab::rounded(lab::median(in_float.samples()) * 1e3),
-                 lab::rounded(lab::median(in_double.samples()) * 1e3), lab::median(ratios));
+                 lab::rounded(lab::median(in_double.samples()) * 1e3),
+                 median_ratio(in_double.samples(), in_float.samples()),
+                 median_ratio(in_double.busy_samples(), in_float.busy_samples()));
       std::fflush(stdout);
     }
   }
@@ -156,8 +175,8 @@ void run(std::size_t count, std::size_t rounds) {
   const lab::Machine machine = lab::this_machine();
   fmt::print("uniform, {} boxes, {} rounds; {}, {} cores; {}\n", lab::grouped(count), rounds, machine.cpu,
              machine.cores, lab::this_build().compiler);
-  fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>10}{:>8}\n", "", "algorithm", "call", "pairs", "float ms",
-             "double ms", "ratio");
+  fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>11}{:>7}{:>10}\n", "", "algorithm", "call", "pairs", "float ms",
+             "double ms", "ratio", "CPU ratio");
   compare_precisions<2>(count, rounds);
   compare_precisions<3>(count, rounds);
 }
