@@ -165,7 +165,7 @@ void DoubleFinder<D>::search(std::size_t begin, std::size_t end, const Region& r
       static_cast<int>(std::ranges::max_element(axes, {}, &Axis::coarseness) - axes.begin());
   const double at = axes[coarsest].origin;
 
-  const bool coarse = count > few_boxes && axes[coarsest].coarseness > tolerated_coarseness;
+  const bool coarse = !exact_ && count > few_boxes && axes[coarsest].coarseness > tolerated_coarseness;
   if (coarse && stack_.empty()) {
     stack_.resize(count);
     std::iota(stack_.begin(), stack_.end(), 0U);
