@@ -60,8 +60,8 @@ Verb add_verify(CLI::App& program) {
   CLI::App* const verb = program.add_subcommand(
       "verify",
       "Checks on a file that algorithms find exactly the pairs there are, in every frame, and that they "
-      "track "
-      "what changes between frames; in the precision of the input. Where one fails, writes a small file that "
+      "track what changes between frames; in the precision of the input. Where one fails, writes a small "
+      "file that "
       "shows it, and ends with status 1.");
   verb->add_option("file", arguments->file, "The file; - is standard input")->required();
   verb->add_option(
@@ -74,7 +74,7 @@ Verb add_verify(CLI::App& program) {
       ->capture_default_str();
   verb->add_option("--counterexample", arguments->counterexample,
                    "Where the small file is written (standard: counterexample.csv, or .btrace where boxes "
-                   "move)")
+                   "move; numbered where there is one already)")
       ->type_name("FILE");
   add_input_options(*verb, arguments->input);
   return [arguments] { return run(*arguments); };

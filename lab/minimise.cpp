@@ -38,14 +38,6 @@ bool is_valid(const History<D, Real>& history) {
   return true;
 }
 
-/// How many places there are in the frame that has the most.
-template <int D, typename Real>
-std::size_t places_of(const History<D, Real>& history) {
-  std::size_t places = history.boxes.size();
-  for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
-  return places;
-}
-
 /// The history of the places in `kept`, which are ascending, alone.
 template <int D, typename Real>
 History<D, Real> only(const std::vector<std::size_t>& kept, const History<D, Real>& history) {

@@ -16,13 +16,6 @@
 namespace broadside::lab {
 namespace {
 
-template <int D, typename Real>
-std::size_t places_of(const History<D, Real>& history) {
-  std::size_t places = history.boxes.size();
-  for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
-  return places;
-}
-
 /// What is wrong with the contender on the boxes of a file; empty if nothing is.
 template <int D, typename Real>
 std::string fault_in(BoxFile file, const Contender& contender, std::span<const Algorithm> known) {
@@ -30,10 +23,18 @@ std::string fault_in(BoxFile file, const Contender& contender, std::span<const A
   return fault_on<D, Real>(read_all(*frames), contender, known);
 }
 
+/// A name that no file in the current folder has: what is there may be the very file that was verified.
+std::filesystem::path free_name(std::string_view extension) {
+  std::filesystem::path path = fmt::format("counterexample{}", extension);
+  for (int number = 2; std::filesystem::exists(path); ++number)
+    path = fmt::format("counterexample_{}{}", number, extension);
+  return path;
+}
+
 template <int D, typename Real>
 Counterexample write(const History<D, Real>& smallest, const Contender& contender, const Catalogue& catalogue,
                      std::filesystem::path path) {
-  if (path.empty()) path = smallest.steps.empty() ? "counterexample.csv" : "counterexample.btrace";
+  if (path.empty()) path = free_name(smallest.steps.empty() ? ".csv" : ".btrace");
   write_scene(smallest, path);
   Counterexample written{contender.spec.text(), path, places_of(smallest), smallest.steps.size() + 1, {}, {}};
   written.command = fmt::format("verify {} --algorithms {}", path.string(), written.algorithm);

@@ -22,7 +22,8 @@ struct VerifyOptions {
   double budget_seconds = 10;            ///< that an algorithm may take over all frames, and a counterexample
 
   /// Where the smallest input on which the first of those that fail does so is written, in the format of the
-  /// extension. Empty: counterexample.csv in the current folder, or counterexample.btrace where boxes move.
+  /// extension. Empty: counterexample.csv in the current folder, or .btrace where boxes move, with a number
+  /// in its name where there is such a file already.
   std::filesystem::path counterexample{};
   Watch watch{};
 };

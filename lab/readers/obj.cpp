@@ -16,6 +16,7 @@
 
 #include "lab/readers/format.hpp"
 #include "lab/readers/shown.hpp"
+#include "lab/readers/text_words.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -27,7 +28,7 @@ class ObjReader {
   IndexedMesh read() {
     mesh_.has_own_vertices = true;
     while (next_line()) {
-      const std::string_view word = next_word();
+      const std::string_view word = next_word(rest_);
       if (word == "v") {
         read_vertex();
       } else if (word == "f") {
@@ -65,18 +66,10 @@ class ObjReader {
     return true;
   }
 
-  std::string_view next_word() {
-    constexpr std::string_view blanks = " \t";
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
   void read_vertex() {
     std::array<float, 3> vertex{};
     for (float& coordinate : vertex) {
-      std::string_view word = next_word();
+      std::string_view word = next_word(rest_);
       if (word.starts_with('+')) word.remove_prefix(1);
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), coordinate);
       if (error != std::errc() || end != word.data() + word.size()) refuse("three numbers behind 'v'");
@@ -88,7 +81,7 @@ class ObjReader {
 
   void read_face() {
     const std::size_t begin = mesh_.corners.size();
-    for (std::string_view word = next_word(); !word.empty(); word = next_word()) {
+    for (std::string_view word = next_word(rest_); !word.empty(); word = next_word(rest_)) {
       if (word.starts_with('#')) break;
       mesh_.corners.push_back(vertex_of(word));
     }

@@ -9,6 +9,7 @@
 
 #include "lab/readers/format.hpp"
 #include "lab/readers/shown.hpp"
+#include "lab/readers/text_words.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -19,13 +20,13 @@ class HeaderReader {
 
   PlyHeader read() {
     next_line();
-    if (next_word() != "ply") refuse("'ply'");
+    if (next_word(rest_) != "ply") refuse("'ply'");
     next_line();
-    if (next_word() != "format") refuse("'format'");
+    if (next_word(rest_) != "format") refuse("'format'");
     read_encoding();
     for (;;) {
       next_line();
-      const std::string_view word = next_word();
+      const std::string_view word = next_word(rest_);
       if (word == "end_header") break;
       if (word == "element") {
         read_element();
@@ -55,16 +56,8 @@ class HeaderReader {
     at_ = std::min(end + 1, bytes_.size());
   }
 
-  std::string_view next_word() {
-    constexpr std::string_view blanks = " \t";
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
   void read_encoding() {
-    const std::string_view word = next_word();
+    const std::string_view word = next_word(rest_);
     if (word == "ascii") {
       header_.encoding = PlyEncoding::text;
     } else if (word == "binary_little_endian") {
@@ -74,12 +67,12 @@ class HeaderReader {
     } else {
       refuse("format ascii, binary_little_endian or binary_big_endian");
     }
-    if (next_word() != "1.0") refuse("version 1.0");
+    if (next_word(rest_) != "1.0") refuse("version 1.0");
   }
 
   void read_element() {
-    const std::string_view name = next_word();
-    const std::string_view count = next_word();
+    const std::string_view name = next_word(rest_);
+    const std::string_view count = next_word(rest_);
     PlyElement element{name, 0, {}};
     const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
     if (name.empty() || error != std::errc() || end != count.data() + count.size())
@@ -91,15 +84,15 @@ class HeaderReader {
   void read_property() {
     if (header_.elements.empty()) refuse("an element before its properties");
     PlyProperty property;
-    std::string_view type = next_word();
+    std::string_view type = next_word(rest_);
     property.is_list = type == "list";
     if (property.is_list) {
-      property.count_type = type_of(next_word());
+      property.count_type = type_of(next_word(rest_));
       if (property.count_type >= PlyType::float32) refuse("a list's length in whole numbers");
-      type = next_word();
+      type = next_word(rest_);
     }
     property.type = type_of(type);
-    property.name = next_word();
+    property.name = next_word(rest_);
     header_.elements.back().properties.push_back(property);
   }
 

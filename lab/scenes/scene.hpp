@@ -1,6 +1,7 @@
 // What the lab compares algorithms on: boxes, and how they change from frame to frame.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -35,6 +36,14 @@ struct History {
 /// Turns the boxes of one frame into those of the next.
 template <int D, typename Real>
 void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
+
+/// How many places there are in the frame that has the most.
+template <int D, typename Real>
+std::size_t places_of(const History<D, Real>& history) {
+  std::size_t places = history.boxes.size();
+  for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
+  return places;
+}
 
 /// How many boxes, from which seed, and how they move; the last three concern only scenes that do not move on
 /// their own.

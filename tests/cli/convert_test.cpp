@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "process.hpp"
+#include "refusal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -80,10 +81,6 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
                                       "0,0,0,0,1,1\n"
                                       "1,0,0,0,1,-1\n");
   const std::string absent = folder.put("absent.csv", "min_x,min_y,max_x,max_y\n,,,\n");
-  struct Refusal {
-    std::vector<std::string> arguments;
-    std::vector<std::string> message;
-  };
   const std::vector<Refusal> refusals = {
       {{good}, {"--output"}},
       {{folder.file("missing.csv"), "-o", folder.file("out.csv")}, {"missing.csv", "No such file"}},
@@ -96,14 +93,7 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
       {{good, "-o", "/nowhere/out.csv"}, {"no folder '/nowhere'"}},
       {{good, "-o", folder.file("out.csv"), "--dimension", "3"}, {"good.csv", "2D"}},
   };
-  for (const Refusal& refusal : refusals) {
-    std::vector<std::string> arguments = {"convert"};
-    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 2) << ended.errors;
-    EXPECT_THAT(ended.output, IsEmpty());
-    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
-  }
+  expect_refused("convert", refusals);
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"absent.csv", "good.csv", "late.csv"}));
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "process.hpp"
+#include "refusal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -78,10 +79,6 @@ TEST(InfoVerb, SaysWhatIsMissingOfADamagedFileAndTellsTheRest) {
 
 TEST(InfoVerb, RefusesWhatItCannotReadAndSaysWhy) {
   const TemporaryFolder folder;
-  struct Refusal {
-    std::vector<std::string> arguments;
-    std::vector<std::string> message;
-  };
   const std::vector<Refusal> refusals = {
       {{}, {"file"}},
       {{folder.file("missing.csv")}, {"missing.csv", "No such file"}},
@@ -91,14 +88,7 @@ TEST(InfoVerb, RefusesWhatItCannotReadAndSaysWhy) {
       {{folder.put("cut.npy", "\x93NUMPY")}, {"cut.npy"}},
       {{folder.put("words.csv", "min_x,min_y,max_x,max_y\n0,0,much,1\n")}, {"words.csv:2", "'much'"}},
   };
-  for (const Refusal& refusal : refusals) {
-    std::vector<std::string> arguments = {"info"};
-    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 2) << ended.errors;
-    EXPECT_THAT(ended.output, IsEmpty());
-    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
-  }
+  expect_refused("info", refusals);
 }
 
 }  // namespace

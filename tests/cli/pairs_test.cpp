@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "process.hpp"
+#include "refusal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -207,10 +208,6 @@ TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);
   const std::string solid = folder.put("solid.csv", "min_x,min_y,min_z,max_x,max_y,max_z\n0,0,0,1,1,1\n");
-  struct Refusal {
-    std::vector<std::string> arguments;
-    std::vector<std::string> message;
-  };
   const std::vector<Refusal> refusals = {
       {{}, {"files"}},
       {{file, file, file}, {"3 files", "expected one"}},
@@ -236,14 +233,7 @@ TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {
       {{file, "-o", folder.file("pairs.txt")}, {"'.txt'", "expected .csv or .npy"}},
       {{file, "-o", "/nowhere/pairs.csv"}, {"no folder '/nowhere'"}},
   };
-  for (const Refusal& refusal : refusals) {
-    std::vector<std::string> arguments = {"pairs"};
-    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 2) << ended.errors;
-    EXPECT_THAT(ended.output, IsEmpty());
-    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
-  }
+  expect_refused("pairs", refusals);
 }
 
 }  // namespace

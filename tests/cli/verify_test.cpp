@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "process.hpp"
+#include "refusal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -55,10 +56,6 @@ TEST(VerifyVerb, RefusesWhatItCannotUseAndSaysWhy) {
                                       "frame,box,min_x,min_y,max_x,max_y\n"
                                       "0,0,0,0,1,1\n"
                                       "1,0,0,0,1,-1\n");
-  struct Refusal {
-    std::vector<std::string> arguments;
-    std::vector<std::string> message;
-  };
   const std::vector<Refusal> refusals = {
       {{}, {"file"}},
       {{folder.file("missing.csv")}, {"missing.csv", "No such file"}},
@@ -70,14 +67,7 @@ TEST(VerifyVerb, RefusesWhatItCannotUseAndSaysWhy) {
       {{file, "--counterexample", folder.file("out.ply")}, {"out.ply", "'.ply'"}},
       {{file, "--counterexample", "/nowhere/out.csv"}, {"no folder '/nowhere'"}},
   };
-  for (const Refusal& refusal : refusals) {
-    std::vector<std::string> arguments = {"verify"};
-    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 2) << ended.errors;
-    EXPECT_THAT(ended.output, IsEmpty());
-    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
-  }
+  expect_refused("verify", refusals);
 }
 
 }  // namespace

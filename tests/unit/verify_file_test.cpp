@@ -89,6 +89,21 @@ TEST_F(VerifyFile, ShowsAMissingPairWithTheTwoBoxesThatMakeIt) {
   EXPECT_EQ(again.boxes, 2u);
 }
 
+TEST_F(VerifyFile, LeavesAnOlderCounterexampleAlone) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  row(300);
+  std::filesystem::current_path(path(""));
+  std::filesystem::rename("row.csv", "counterexample.csv");
+  const std::string whole = text_of("counterexample.csv");
+  options_.counterexample.clear();
+  const Verification verification = verified("counterexample.csv", "misses");
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(verification.counterexample);
+  EXPECT_EQ(verification.counterexample->path, "counterexample_2.csv");
+  EXPECT_EQ(text_of("counterexample.csv"), whole);
+  EXPECT_EQ(count_files(), 2u);
+}
+
 TEST_F(VerifyFile, ChecksFloatsAsFloatsAndSaysSoInItsCommand) {
   const Verification verification = verified(row(300), "mistakes", {.precision = Precision::float32});
   ASSERT_TRUE(verification.counterexample);
