@@ -17,17 +17,17 @@ namespace broadside {
 namespace detail {
 template <typename T>
 struct BoxTraits;
-template <int D_, typename Real_>
-struct BoxTraits<Box<D_, Real_>> {
-  static constexpr int D = D_;
-  using Real = Real_;
+template <int Dimension, typename Coordinate>
+struct BoxTraits<Box<Dimension, Coordinate>> {
+  static constexpr int dimension = Dimension;
+  using Real = Coordinate;
 };
 }  // namespace detail
 
 /// An array of boxes: std::vector, std::array, std::span ... of Box<2>, Box<3>, DoubleBox2 or DoubleBox3.
 template <typename T>
 concept BoxArray = std::ranges::contiguous_range<const T> && std::ranges::sized_range<const T> && requires {
-  detail::BoxTraits<std::ranges::range_value_t<T>>::D;
+  detail::BoxTraits<std::ranges::range_value_t<T>>::dimension;
 };
 
 /// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
@@ -40,7 +40,7 @@ template <BoxArray Boxes>
 void find_pairs(const Boxes& boxes, PairSink& pairs, std::string_view spec = default_algorithm) {
   using Box = std::ranges::range_value_t<Boxes>;
   using Traits = detail::BoxTraits<Box>;
-  make_finder<Traits::D, typename Traits::Real>(spec)->find(std::span<const Box>(boxes), pairs);
+  make_finder<Traits::dimension, typename Traits::Real>(spec)->find(std::span<const Box>(boxes), pairs);
 }
 
 /// The same pairs in a vector.
@@ -60,8 +60,8 @@ void find_pairs(const Left& left, const Right& right, PairSink& pairs,
                 std::string_view spec = default_algorithm) {
   using Box = std::ranges::range_value_t<Left>;
   using Traits = detail::BoxTraits<Box>;
-  make_finder<Traits::D, typename Traits::Real>(spec)->find_between(std::span<const Box>(left),
-                                                                    std::span<const Box>(right), pairs);
+  make_finder<Traits::dimension, typename Traits::Real>(spec)->find_between(
+      std::span<const Box>(left), std::span<const Box>(right), pairs);
 }
 
 /// The same pairs in a vector.
