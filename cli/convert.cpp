@@ -38,9 +38,7 @@ Exit run(const ConvertArguments& arguments) {
   const lab::Converted converted =
       lab::convert(std::move(file), arguments.output, format, precision, end_if_interrupted);
   if (!converted.warning.empty()) say(converted.warning);
-  if (converted.rounded > 0)
-    say(fmt::format("{} of {} were rounded to float", lab::grouped(converted.rounded),
-                    lab::counted(converted.coordinates, "coordinate", "coordinates")));
+  if (converted.rounding.rounded > 0) say(converted.rounding.text());
   say(fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
                   arguments.output == "-" ? "standard output" : arguments.output,
                   lab::counted(converted.frames, "frame", "frames"),

@@ -87,13 +87,22 @@ void check(const PairsArguments& arguments) {
   check_writable("-o", arguments.output);
 }
 
-lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path) {
+lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, lab::Rounding& rounding) {
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
-  lab::FrameOfFile read = lab::read_frame(open_input(arguments.input, path), frame);
+  lab::ReadOptions options = read_options(arguments.input, path);
+  // Rounded once the frame is there instead, where it is counted.
+  const bool is_rounded = options.precision == lab::Precision::float32;
+  if (is_rounded) options.precision.reset();
+  lab::FrameOfFile read = lab::read_frame(lab::open_file(path, options), frame);
   if (!read.warning.empty()) say(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
+  if (is_rounded) {
+    const lab::Rounding more = lab::round_to_float(read.boxes);
+    rounding.coordinates += more.coordinates;
+    rounding.rounded += more.rounded;
+  }
   return read;
 }
 
@@ -105,7 +114,7 @@ class Join {
     if (arguments.is_swept) {
       sweep();
     } else {
-      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path));
+      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
     }
     read_ms_ = watch.milliseconds();
@@ -137,16 +146,22 @@ class Join {
       separator = " with ";
     }
     const lab::AnyBoxes& boxes = sets_[0].boxes;
-    return fmt::format("{} in {}D: {}, exact in {}; read in {}, joined by {} in {}", sets,
+    const std::string rounded =
+        rounding_.rounded == 0
+            ? ""
+            : fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
+                          lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
+    return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
                        lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
-                       name(lab::precision(boxes)), lab::duration(read_ms_ / 1e3), arguments_.algorithm,
-                       lab::duration(join_ms_ / 1e3));
+                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3),
+                       arguments_.algorithm, lab::duration(join_ms_ / 1e3));
   }
 
  private:
   void sweep() {
     const std::vector<std::string>& files = arguments_.files;
     const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], read_options(arguments_.input));
+    for (const std::string& warning : mesh.warnings()) say(warning);
     const auto add = [&](const std::string& part) {
       lab::SweptElements swept = mesh.swept(read_part("", part));
       sets_.push_back({part, std::move(swept.boxes)});
@@ -166,6 +181,7 @@ class Join {
   const PairsArguments& arguments_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
+  lab::Rounding rounding_;
   double read_ms_ = 0;
   double join_ms_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -41,15 +42,7 @@ class CountingFrames final : public FrameReader<D, Real> {
   void count(const std::vector<Box<D, Real>>& boxes, std::size_t size) {
     ++counts_.frames;
     counts_.boxes = std::max(counts_.boxes, size);
-    counts_.coordinates += 2 * D * boxes.size();
-    if (counts_.precision != Precision::float32) return;
-    const auto is_rounded = [](Real number) {
-      return static_cast<Real>(static_cast<float>(number)) != number;
-    };
-    for (const Box<D, Real>& box : boxes) {
-      counts_.rounded += static_cast<std::uint64_t>(std::ranges::count_if(box.min, is_rounded) +
-                                                    std::ranges::count_if(box.max, is_rounded));
-    }
+    if (counts_.precision == Precision::float32) counts_.rounding.count(std::span<const Box<D, Real>>(boxes));
   }
 
   std::unique_ptr<FrameReader<D, Real>> frames_;

@@ -16,10 +16,9 @@ struct Converted {
   int dimension = 2;
   Precision precision = Precision::float32;
   std::uint64_t frames = 0;
-  std::size_t boxes = 0;          ///< the most places there are in a frame
-  std::uint64_t coordinates = 0;  ///< of all boxes written, in all frames
-  std::uint64_t rounded = 0;      ///< coordinates that the written file holds only rounded to a float
-  std::string warning{};          ///< what had to be left out of a damaged input; empty otherwise
+  std::size_t boxes = 0;  ///< the most places there are in a frame
+  Rounding rounding{};    ///< of all boxes written as floats, in all frames
+  std::string warning{};  ///< what had to be left out of a damaged input; empty otherwise
 };
 
 /// Writes what is left of `from` to `path`, as write_frames does: in the precision asked for, or that of

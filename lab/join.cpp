@@ -1,6 +1,7 @@
 // Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
 #include "lab/join.hpp"
 
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,21 +29,21 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
   return {std::move(name), std::move(boxes), has_more || frame > 0, frames.warning()};
 }
 
-template <int D>
-std::vector<Box<D, double>> widened(const std::vector<Box<D>>& boxes) {
-  std::vector<Box<D, double>> wide(boxes.size());
+template <typename Real, int D, typename OldReal>
+std::vector<Box<D, Real>> converted(const std::vector<Box<D, OldReal>>& boxes) {
+  std::vector<Box<D, Real>> result(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < D; ++axis) {
-      wide[i].min[axis] = static_cast<double>(boxes[i].min[axis]);
-      wide[i].max[axis] = static_cast<double>(boxes[i].max[axis]);
+      result[i].min[axis] = static_cast<Real>(boxes[i].min[axis]);
+      result[i].max[axis] = static_cast<Real>(boxes[i].max[axis]);
     }
   }
-  return wide;
+  return result;
 }
 
 AnyBoxes widened(const AnyBoxes& boxes) {
-  if (dimension(boxes) == 2) return widened(std::get<std::vector<Box2>>(boxes));
-  return widened(std::get<std::vector<Box3>>(boxes));
+  if (dimension(boxes) == 2) return converted<double>(std::get<std::vector<Box2>>(boxes));
+  return converted<double>(std::get<std::vector<Box3>>(boxes));
 }
 
 }  // namespace
@@ -60,6 +61,17 @@ Precision precision(const AnyBoxes& boxes) noexcept {
 FrameOfFile read_frame(BoxFile file, std::size_t frame) {
   return std::visit([&](const auto& frames) { return read(*frames, std::move(file.name), frame); },
                     file.frames);
+}
+
+Rounding round_to_float(AnyBoxes& boxes) {
+  Rounding rounding;
+  boxes = std::visit(
+      [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) -> AnyBoxes {
+        rounding.count(std::span<const Box<D, Real>>(list));
+        return converted<float>(list);
+      },
+      boxes);
+  return rounding;
 }
 
 void match(FrameOfFile& left, FrameOfFile& right) {

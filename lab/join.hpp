@@ -34,6 +34,9 @@ struct FrameOfFile {
 /// where the format is read frame by frame.
 FrameOfFile read_frame(BoxFile file, std::size_t frame);
 
+/// Rounds doubles to the nearest floats, and counts what that changes.
+Rounding round_to_float(AnyBoxes& boxes);
+
 /// Brings two sets to the same precision: double, exactly, if either is. Throws FileError, naming both, if
 /// one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);

@@ -17,7 +17,7 @@ using Fields = std::vector<std::string_view>;
 
 constexpr const char* expected_columns =
     "columns such as 'min_x,min_y,max_x,max_y' or 'center_x,center_y,width,height', with z or without, in "
-    "any order, with or without 'frame,box'; --columns can name them";
+    "any order, with or without 'frame,box'";
 
 bool is_number(std::string_view field) {
   double value = 0;
@@ -46,11 +46,7 @@ bool resolve_comment(std::string_view comment, std::size_t count, CsvColumns& co
 CsvColumns columns_of_user(const std::string& list, std::size_t count, const CsvLines& lines) {
   Fields names = fields_of(list, Separator::comma);
   for (std::string_view& name : names) {
-    if (name == "-")
-      name = {};
-    else if (!is_column_name(name))
-      lines.refuse(fmt::format("--columns names '{}'", name),
-                   fmt::format("{}; '-' leaves one out", expected_columns));
+    if (name == "-") name = {};
   }
   if (names.size() > count)
     lines.refuse(fmt::format("{} column{}", count, count == 1 ? "" : "s"),
@@ -72,6 +68,8 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
       throw FileError(fmt::format("{}: {}; expected a table with {}", input->name(),
                                   input->bytes().empty() ? "is empty" : "has no line but comments",
                                   expected_columns));
+    if (lines.line().find('\r') != std::string_view::npos)
+      lines.refuse("a carriage return within the line", "lines that end with a line feed");
     if (!is_before(lines.line())) break;
     comment = lines.line();
     rows = lines;
@@ -96,7 +94,8 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
       if (!problem.empty())
         lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns");
     } else if (!has_header && !is_table_row(fields)) {
-      lines.refuse(fmt::format("'{}': {}", lines.line().substr(0, 100), problem), expected_columns);
+      lines.refuse(fmt::format("'{}': {}", lines.line().substr(0, 100), problem),
+                   fmt::format("{}; --columns can name them", expected_columns));
     }
   }
   return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns)},

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <initializer_list>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,8 +14,8 @@ namespace {
 
 /// What a column says of an axis. `position` leaves open of what; the numbered ones are minimum and maximum,
 /// counted from 0 or from 1.
-enum class Role : std::uint8_t { min, max, centre, size, half_size, position, zeroth, first, second };
-constexpr std::size_t roles = 9;
+enum class Role : std::uint8_t { min, max, centre, size, half_size, position, zeroth, first, second, third };
+constexpr std::size_t roles = 10;
 
 struct Meaning {
   Role role;
@@ -57,6 +58,7 @@ constexpr auto words = std::to_array<Word>({
     {Role::zeroth, "0"},
     {Role::first, "1"},
     {Role::second, "2"},
+    {Role::third, "3"},
 });
 
 /// Names with the axis in them.
@@ -128,8 +130,32 @@ struct Choice {
   int second;
 };
 
+int of(const Found& found, Role role) { return found[static_cast<std::size_t>(role)]; }
+
+/// What is wrong if numbers count three points or more, whose first two are no bounds; nothing otherwise.
+std::string points_of(const Found& found, std::span<const std::string_view> names) {
+  std::string list;
+  int count = 0;
+  for (const Role role : {Role::zeroth, Role::first, Role::second, Role::third}) {
+    if (of(found, role) == none) continue;
+    list += fmt::format("{}'{}'", list.empty() ? "" : ", ", names[static_cast<std::size_t>(of(found, role))]);
+    ++count;
+  }
+  return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);
+}
+
+/// On a screen y grows downwards: a top that comes with a height and nothing else is where the box begins.
+void read_as_screen(Found& y, std::span<const std::string_view> names) {
+  const int top = of(y, Role::max);
+  if (top == none || plain(names[static_cast<std::size_t>(top)]) != "top" || of(y, Role::size) == none)
+    return;
+  for (const Role role : {Role::min, Role::centre, Role::position}) {
+    if (of(y, role) != none) return;
+  }
+  std::swap(y[static_cast<std::size_t>(Role::min)], y[static_cast<std::size_t>(Role::max)]);
+}
+
 std::optional<Choice> choose(const Found& found) {
-  const auto of = [&found](Role role) { return found[static_cast<std::size_t>(role)]; };
   struct Way {
     BoundsForm form;
     Role first;
@@ -145,8 +171,8 @@ std::optional<Choice> choose(const Found& found) {
       {BoundsForm::min_size, Role::min, Role::size},
   });
   for (const Way& way : ways) {
-    if (of(way.first) != none && of(way.second) != none)
-      return Choice{way.form, of(way.first), of(way.second)};
+    if (of(found, way.first) != none && of(found, way.second) != none)
+      return Choice{way.form, of(found, way.first), of(found, way.second)};
   }
   return std::nullopt;
 }
@@ -194,6 +220,8 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     *column = static_cast<int>(i);
   }
 
+  read_as_screen(found[1], names);
+
   const auto place = [&columns](int column, int where) {
     columns.places[static_cast<std::size_t>(column)] = where;
   };
@@ -206,6 +234,10 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
   for (int axis = 0; axis < 3; ++axis) {
     const Found& of_axis = found[static_cast<std::size_t>(axis)];
     const char letter = axes[static_cast<std::size_t>(axis)];
+    if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
+      const std::string points = points_of(of_axis, names);
+      if (!points.empty()) return points;
+    }
     if (const std::optional<Choice> choice = choose(of_axis)) {
       columns.forms[static_cast<std::size_t>(axis)] = choice->form;
       columns.dimension = std::max(2, axis + 1);
@@ -221,7 +253,8 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
                          names[static_cast<std::size_t>(position)]);
     // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
     const auto known = std::ranges::find_if(of_axis, [&](int column) {
-      return column != none && column != position && (column != size || axis < 2);
+      return column != none && column != position && column != of(of_axis, Role::third) &&
+             (column != size || axis < 2);
     });
     if (known != of_axis.end())
       return fmt::format("column '{}' alone does not give bounds on the {} axis",

@@ -103,7 +103,7 @@ class CsvRows {
     while (begin != end && is_padding(*begin, separator)) ++begin;
     const auto [last, error] = parse(begin, end, value);
     // A NaN is no number, and nothing equals it.
-    if (error != std::errc() || value != value) return false;
+    if (error != std::errc() || value != value || !is_held({begin, last}, value)) return false;
     const char* next = last;
     while (next != end && is_padding(*next, separator)) ++next;
     more = next != end;
@@ -129,6 +129,14 @@ class CsvRows {
     return std::from_chars(begin, end, value);
   }
 
+  /// Whether `value` is what `text` says, if that is a whole number without exponent: so are identifiers and
+  /// fixed-point coordinates written, in which nobody expects digits to be lost.
+  bool is_held(std::string_view text, double value) const {
+    constexpr double exact = 9007199254740992;  // 2^53: up to there every whole number is held
+    if ((value < exact && value > -exact) || (std::is_same_v<Real, float> && !is_computed_)) return true;
+    return is_whole_number_of(text, value);
+  }
+
   void take_field(std::size_t column, const char*& at, const char* end, bool& more) {
     CsvFields fields(at, end, table_.separator);
     std::string_view field;
@@ -146,6 +154,8 @@ class CsvRows {
       values_[where] = static_cast<double>(number);
     } else if (!parse_number(field, values_[where])) {
       refuse_number(place);
+    } else if (!is_held(field, values_[where])) {
+      refuse(place, "a whole number that a double holds exactly, as all up to 2^53 are");
     }
     filled_ |= 1U << place;
   }
@@ -170,6 +180,9 @@ class CsvRows {
   }
 
   [[noreturn]] void refuse_inverted(const Box<D, Real>& box) const {
+    const auto is_nan = [](Real number) { return number != number; };
+    if (std::ranges::any_of(box.min, is_nan) || std::ranges::any_of(box.max, is_nan))
+      table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
     table_.lines.refuse(
         fmt::format("min ({}) and max ({})", fmt::join(box.min, ", "), fmt::join(box.max, ", ")),
         fmt::format("min <= max on every axis, {}or no coordinates for an absent box",
@@ -247,6 +260,8 @@ class FramedCsv final : public FrameReader<D, Real> {
     do {
       if (!std::exchange(has_row_, false) && !rows_.next()) return false;
       const std::size_t frame = rows_.whole_number(CsvColumns::frame);
+      if (!std::exchange(has_begun_, true) && frame != 0)
+        rows_.refuse(CsvColumns::frame, "0: frames are counted from there");
       if (frame == frame_ + 1) {
         has_row_ = true;
         return false;
@@ -271,6 +286,7 @@ class FramedCsv final : public FrameReader<D, Real> {
 
   CsvRows<D, Real> rows_;
   bool has_row_ = false;  // a row was read that belongs to the next frame
+  bool has_begun_ = false;
   std::size_t frame_ = 0;
   std::vector<std::size_t> last_change_;  // for each box, the frame in which it was last listed
 };

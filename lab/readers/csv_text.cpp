@@ -110,6 +110,13 @@ bool parse_number(std::string_view text, float& value) { return parse(text, valu
 bool parse_number(std::string_view text, double& value) { return parse(text, value); }
 bool parse_number(std::string_view text, std::uint32_t& value) { return parse(text, value); }
 
+bool is_whole_number_of(std::string_view text, double value) {
+  if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
+  if (text.find_first_not_of("0123456789") != std::string_view::npos) return true;
+  text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
+  return text == fmt::format("{:.0f}", std::abs(value));
+}
+
 CsvLines::CsvLines(Input& input) : input_(&input), rest_(input.bytes()) {
   if (rest_.starts_with(byte_order_mark)) {
     rest_.remove_prefix(byte_order_mark.size());

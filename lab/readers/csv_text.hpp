@@ -59,6 +59,10 @@ bool parse_number(std::string_view text, float& value);
 bool parse_number(std::string_view text, double& value);
 bool parse_number(std::string_view text, std::uint32_t& value);
 
+/// Whether `value` is exactly what `text` says, if that is a whole number without point or exponent; true of
+/// any other text.
+bool is_whole_number_of(std::string_view text, double value);
+
 /// A file's lines, one after the other. A copy goes on from the same place.
 class CsvLines {
  public:

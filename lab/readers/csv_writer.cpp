@@ -109,14 +109,12 @@ class CsvWriter final : public FrameWriter<D, Real> {
       buffer_.text("frame,box,");
       buffer_.text(bounds_columns<D>);
       for (std::size_t i = 0; i < boxes_.size(); ++i) write_row(buffer_, 0, BoxId(i), boxes_[i]);
+      if (boxes_.empty()) write_frame_alone();
     }
     ++frame_;
     const auto rows = rows_of<D, Real>(step, boxes_, places_);
     for (const auto& [id, box] : rows) write_row(buffer_, frame_, id, box);
-    if (rows.empty()) {
-      buffer_.number(frame_);
-      buffer_.text(D == 2 ? ",,,,,\n" : ",,,,,,,\n");
-    }
+    if (rows.empty()) write_frame_alone();
     lab::apply(step, boxes_);
     places_ = std::max(places_, boxes_.size());
   }
@@ -130,6 +128,11 @@ class CsvWriter final : public FrameWriter<D, Real> {
   }
 
  private:
+  void write_frame_alone() {
+    buffer_.number(frame_);
+    buffer_.text(D == 2 ? ",,,,,\n" : ",,,,,,,\n");
+  }
+
   Buffer buffer_;
   std::vector<Box<D, Real>> boxes_;
   std::size_t places_ = 0;  // in the file, where the array never becomes shorter

@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -115,22 +117,37 @@ BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options)
 }
 
 FileContent read_file(const std::filesystem::path& path, const ReadOptions& options) {
-  ReadOptions floats = options;
-  floats.precision = Precision::float32;
-  BoxFile file = open_file(path, floats);
+  ReadOptions exact = options;
+  exact.precision.reset();
+  BoxFile file = open_file(path, exact);
   FileContent content;
   const auto read = [&content]<int D>(FrameReader<D, float>& frames) {
     if constexpr (D == 2)
       content.in_2d = read_all(frames);
     else
       content.in_3d = read_all(frames);
-    content.warning = frames.warning();
   };
-  std::visit(
-      [&](const auto& frames) {
-        if constexpr (requires { read(*frames); }) read(*frames);
-      },
-      file.frames);
+  Rounding rounding;
+  const auto read_any = [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) {
+    if constexpr (std::is_same_v<Real, float>) {
+      read(*frames);
+      content.warning = frames->warning();
+    } else {
+      History<D, Real> history = read_all(*frames);
+      content.warning = frames->warning();
+      rounding.count(std::span<const Box<D, Real>>(history.boxes));
+      for (const Step<D, Real>& step : history.steps)
+        rounding.count(std::span<const Box<D, Real>>(step.boxes));
+      AnyFrameReader rounded =
+          with_precision(std::make_unique<HistoryReader<D, Real>>(std::move(history)), Precision::float32);
+      read(*std::get<std::unique_ptr<FrameReader<D, float>>>(rounded));
+    }
+  };
+  std::visit(read_any, file.frames);
+  if (rounding.rounded > 0)
+    content.warning +=
+        fmt::format("{}{}: {}, in which scenes are compared; `pairs` and `verify` take them exactly",
+                    content.warning.empty() ? "" : "\n", file.name, rounding.text());
   if (content.in_3d && file.format->is_seen_flat && options.dimension == 0) {
     AnyFrameReader flat = flattened(std::make_unique<HistoryReader<3, float>>(*content.in_3d));
     read(*std::get<std::unique_ptr<FrameReader<2, float>>>(flat));

@@ -89,7 +89,9 @@ BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options 
 struct FileContent {
   std::optional<History<2>> in_2d;
   std::optional<History<3>> in_3d;
-  std::string warning{};  ///< what the reader had to leave out of a damaged file, and where; empty otherwise
+  /// What the reader had to leave out of a damaged file, and where, and how many coordinates were rounded to
+  /// float; empty where there is nothing to say.
+  std::string warning{};
 };
 
 /// Reads a file whole. Throws as open_file and its reader do.

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/format.h>
+
+#include "lab/numbers.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -66,6 +70,11 @@ AnyFrameReader flat(std::unique_ptr<FrameReader<D, Real>> frames) {
 
 std::string_view name(Precision precision) noexcept {
   return precision == Precision::float32 ? "float" : "double";
+}
+
+std::string Rounding::text() const {
+  return fmt::format("{} of {} {} rounded to float", grouped(rounded),
+                     counted(coordinates, "coordinate", "coordinates"), rounded == 1 ? "was" : "were");
 }
 
 int dimension_of(const AnyFrameReader& frames) noexcept { return frames.index() % 2 == 0 ? 2 : 3; }

@@ -1,6 +1,7 @@
 // Boxes as files hold them: frame after frame, in 2D or 3D, as floats or as doubles.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -25,6 +26,27 @@ std::string_view name(Precision precision) noexcept;
 
 template <typename Real>
 constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
+
+/// How many of some coordinates no float holds exactly.
+struct Rounding {
+  std::uint64_t coordinates = 0;
+  std::uint64_t rounded = 0;
+
+  template <int D, typename Real>
+  void count(std::span<const Box<D, Real>> boxes) {
+    const auto is_rounded = [](Real number) {
+      return static_cast<Real>(static_cast<float>(number)) != number;
+    };
+    coordinates += 2 * D * boxes.size();
+    for (const Box<D, Real>& box : boxes) {
+      for (std::size_t axis = 0; axis < D; ++axis)
+        rounded += std::uint64_t{is_rounded(box.min[axis])} + std::uint64_t{is_rounded(box.max[axis])};
+    }
+  }
+
+  /// "2 of 1,000 coordinates were rounded to float".
+  std::string text() const;
+};
 
 /// Gives the frames of a file, one after the other. Throws FileError (lab/readers/format.hpp) where the file
 /// is wrong, which may be in a later frame. One thread at a time.

@@ -6,6 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "lab/readers/frames.hpp"
 #include "lab/readers/mesh_content.hpp"
 #include "lab/readers/obj.hpp"
 #include "lab/readers/ply.hpp"
@@ -65,6 +68,12 @@ IndexedMesh read_mesh(Input& input) {
   const std::string extension = input.extension();
   if (content == "ply" || extension == ".ply") return read_ply(input);
   return content == "obj" || extension == ".obj" ? read_obj(input) : import_mesh(input);
+}
+
+std::string rounding_of(const IndexedMesh& mesh, std::string_view name) {
+  if (mesh.rounded == 0) return {};
+  return fmt::format("{}: {}, in which meshes are read", name,
+                     Rounding{3 * mesh.vertices.size(), mesh.rounded}.text());
 }
 
 void weld(IndexedMesh& mesh, IndexedMesh* later) {

@@ -19,6 +19,7 @@ struct IndexedMesh {
   std::vector<std::uint32_t> corners;  ///< the vertices of the faces, one face after the other
   std::vector<std::size_t> face_ends;  ///< where each face ends in `corners`
   bool has_own_vertices = false;       ///< whether the vertices are those of the file, in its order
+  std::uint64_t rounded = 0;           ///< coordinates that were doubles, or integers, which no float holds
 
   std::size_t face_count() const noexcept { return face_ends.size(); }
 
@@ -43,6 +44,9 @@ std::string mesh_import_missing();
 
 /// Whether a file with this extension is a mesh for import_mesh().
 bool is_mesh_extension(std::string_view extension);
+
+/// What to say of a mesh of this name whose vertices were rounded to float; empty if none was.
+std::string rounding_of(const IndexedMesh& mesh, std::string_view name);
 
 /// Makes vertices in one and the same place one, unless they are the file's own; each is then numbered where
 /// it came first. `later` is nullptr or the same mesh at another time, with as many vertices and the same

@@ -1,6 +1,8 @@
 // Meshes (PLY, OBJ, STL, glTF and what else assimp reads): the bounds of their triangles, edges or vertices.
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,6 +13,21 @@
 
 namespace broadside::lab::readers {
 namespace {
+
+/// The boxes of a mesh, and what was lost where its coordinates became floats.
+class MeshFrames final : public FrameReader<3, float> {
+ public:
+  MeshFrames(std::vector<Box3> boxes, std::string warning)
+      : boxes_(std::move(boxes)), warning_(std::move(warning)) {}
+
+  std::vector<Box3> first() override { return std::move(boxes_); }
+  bool next(Step<3>&) override { return false; }
+  std::string warning() const override { return warning_; }
+
+ private:
+  std::vector<Box3> boxes_;
+  std::string warning_;
+};
 
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   const std::string part = options.boxes.empty() ? "triangles" : options.boxes;
@@ -25,7 +42,11 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
                                                       : MeshPart::vertices);
   if (elements.size() == 0)
     throw FileError(fmt::format("{}: has no {}; expected at least one", input->name(), part));
-  return std::make_unique<HistoryReader<3, float>>(History<3>{elements.boxes(mesh, input->name()), {}});
+  std::string warning = rounding_of(mesh, input->name());
+  if (warning.empty() && options.precision == Precision::float64)
+    warning = fmt::format("{}: meshes are read in float; as doubles, its coordinates are those floats",
+                          input->name());
+  return std::make_unique<MeshFrames>(elements.boxes(mesh, input->name()), std::move(warning));
 }
 
 }  // namespace

@@ -33,10 +33,19 @@ class PlyNumbers {
 
   /// A coordinate, rounded to the nearest float.
   float coordinate(PlyType type) {
-    if (encoding_ == PlyEncoding::text) return parsed<float>("a number");
-    if (type == PlyType::float32) return loaded<float>();
-    return type == PlyType::float64 ? static_cast<float>(loaded<double>()) : static_cast<float>(whole(type));
+    const bool is_text = encoding_ == PlyEncoding::text;
+    if (type == PlyType::float32) return is_text ? parsed<float>("a number") : loaded<float>();
+    const double number = is_text                    ? parsed<double>("a number")
+                          : type == PlyType::float64 ? loaded<double>()
+                                                     : static_cast<double>(whole(type));
+    const float nearest = static_cast<float>(number);
+    // A NaN stays one.
+    rounded_ += static_cast<double>(nearest) != number && number == number ? 1 : 0;
+    return nearest;
   }
+
+  /// How many coordinates no float holds, though their type would have.
+  std::uint64_t rounded() const noexcept { return rounded_; }
 
   /// A whole number.
   std::int64_t whole(PlyType type) {
@@ -127,6 +136,7 @@ class PlyNumbers {
 
   std::string_view bytes_;
   std::size_t at_;
+  std::uint64_t rounded_ = 0;
   PlyEncoding encoding_;
   const std::string& file_;
 };
@@ -151,6 +161,7 @@ class PlyReader {
     }
     numbers_.check_end();
     check_corners();
+    mesh_.rounded = numbers_.rounded();
     return std::move(mesh_);
   }
 

@@ -60,6 +60,14 @@ SweptElements SweptMesh::swept(MeshPart part) const {
   return swept;
 }
 
+std::vector<std::string> SweptMesh::warnings() const {
+  std::vector<std::string> list;
+  for (std::string warning : {rounding_of(before_, name_before_), rounding_of(after_, name_after_)}) {
+    if (!warning.empty()) list.push_back(std::move(warning));
+  }
+  return list;
+}
+
 SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesystem::path& after,
                           const ReadOptions& options) {
   IndexedMesh first = read_one(before, options);

@@ -32,6 +32,9 @@ class SweptMesh {
   /// coordinates.
   SweptElements swept(MeshPart part) const;
 
+  /// What to say where coordinates were rounded to float, a line a file; empty if none was.
+  std::vector<std::string> warnings() const;
+
  private:
   IndexedMesh before_;
   IndexedMesh after_;

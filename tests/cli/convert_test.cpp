@@ -107,6 +107,14 @@ TEST(ConvertVerb, ReadsWhatIsWholeOfATraceThatIsCutOff) {
   EXPECT_THAT(ended.errors, AllOf(HasSubstr("is cut off in frame 6"), HasSubstr("6 frames of ")));
 }
 
+TEST(SceneVerb, SaysHowManyCoordinatesAreRounded) {
+  const TemporaryFolder folder;
+  const Ended ended = run({"scene", folder.put("boxes.csv", tenths), "-o", folder.file("out.csv")});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors,
+              HasSubstr("boxes.csv: 2 of 8 coordinates were rounded to float, in which scenes"));
+}
+
 TEST(SceneVerb, RefusesOptionsThatTheSceneIgnores) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", tenths);

@@ -70,7 +70,8 @@ TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   EXPECT_EQ(run({"pairs", "--count", file}).output, "0\n");
   const Ended rounded = run({"pairs", "--count", file, "--precision", "float"});
   EXPECT_EQ(rounded.output, "1\n");
-  EXPECT_THAT(rounded.errors, HasSubstr("1 pair, exact in float"));
+  EXPECT_THAT(rounded.errors,
+              HasSubstr("1 pair, exact in float, to which 2 of 8 coordinates were rounded; "));
 }
 
 TEST(PairsVerb, JoinsFloatsWithDoublesAsDoubles) {

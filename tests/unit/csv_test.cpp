@@ -17,6 +17,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class CsvTable : public Files {
  protected:
@@ -131,6 +132,8 @@ TEST_F(CsvTable, TakesTheColumnsThatTheUserNames) {
   EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected);
   EXPECT_EQ(boxes_of("id,p,q,r,s,t,more\na,1,2,b,5,8,0\nc,-1,-2,d,0,1e10,0\n", options), expected)
       << "with names of its own, and a column behind those named";
+  options.columns = "id,min_x,min_y,colour,max_x,max_y";
+  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected) << "as in a header";
   options.columns = "min_y,min_x,max_y,max_x";
   EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n2,1,8,5\n-2,-1,1e10,0\n", options), expected)
       << "whatever the table says";
@@ -141,7 +144,7 @@ TEST_F(CsvTable, TakesTheColumnsThatTheUserNames) {
 
   EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,maxy,-"),
               AllOf(HasSubstr("bad.csv:1: 4 columns"), HasSubstr("the 5 that --columns names")));
-  EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,colour"), HasSubstr("--columns names 'colour'"));
+  EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,colour"), HasSubstr("column 'min_y' alone"));
   EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,-"), HasSubstr("column 'min_y' alone"));
   EXPECT_THAT(refusal_of("1,2,3,four\n", "min_x,min_y,max_x,max_y"),
               HasSubstr("bad.csv:1: column max_y is 'four'"))
@@ -173,8 +176,48 @@ TEST_F(CsvTable, RoundsOnceToThePrecisionAskedFor) {
   // Just above the middle of two floats; as a double it is that middle, which rounds to the other one.
   const std::string text = "1.00000005960464480000001,0,2,2\n";
   EXPECT_EQ((history_of<2, float>(put("a.csv", text)).boxes[0].min[0]), 1.00000012F);
-  EXPECT_EQ((history_of<2, double>(put("a.csv", "0.1,0,16777217,9007199254740993\n")).boxes),
+  EXPECT_EQ((history_of<2, double>(put("a.csv", "0.1,0,16777217,9007199254740993.0\n")).boxes),
             (std::vector<DoubleBox2>{{{0.1, 0}, {16777217, 9007199254740992}}}));
+}
+
+TEST_F(CsvTable, RefusesWholeNumbersThatADoubleDoesNotHold) {
+  for (const std::string number :
+       {"9007199254740993", "+9007199254740993", "\"9007199254740993\"", "123456789012345678901234567890"})
+    EXPECT_THAT(refusal_of("0,0,1,1\n0,0,1," + number + "\n"),
+                AllOf(HasSubstr("bad.csv:2: column max_y is '"), HasSubstr("that a double holds exactly")));
+  EXPECT_EQ(boxes_of("-9007199254740994,-18446744073709551616,0009007199254740992,9007199254740993e0\n"),
+            (std::vector<DoubleBox2>{
+                {{-9007199254740994, -18446744073709551616.0}, {9007199254740992, 9007199254740992}}}));
+  EXPECT_EQ((history_of<2, float>(put("a.csv", "0,0,1,9007199254740993\n")).boxes),
+            (std::vector<Box2>{{{0, 0}, {1, 9007199254740992.0F}}}))
+      << "floats are asked for";
+}
+
+TEST_F(CsvTable, CountsFramesFromZeroAndSaysSo) {
+  const std::string names = "frame,box,min_x,min_y,max_x,max_y\n";
+  EXPECT_THAT(refusal_of(names + "1,0,0,0,1,1\n2,0,0,0,1,1\n"),
+              AllOf(HasSubstr("bad.csv:2: column frame is '1'"), HasSubstr("expected 0")));
+  EXPECT_TRUE((history_of<2, double>(put("a.csv", names + "0,,,,,\n1,0,0,0,1,1\n")).boxes.empty()));
+}
+
+TEST_F(CsvTable, RefusesThePointsOfTrianglesAsBounds) {
+  for (const std::string header : {"x0,y0,x1,y1,x2,y2", "x1,y1,x2,y2,x3,y3", "x1,y1,x2,y2,x3,y3,x4,y0"})
+    EXPECT_THAT(refusal_of(header + "\n"), HasSubstr("may be those of 3 points")) << header;
+  EXPECT_EQ(boxes_of("x1,y1,x2,y2,x3,min_x,max_x,min_y,max_y\n9,9,9,9,9,1,5,2,8\n"),
+            (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+}
+
+TEST_F(CsvTable, TakesATopWithAHeightAsScreensDo) {
+  EXPECT_EQ(boxes_of("left,top,width,height\n1,2,4,6\n"), (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+  EXPECT_EQ(boxes_of("left,top,width,height,bottom\n1,8,4,6,2\n"),
+            (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+}
+
+TEST_F(CsvTable, SaysWhatCannotBeALineOrABound) {
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y\r1,2,5,8\r"),
+              AllOf(HasSubstr("bad.csv:1: a carriage return"), HasSubstr("line feed")));
+  EXPECT_THAT(refusal_of("cx,cy,w,h\ninf,0,inf,1\n"),
+              AllOf(HasSubstr("bad.csv:2: infinite numbers"), Not(HasSubstr("nan"))));
 }
 
 TEST_F(CsvTable, TakesNumbersTooSmallForTheNearestAndRefusesThoseTooLarge) {
@@ -182,7 +225,7 @@ TEST_F(CsvTable, TakesNumbersTooSmallForTheNearestAndRefusesThoseTooLarge) {
   EXPECT_EQ(boxes_of("1e-400,-1e-400,INF,Infinity\n"),
             (std::vector<DoubleBox2>{{{0, 0}, {infinity, infinity}}}));
   EXPECT_THAT(refusal_of("0,0,1,1e400\n"),
-              HasSubstr("column max_y is '1e400'; expected a number that a float"));
+              HasSubstr("column max_y is '1e400'; expected a number that a double"));
   for (const std::string text : {"nan", "0x10", "1e", "--1", "+-1", "+", "1,5", "1 5", "1e5e5", "one"})
     EXPECT_THAT(refusal_of("min_x;min_y;max_x;max_y\n0;0;9;" + text + "\n"),
                 HasSubstr("bad.csv:2: column max_y is '" + text + "'"));

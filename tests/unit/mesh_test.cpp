@@ -83,6 +83,15 @@ TEST_F(MeshTest, KeepsTheVerticesOfAnObjFile) {
   EXPECT_EQ(boxes_of(file, "edges").size(), 7u);
 }
 
+TEST_F(MeshTest, OfDoublesSaysHowManyAreRounded) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0.5 16777217 0.1\n1 0 0.1\n0 1 0.1\n3 0 1 2\n";
+  EXPECT_THAT(file_scene(put("a.ply", text)).warning,
+              HasSubstr("a.ply: 1 of 9 coordinates was rounded to float, in which meshes are read"));
+}
+
 TEST_F(MeshTest, IsRecognisedByContentWhateverItIsCalled) {
   const std::string obj = "# made by hand\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(boxes_of(put("obj.dat", obj), "").size(), 1u);

@@ -85,6 +85,7 @@ TEST(Ply, IsTheSameInEveryEncoding) {
     EXPECT_THAT(mesh.face(0), ElementsAre(0, 1, 2));
     EXPECT_THAT(mesh.face(1), ElementsAre(3, 2, 1, 0));
     EXPECT_TRUE(mesh.has_own_vertices);
+    EXPECT_EQ(mesh.rounded, 3u) << "0.1, 0.2 and 0.3 are doubles";
   }
 }
 

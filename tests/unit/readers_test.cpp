@@ -109,6 +109,15 @@ TEST_F(Csv, TakesInfinitiesForAnAbsentBox) {
   EXPECT_EQ(read_file(file).in_2d->boxes, (std::vector<Box2>(2, absent_box<2>())));
 }
 
+TEST_F(Csv, OfDoublesSaysAsASceneHowManyCoordinatesAreRounded) {
+  const Scene rounded = file_scene(put("a.csv",
+                                       "frame,box,min_x,min_y,max_x,max_y\n"
+                                       "0,0,0,0,16777217,1\n1,0,0,0,0.1,16777219\n"));
+  EXPECT_THAT(rounded.warning,
+              AllOf(HasSubstr("a.csv: 3 of 8 coordinates were rounded to float"), HasSubstr("`pairs`")));
+  EXPECT_EQ(file_scene(put("b.csv", "0,0,0.5,16777216\n")).warning, "");
+}
+
 TEST_F(Csv, IsRecognisedByItsFirstLineWhateverItIsCalled) {
   EXPECT_TRUE(read_file(put("boxes.txt", "frame,box,min_x,min_y,max_x,max_y\n0,0,1,1,2,2\n")).in_2d);
 }
@@ -128,7 +137,7 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(plain + "0,0,1,one\n"),
               AllOf(HasSubstr("bad.csv:3: column max_y is 'one'"), HasSubstr("expected a number")));
   EXPECT_THAT(refusal_of(plain + "0,nan,1,1\n"), HasSubstr("column min_y is 'nan'"));
-  EXPECT_THAT(refusal_of(plain + "0,1e99,1,1\n"), HasSubstr("column min_y is '1e99'"));
+  EXPECT_THAT(refusal_of(plain + "0,1e999,1,1\n"), HasSubstr("column min_y is '1e999'"));
   EXPECT_THAT(refusal_of(plain + "0,,1,1\n"), HasSubstr("column min_y is ''"));
   EXPECT_THAT(refusal_of(plain + "0,0 0,1,1\n"), HasSubstr("column min_y is '0 0'"));
   EXPECT_THAT(refusal_of(plain + "2,0,1,1\n"),
