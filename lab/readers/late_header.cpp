@@ -1,13 +1,10 @@
 // Headers written last: by going back, or by waiting.
 #include "lab/readers/late_header.hpp"
 
-#include <iostream>
-
 namespace broadside::lab {
 
-LateHeader::LateHeader(std::ostream& stream, std::size_t header_bytes) : stream_(stream) {
-  // Standard output may append to a file: it could go back, but would still write at the end.
-  if (stream.rdbuf() != std::cout.rdbuf()) begin_ = stream.tellp();
+LateHeader::LateHeader(std::ostream& stream, std::size_t header_bytes)
+    : stream_(stream), begin_(stream.tellp()) {
   // A stream that is already broken has no place either, and is not to be mended.
   if (begin_ != std::ostream::pos_type(-1))
     stream.write(std::string(header_bytes, '\0').data(), static_cast<std::streamsize>(header_bytes));

@@ -7,10 +7,14 @@
 
 namespace broadside::lab {
 
-/// Writes a file by calling `write` with a stream beside it, which takes its place once it is whole and on
-/// the disk. A path that is no regular file, such as /dev/stdout, is written directly, and so is standard
-/// output, where the path is "-". Throws FileError, or what `write` throws; the old file, if there was one,
+/// Writes a file by calling `write` with a stream beside it, which takes its place once it is whole, with the
+/// old file's permissions if there was one. What is_written_directly() is instead written as it comes, and
+/// the stream then cannot be moved. Throws FileError, or what `write` throws; the old file, if there was one,
 /// is then untouched and nothing is left beside it.
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Whether a path is no file that can be replaced: standard output ("-"), a descriptor of this process such
+/// as /dev/stdout or /dev/fd/3, whose file may be somebody else's as well, a device or a pipe.
+bool is_written_directly(const std::filesystem::path& path);
 
 }  // namespace broadside::lab

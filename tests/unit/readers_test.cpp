@@ -334,6 +334,22 @@ TEST_F(WriteFile, WritesThroughALink) {
   EXPECT_EQ(text_of("a.txt"), "new");
 }
 
+TEST_F(WriteFile, WritesWhereALinkPointsThatPointsNowhereYet) {
+  std::filesystem::create_symlink("a.txt", path("link.txt"));
+  write_file(path("link.txt"), [](std::ostream& stream) { stream << "new"; });
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.txt")));
+  EXPECT_EQ(text_of("a.txt"), "new");
+}
+
+TEST_F(WriteFile, KeepsThePermissionsOfTheOldFile) {
+  put("a.txt", "old");
+  for (const auto wanted : {std::filesystem::perms(0600), std::filesystem::perms(0664)}) {
+    std::filesystem::permissions(path("a.txt"), wanted);
+    write_file(path("a.txt"), [](std::ostream& stream) { stream << "new"; });
+    EXPECT_EQ(std::filesystem::status(path("a.txt")).permissions(), wanted);
+  }
+}
+
 TEST_F(WriteFile, SaysWhatWentWrong) {
   const auto refusal_of = [](const std::filesystem::path& file) -> std::string {
     try {
