@@ -103,8 +103,8 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
   options.finished = [&](const lab::CaseResult& result) {
     progress.clear();
-    fmt::print("{}\n", lab::table_of(result));
-    std::fflush(stdout);
+    print(lab::table_of(result) + '\n');
+    flush_output();
   };
 
   on_signal(OnSignal::note_then_end);
@@ -112,7 +112,7 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
-  fmt::print("{}", lab::summary_of(comparison));
+  print(lab::summary_of(comparison));
   if (!arguments.json.empty() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::note);
     const std::string text = lab::json_of(comparison, command);

@@ -7,14 +7,12 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
-#include "lab/numbers.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -39,11 +37,7 @@ Exit run(const ConvertArguments& arguments) {
       lab::convert(std::move(file), arguments.output, format, precision, end_if_interrupted);
   if (!converted.warning.empty()) say(converted.warning);
   if (converted.rounding.rounded > 0) say(converted.rounding.text());
-  say(fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
-                  arguments.output == "-" ? "standard output" : arguments.output,
-                  lab::counted(converted.frames, "frame", "frames"),
-                  lab::counted(converted.boxes, "box", "boxes"), converted.dimension,
-                  name(converted.precision), format.name));
+  say(lab::text_of(converted, arguments.output, format));
   return Exit::fine;
 }
 
@@ -53,12 +47,14 @@ Verb add_convert(CLI::App& program) {
   const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* const verb = program.add_subcommand(
       "convert",
-      "Writes the boxes of a file in another format, frame by frame; `broadside list` tells which.");
+      "Writes the boxes of a file in another format, frame by frame; `broadside list` tells which. The "
+      "output may be the input: it is replaced once the new file is whole.");
   verb->add_option("file", arguments->file, "The file to read; - is standard input")->required();
   verb->add_option("-o,--output", arguments->output,
                    "The file to write, in the format that its extension says; - is standard output")
       ->required();
-  verb->add_option("--to", arguments->to, "The format to write, whatever the extension")->type_name("NAME");
+  verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
+      ->type_name("NAME");
   add_input_options(*verb, arguments->input);
   return [arguments] { return run(*arguments); };
 }

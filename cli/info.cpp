@@ -3,7 +3,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
@@ -23,7 +22,7 @@ Exit run(const InfoArguments& arguments) {
   on_signal(OnSignal::end);
   const lab::FileInfo info = lab::file_info(arguments.file, read_options(arguments.input, arguments.file));
   if (!info.warning.empty()) say(info.warning);
-  fmt::print("{}", lab::text_of(info));
+  print(lab::text_of(info));
   return Exit::fine;
 }
 

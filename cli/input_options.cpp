@@ -28,8 +28,9 @@ lab::Progress progress_of(const std::string& path) {
 }  // namespace
 
 void add_file_options(CLI::App& verb, InputOptions& options) {
-  verb.add_option("--format", options.format,
-                  "The format of the input (standard: told by its content and name)")
+  verb.add_option(
+          "--format", options.format,
+          "The format of the input, by its name or an extension (standard: told by its content and name)")
       ->type_name("NAME");
   verb.add_option("--boxes", options.boxes,
                   "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "

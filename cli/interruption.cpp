@@ -1,4 +1,4 @@
-// What the program does at Ctrl-C (SIGINT) and at SIGTERM.
+// What the program does at Ctrl-C (SIGINT), at SIGTERM and at SIGHUP.
 #include "cli/interruption.hpp"
 
 #include <atomic>
@@ -14,27 +14,39 @@ namespace {
 
 std::atomic<bool> noted = false;
 std::atomic<OnSignal> reaction = OnSignal::end;
+std::atomic<bool> is_on_terminal = false;  // where a line of progress may stand
 static_assert(std::atomic<OnSignal>::is_always_lock_free, "a signal's handler must not wait");
+
+/// Nothing can be done about a message that is not taken.
+void write_message(std::string_view text) {
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+}
 
 void handle(int) {
   const bool again = noted.exchange(true);
   const OnSignal what = reaction;
-  if (what == OnSignal::end || (what == OnSignal::note_then_end && again))
+  if (what == OnSignal::end || (what == OnSignal::note_then_end && again)) {
+    write_message(is_on_terminal ? "\r\x1b[Kbroadside: interrupted\n" : "broadside: interrupted\n");
     _exit(static_cast<int>(Exit::interrupted));
-  if (what == OnSignal::note_then_end) {
-    constexpr std::string_view text =
-        "\nbroadside: stopping after the call that is under way; again stops at once\n";
-    // Nothing can be done about a message that is not taken.
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
   }
+  if (what == OnSignal::note_then_end)
+    write_message("\nbroadside: stopping after the call that is under way; again stops at once\n");
 }
 
 }  // namespace
 
 void on_signal(OnSignal what) {
   reaction = what;
+  is_on_terminal = isatty(STDERR_FILENO) != 0;
   std::signal(SIGINT, handle);
   std::signal(SIGTERM, handle);
+  // Under nohup it is to go on.
+  if (std::signal(SIGHUP, handle) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
+void ignore_write_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() noexcept { return noted; }

@@ -1,4 +1,4 @@
-// What the program does at Ctrl-C (SIGINT) and at SIGTERM.
+// What the program does at Ctrl-C (SIGINT), at SIGTERM and at SIGHUP.
 #pragma once
 
 #include <exception>
@@ -15,6 +15,10 @@ enum class OnSignal {
 
 /// From here on, signals do this.
 void on_signal(OnSignal what);
+
+/// Lets a write to a closed pipe, or beyond the greatest size of a file, fail instead of ending the program,
+/// so that it is reported and nothing half-written is left.
+void ignore_write_signals();
 
 /// Whether a signal was noted.
 bool interrupted() noexcept;

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/readers/format.hpp"
@@ -38,22 +39,22 @@ std::string values_of(const Tunable& tunable) {
 /// text begins where the first does.
 void print_wrapped(const std::string& begin, std::string_view text) {
   constexpr std::size_t widest = 110;
-  fmt::print("{}", begin);
+  print(begin);
   std::size_t column = begin.size();
   std::string_view space;
   while (!text.empty()) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(word.size() + 1, text.size()));
     if (!space.empty() && column + 1 + word.size() > widest) {
-      fmt::print("\n{:{}}", "", begin.size());
+      print(fmt::format("\n{:{}}", "", begin.size()));
       column = begin.size();
       space = "";
     }
-    fmt::print("{}{}", space, word);
+    print(fmt::format("{}{}", space, word));
     column += space.size() + word.size();
     space = " ";
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 /// An algorithm or a scene: a line for itself and one for each of its tunables.
@@ -76,14 +77,14 @@ Entry entry_of(const auto& described) {
           described.summary, described.tunables};
 }
 
-void print(std::string_view title, const std::vector<Entry>& entries) {
+void print_entries(std::string_view title, const std::vector<Entry>& entries) {
   std::size_t name_width = 0;
   std::size_t kind_width = 0;
   for (const Entry& entry : entries) {
     name_width = std::max(name_width, entry.name.size());
     kind_width = std::max(kind_width, entry.kind.size());
   }
-  fmt::print("{}\n", title);
+  print(fmt::format("{}\n", title));
   for (const Entry& entry : entries) {
     print_wrapped(fmt::format("  {:<{}}  {:<{}}  {:<5}  ", entry.name, name_width, entry.kind, kind_width,
                               entry.dimensions),
@@ -94,22 +95,22 @@ void print(std::string_view title, const std::vector<Entry>& entries) {
           fmt::format("{} ({}; standard {})", tunable.summary, values_of(tunable), tunable.standard));
     }
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 Exit run() {
   const lab::Catalogue catalogue;
   std::vector<Entry> algorithms;
   for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
-  print("Algorithms", algorithms);
+  print_entries("Algorithms", algorithms);
 
   std::vector<Entry> scenes;
   for (const lab::Scene& scene : lab::scenes()) scenes.push_back(entry_of(scene));
   for (const lab::Scene& scene : lab::missing_scenes())
     scenes.push_back({scene.name, std::string(name(scene.kind)), "", "not there: " + scene.missing, {}});
-  print("Scenes", scenes);
+  print_entries("Scenes", scenes);
 
-  fmt::print("File formats\n");
+  print("File formats\n");
   for (const lab::Format& format : lab::formats()) {
     const std::string_view access = !format.create ? "read" : !format.open ? "written" : "read, written";
     print_wrapped(

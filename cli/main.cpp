@@ -1,7 +1,6 @@
 // The command-line program: reads the verb and its options, runs it, and turns what it throws into an exit
 // status and a message.
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -70,12 +69,13 @@ Exit run(const std::vector<std::string>& arguments) {
 
 int main(int count, char** values) {
   const std::vector<std::string> arguments(values, values + count);
+  broadside::cli::ignore_write_signals();
   try {
     const Exit exit = run(arguments);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw broadside::cli::Unusable("standard output cannot be written; expected it open and not full");
+    broadside::cli::flush_output();
     return static_cast<int>(exit);
-  } catch (const broadside::cli::Interruption&) {
+  } catch (const broadside::cli::Interruption& interruption) {
+    broadside::cli::say(interruption.what());
     return static_cast<int>(Exit::interrupted);
   } catch (const std::bad_alloc&) {
     broadside::cli::say("out of memory; expected fewer boxes, frames or pairs");

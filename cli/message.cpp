@@ -1,11 +1,23 @@
-// What the program says on stderr.
+// What the program says on stderr, and prints.
 #include "cli/message.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include <fmt/format.h>
 
+#include "cli/unusable.hpp"
+
 namespace broadside::cli {
+namespace {
+
+[[noreturn]] void refuse_output() {
+  throw Unusable(fmt::format("standard output: cannot be written: {}",
+                             errno != 0 ? std::strerror(errno) : "the stream failed"));
+}
+
+}  // namespace
 
 std::string printable(std::string_view text) {
   std::string shown;
@@ -23,6 +35,20 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-void say(std::string_view text) { fmt::print(stderr, "broadside: {}\n", printable(text)); }
+void say(std::string_view text) {
+  const std::string line = fmt::format("broadside: {}\n", printable(text));
+  // Nothing can be done about a message that is not taken.
+  std::fputs(line.c_str(), stderr);
+}
+
+void print(std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output();
+}
+
+void flush_output() {
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) refuse_output();
+}
 
 }  // namespace broadside::cli

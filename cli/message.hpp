@@ -1,4 +1,4 @@
-// What the program says on stderr.
+// What the program says on stderr, and prints.
 #pragma once
 
 #include <string>
@@ -12,5 +12,11 @@ std::string printable(std::string_view text);
 
 /// Writes "broadside: TEXT" and a line's end to stderr, the text made printable.
 void say(std::string_view text);
+
+/// Prints text to standard output. Throws Unusable where it is not taken.
+void print(std::string_view text);
+
+/// Throws Unusable if not all that was printed has been taken.
+void flush_output();
 
 }  // namespace broadside::cli

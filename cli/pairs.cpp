@@ -36,6 +36,7 @@ struct PairsArguments {
   std::string algorithm{default_algorithm};
   std::string frame;
   std::string output = "-";
+  std::string to;
   std::string order = "sorted";
   bool counts = false;
   bool is_swept = false;
@@ -82,9 +83,14 @@ void check(const PairsArguments& arguments) {
   // Known before the files are read.
   if (lab::Catalogue().select(arguments.algorithm).size() != 1)
     throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
-  if (arguments.counts) return;
-  lab::pair_format_of(arguments.output);
+  if (arguments.counts) {
+    if (arguments.output != "-" || !arguments.to.empty())
+      throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
+    return;
+  }
+  lab::pair_format_of(arguments.output, arguments.to);
   check_writable("-o", arguments.output);
+  for (const std::string& file : arguments.files) check_is_other_file("-o", arguments.output, file);
 }
 
 lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, lab::Rounding& rounding) {
@@ -193,7 +199,8 @@ Exit run(const PairsArguments& arguments) {
   if (arguments.counts) {
     PairCounter counter;
     join.find(counter);
-    fmt::print("{}\n", counter.count());
+    print(fmt::format("{}\n", counter.count()));
+    flush_output();
     say(join.text(counter.count()));
     return Exit::fine;
   }
@@ -207,16 +214,25 @@ Exit run(const PairsArguments& arguments) {
   std::uint64_t count = sorted.size();
   on_signal(OnSignal::note);
   lab::write_file(arguments.output, [&](std::ostream& stream) {
-    lab::PairFile file(stream, lab::pair_format_of(arguments.output), join.is_between());
-    PairFunction found([&](std::span<const Pair> pairs) {
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between());
+    const auto put = [&](std::span<const Pair> pairs) {
       end_if_interrupted();
-      count += pairs.size();
       file.write(pairs);
-    });
-    if (streams)
+    };
+    if (streams) {
+      PairFunction found([&](std::span<const Pair> pairs) {
+        count += pairs.size();
+        put(pairs);
+      });
       join.find(found);
-    else
-      file.write(sorted);
+    } else {
+      constexpr std::size_t pairs_a_piece = std::size_t{1} << 16;
+      for (std::span<const Pair> rest = sorted; !rest.empty();) {
+        const std::size_t size = std::min(rest.size(), pairs_a_piece);
+        put(rest.first(size));
+        rest = rest.subspan(size);
+      }
+    }
     file.finish();
   });
   say(join.text(count));
@@ -240,8 +256,9 @@ Verb add_pairs(CLI::App& program) {
                    "The frame of a file whose boxes move, counted from 0 (standard: the first)");
   verb->add_option("-o,--output", arguments->output,
                    "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
-                   "as CSV")
+                   "as CSV unless --to says otherwise")
       ->capture_default_str();
+  verb->add_option("--to", arguments->to, "csv or npy, whatever the extension")->type_name("NAME");
   verb->add_option("--order", arguments->order,
                    "sorted: by the first box, then the second, whatever the algorithm (takes 8 bytes a "
                    "pair); found: written as they are found, in an order fixed by boxes and algorithm")

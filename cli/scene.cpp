@@ -16,6 +16,7 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/convert.hpp"
 #include "lab/readers/format.hpp"
 
 namespace broadside::cli {
@@ -61,7 +62,9 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
   auto frames =
       std::make_unique<lab::HistoryReader<D, float>>(lab::make_history<D>(named.scene, named.spec, request));
   on_signal(OnSignal::note);
-  lab::write_frames(std::move(frames), arguments.output, format);
+  const lab::Converted written = lab::convert({arguments.scene, &format, std::move(frames)}, arguments.output,
+                                              format, std::nullopt, end_if_interrupted);
+  say(lab::text_of(written, arguments.output, format));
 }
 
 Exit run(const SceneArguments& arguments) {
@@ -76,7 +79,7 @@ Exit run(const SceneArguments& arguments) {
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   dimension == 2 ? write<2>(arguments, named, format) : write<3>(arguments, named, format);
-  return interrupted() ? Exit::interrupted : Exit::fine;
+  return Exit::fine;
 }
 
 }  // namespace
@@ -90,7 +93,8 @@ Verb add_scene(CLI::App& program) {
   verb->add_option("-o,--output", arguments->output,
                    "The file, in the format that its extension says; - is standard output")
       ->required();
-  verb->add_option("--to", arguments->to, "The format to write, whatever the extension")->type_name("NAME");
+  verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
+      ->type_name("NAME");
   verb->add_option("-n", arguments->boxes,
                    fmt::format("Number of boxes, such as 1000, 100k or 1e6 (standard: {})", standard_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)");

@@ -70,9 +70,16 @@ void check_writable(const std::string& option, const std::string& path) {
     throw Unusable(fmt::format("{} is '{}', but there is no folder '{}'; expected one that is there", option,
                                path, folder.string()));
   if (!std::filesystem::exists(path, ignored) && access(folder.c_str(), W_OK) != 0)
+    throw Unusable(fmt::format(
+        "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,
+        path, folder.string()));
+}
+
+void check_is_other_file(const std::string& option, const std::string& path, const std::string& input) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(input, ignored) && std::filesystem::equivalent(path, input, ignored))
     throw Unusable(
-        fmt::format("{} is '{}', but nothing can be written to '{}'; expected a folder that is ours", option,
-                    path, folder.string()));
+        fmt::format("{} is '{}', which is the input '{}'; expected another file", option, path, input));
 }
 
 }  // namespace broadside::cli

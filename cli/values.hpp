@@ -28,4 +28,7 @@ std::string is_seed(const std::string& text);
 /// output ("-") is not looked at.
 void check_writable(const std::string& option, const std::string& path);
 
+/// Throws Unusable if what is to be written at `path` is the file at `input`, whatever the paths.
+void check_is_other_file(const std::string& option, const std::string& path, const std::string& input);
+
 }  // namespace broadside::cli

@@ -32,7 +32,9 @@ Exit run(const VerifyArguments& arguments) {
     throw Unusable(
         fmt::format("--budget is {}; expected a number of seconds above 0", options.budget_seconds));
   if (!arguments.counterexample.empty()) {
+    if (arguments.counterexample == "-") throw Unusable("--counterexample is '-'; expected a file");
     check_writable("--counterexample", arguments.counterexample);
+    check_is_other_file("--counterexample", arguments.counterexample, arguments.file);
     lab::writable_format(arguments.counterexample);
     options.counterexample = arguments.counterexample;
   }
@@ -46,7 +48,7 @@ Exit run(const VerifyArguments& arguments) {
     const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
     progress.clear();
     if (!verification.warning.empty()) say(verification.warning);
-    fmt::print("{}", lab::text_of(verification));
+    print(lab::text_of(verification));
     return verification.all_verified() ? Exit::fine : Exit::failed;
   } catch (const lab::Stopped&) {
     throw Interruption();

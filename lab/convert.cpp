@@ -8,6 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "lab/numbers.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -65,6 +69,13 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
       from.frames);
   write_frames(with_precision(std::move(counted), converted.precision), path, format);
   return converted;
+}
+
+std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format) {
+  return fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
+                     path == "-" ? "standard output" : path.string(),
+                     counted(converted.frames, "frame", "frames"), counted(converted.boxes, "box", "boxes"),
+                     converted.dimension, name(converted.precision), format.name);
 }
 
 }  // namespace broadside::lab

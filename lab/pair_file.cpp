@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "lab/readers/format.hpp"
+#include "lab/readers/write_file.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -20,13 +21,14 @@ void append(std::string& text, BoxId id, char end) {
 
 }  // namespace
 
-PairFormat pair_format_of(const std::filesystem::path& path) {
+PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name) {
+  if (name == "csv") return PairFormat::csv;
+  if (name == "npy") return PairFormat::npy;
+  if (!name.empty())
+    throw FileError(fmt::format("{}: '{}' is no format for pairs; expected csv or npy", path.string(), name));
   const std::string extension = path.extension().string();
-  std::error_code ignored;
-  const bool is_device =
-      std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
   if (extension == ".npy") return PairFormat::npy;
-  if (path == "-" || extension == ".csv" || (is_device && extension.empty())) return PairFormat::csv;
+  if (extension == ".csv" || (extension.empty() && is_written_directly(path))) return PairFormat::csv;
   throw FileError(fmt::format("{}: extension '{}' is of no format for pairs; expected .csv or .npy",
                               path.string(), extension));
 }

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "broadside/pair.hpp"
 
@@ -16,9 +17,9 @@ namespace broadside::lab {
 
 enum class PairFormat : std::uint8_t { csv, npy };
 
-/// The format that a path's extension says; CSV for standard output ("-") and for what is no regular file.
-/// Throws FileError.
-PairFormat pair_format_of(const std::filesystem::path& path);
+/// The format of this name, csv or npy, or, where `name` is empty, that which a path's extension says; CSV
+/// for what is_written_directly() and has none. Throws FileError.
+PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name = {});
 
 /// Writes pairs to a stream, as they come, and keeps none; but for NumPy's format where the stream cannot be
 /// moved back to the array's header, as in a pipe.

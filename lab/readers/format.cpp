@@ -28,6 +28,12 @@ bool has_extension(const Format& format, const std::string& extension) {
   return std::ranges::find(format.extensions, extension) != format.extensions.end();
 }
 
+/// Whether a user means this format: by its name, or by an extension, whose dot may be left out.
+bool is_called(const Format& format, std::string_view name) {
+  return format.name == name ||
+         has_extension(format, extension_of(fmt::format("file{}{}", name.starts_with('.') ? "" : ".", name)));
+}
+
 bool can_be_read(const Format& format) { return bool(format.open) || !format.missing.empty(); }
 
 bool can_be_written(const Format& format) { return bool(format.create); }
@@ -47,7 +53,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   const std::string_view name = options.format;
   const std::string_view begin = input.beginning();
   for (const Format& format : formats()) {
-    const bool is_it = name.empty() ? format.recognises(begin, input.extension()) : format.name == name;
+    const bool is_it = name.empty() ? format.recognises(begin, input.extension()) : is_called(format, name);
     if (!is_it) continue;
     if (format.missing.empty()) return format;
     throw FileError(fmt::format("{}: {}", input.name(), format.missing));
@@ -159,8 +165,13 @@ const Format& writable_format(const std::filesystem::path& path, std::string_vie
   const std::string extension = extension_of(path);
   for (const Format& format : formats()) {
     if (!can_be_written(format)) continue;
-    if (name.empty() ? has_extension(format, extension) : format.name == name) return format;
+    if (name.empty() ? has_extension(format, extension) : is_called(format, name)) return format;
   }
+  if (name.empty() && path == "-")
+    throw FileError(
+        fmt::format("standard output has no extension that says its format; expected --to FORMAT, "
+                    "one of: {}",
+                    listed(can_be_written)));
   const std::string found = name.empty() ? fmt::format("extension '{}' is of no format", extension)
                                          : fmt::format("'{}' is no format", name);
   throw FileError(fmt::format("{}: {} that can be written; expected one of: {}", path.string(), found,

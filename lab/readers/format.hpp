@@ -97,8 +97,8 @@ struct FileContent {
 /// Reads a file whole. Throws as open_file and its reader do.
 FileContent read_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The format in which a file is written: that of this name, or, where `name` is empty, that of the path's
-/// extension. Throws FileError naming those that can be written.
+/// The format in which a file is written: that of this name or extension, or, where `name` is empty, that of
+/// the path's extension. Throws FileError naming those that can be written.
 const Format& writable_format(const std::filesystem::path& path, std::string_view name = {});
 
 /// Writes a file of frames, or to standard output where the path is "-". The file is whole or not there, and

@@ -24,7 +24,7 @@ class LateHeader {
  private:
   std::ostream& stream_;
   std::ostream::pos_type begin_;  // where the header goes; -1 where the stream cannot go back
-  std::string kept_;                   // what follows the header, where it must wait
+  std::string kept_;              // what follows the header, where it must wait
 };
 
 }  // namespace broadside::lab

@@ -1,11 +1,15 @@
 // What the program says of itself, and of arguments that it cannot use.
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/version.hpp"
@@ -106,6 +110,21 @@ TEST(Output, ThatCannotBeWrittenIsAnError) {
   const std::string to_nowhere = " --help > /dev/full 2> /dev/null";
   const int status = std::system((BROADSIDE_PROGRAM + to_nowhere).c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
+TEST(Signals, EndTheProgramWithALine) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::signal(SIGHUP, SIG_DFL);  // the tests may run where it is ignored
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Process process({"info", pipe});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+    process.signal(signal);
+    const Ended ended = process.wait();
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_EQ(ended.errors, "broadside: interrupted\n");
+  }
 }
 
 }  // namespace

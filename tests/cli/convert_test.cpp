@@ -13,9 +13,11 @@ namespace broadside::cli {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
 const std::string tenths =
     "min_x,min_y,max_x,max_y\n"
@@ -73,6 +75,44 @@ TEST(ConvertVerb, StandsInAPipe) {
   EXPECT_EQ(shell("$BROADSIDE scene lattice -n 9 -o - --to csv | $BROADSIDE pairs - --count").output, "20\n");
 }
 
+TEST(ConvertVerb, TakesAnExtensionAsAFormatsName) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  EXPECT_EQ(run({"convert", file, "--format", ".csv", "--to", "btrace", "-o", folder.file("a")}).status, 0);
+  EXPECT_EQ(run({"pairs", folder.file("a"), "--format", "BTRACE", "--count"}).output, "0\n");
+}
+
+TEST(ConvertVerb, AddsToWhatAnOpenDescriptorAppendsTo) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  const std::string log = folder.put("log.csv", "old\n");
+  for (const std::string device : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
+    const std::string to = " --to csv -o " + device;
+    EXPECT_EQ(shell("$BROADSIDE convert " + file + to + " >> " + log).status, 0) << device;
+    EXPECT_THAT(shell("$BROADSIDE convert " + file + to + " | cat").output, HasSubstr("0.1,0,1,1\n"))
+        << device;
+  }
+  EXPECT_EQ(shell("$BROADSIDE pairs " + file + " -o /dev/fd/3 3>> " + log).status, 0);
+  const std::string text = text_of(log);
+  EXPECT_THAT(text, AllOf(StartsWith("old\n"), EndsWith("2,2,2.5,3.7\nfirst,second\n")));
+  EXPECT_EQ(text.size(), 4 + 3 * run({"convert", file, "--to", "csv", "-o", "-"}).output.size() + 13);
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"boxes.csv", "log.csv"}));
+}
+
+TEST(ConvertVerb, ReplacesItsOwnInputOnceTheOutputIsWhole) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  EXPECT_EQ(run({"convert", file, "-o", file}).status, 0);
+  EXPECT_THAT(text_of(file), HasSubstr("0.1,0,1,1\n"));
+}
+
+TEST(ConvertVerb, LeavesNothingWhereAFileGrowsTooLarge) {
+  const TemporaryFolder folder;
+  const Ended ended = shell("ulimit -f 1; $BROADSIDE scene uniform -n 10000 -o " + folder.file("boxes.csv"));
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
 TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
   const TemporaryFolder folder;
   const std::string good = folder.put("good.csv", tenths);
@@ -88,7 +128,7 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
       {{absent, "-o", folder.file("out.aabbs")}, {"out.aabbs", "box 0 is absent"}},
       {{good, "-o", folder.file("out.ply")}, {"out.ply", "'.ply'", "can be written"}},
       {{good, "-o", folder.file("out.csv"), "--to", "mesh"}, {"'mesh'", "can be written"}},
-      {{good, "-o", "-"}, {"-: extension ''", "csv"}},
+      {{good, "-o", "-"}, {"standard output", "expected --to FORMAT, one of: ", "csv (.csv)"}},
       {{good, "-o", "/dev/full", "--to", "csv"}, {"/dev/full", "No space left"}},
       {{good, "-o", "/nowhere/out.csv"}, {"no folder '/nowhere'"}},
       {{good, "-o", folder.file("out.csv"), "--dimension", "3"}, {"good.csv", "2D"}},
@@ -113,6 +153,13 @@ TEST(SceneVerb, SaysHowManyCoordinatesAreRounded) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.errors,
               HasSubstr("boxes.csv: 2 of 8 coordinates were rounded to float, in which scenes"));
+}
+
+TEST(SceneVerb, SaysWhatItWrote) {
+  const TemporaryFolder folder;
+  const Ended ended = run({"scene", "uniform", "-n", "50", "--frames", "2", "-o", folder.file("a.csv")});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors, HasSubstr("a.csv: 3 frames of 50 boxes in 2D, as floats, in format csv\n"));
 }
 
 TEST(SceneVerb, RefusesOptionsThatTheSceneIgnores) {

@@ -48,6 +48,39 @@ TEST(PairsVerb, OnlyCountsWhereThatIsAsked) {
   EXPECT_EQ(ended.output, "2\n");
 }
 
+TEST(PairsVerb, WritesAnArrayIntoAPipe) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  ASSERT_EQ(run({"pairs", file, "-o", folder.file("pairs.npy")}).status, 0);
+  EXPECT_EQ(shell("$BROADSIDE pairs " + file + " --to npy | cat").output, text_of(folder.file("pairs.npy")));
+}
+
+TEST(PairsVerb, LeavesItsInputAlone) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  std::filesystem::create_symlink(file, folder.file("link.csv"));
+  expect_refused("pairs", {
+                              {{file, "-o", file}, {"-o is '" + file, "the input", "expected another file"}},
+                              {{file, "-o", folder.file("link.csv")}, {"link.csv", "the input '" + file}},
+                              {{file, "-o", folder.file("pairs.csv"), "--count"}, {"-o", "--count"}},
+                              {{file, "--to", "csw"}, {"'csw'", "expected csv or npy"}},
+                          });
+  expect_refused("verify", {{{file, "--counterexample", file}, {"--counterexample", "the input"}}});
+  EXPECT_EQ(text_of(file), four_boxes);
+}
+
+TEST(PairsVerb, SaysTheSameOfAnyOutputThatIsFull) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  for (const std::string& arguments : {"pairs " + file, "pairs --count " + file, "info " + file,
+                                       std::string("list"), std::string("--help")}) {
+    const Ended ended = shell("$BROADSIDE " + arguments + " > /dev/full");
+    EXPECT_EQ(ended.status, 2) << arguments;
+    EXPECT_EQ(ended.errors, "broadside: standard output: cannot be written: No space left on device\n")
+        << arguments;
+  }
+}
+
 TEST(PairsVerb, JoinsTwoFilesAndFindsOnlyWhatIsBetweenThem) {
   const TemporaryFolder folder;
   const std::string right = folder.put("right.csv",
