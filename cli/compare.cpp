@@ -146,7 +146,9 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
   add_file_options(*verb, arguments->input);
   verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
       ->delimiter(',');
-  verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (standard: both)")->delimiter(',');
+  verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (standard: both)")
+      ->delimiter(',')
+      ->check(is_dimension);
   verb->add_option(
           "--moving", arguments->moving,
           "Fractions of the boxes that move, from 0 to 1; moving scenes are tracked, still ones found")

@@ -48,7 +48,8 @@ void add_input_options(CLI::App& verb, InputOptions& options) {
   add_file_options(verb, options);
   verb.add_option("--precision", options.precision,
                   "float or double: coordinates are rounded to it (standard: the input's own)");
-  verb.add_option("--dimension", options.dimension, "2 or 3; in 2, boxes in 3D are seen along the z axis");
+  verb.add_option("--dimension", options.dimension, "2 or 3; in 2, boxes in 3D are seen along the z axis")
+      ->check(is_dimension);
 }
 
 lab::ReadOptions read_options(const InputOptions& options, const std::string& path) {

@@ -38,7 +38,8 @@ Exit run(const std::vector<std::string>& arguments) {
   program.set_version_flag("--version", "broadside " BROADSIDE_VERSION);
   program.require_subcommand(1);
   program.footer(
-      "Exit status: 0 fine, 1 a verification failed, 2 unusable arguments or input, 130 interrupted.");
+      "Exit status: 0 fine, 1 a verification failed or nothing was verified, 2 unusable arguments or input, "
+      "130 interrupted.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
       {"compare", broadside::cli::add_compare(program, arguments)},
       {"pairs", broadside::cli::add_pairs(program)},

@@ -147,8 +147,10 @@ class Join {
     if (arguments_.is_swept) sets = fmt::format("{} to {}: ", arguments_.files[0], arguments_.files[1]);
     std::string_view separator;
     for (const lab::FrameOfFile& set : sets_) {
+      const std::size_t absent = lab::absent_count(set.boxes);
       sets +=
-          fmt::format("{}{} ({})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"));
+          fmt::format("{}{} ({}{})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"),
+                      absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
     const lab::AnyBoxes& boxes = sets_[0].boxes;

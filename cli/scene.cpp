@@ -97,7 +97,8 @@ Verb add_scene(CLI::App& program) {
       ->type_name("NAME");
   verb->add_option("-n", arguments->boxes,
                    fmt::format("Number of boxes, such as 1000, 100k or 1e6 (standard: {})", standard_boxes));
-  verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)");
+  verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)")
+      ->check(is_dimension);
   verb->add_option("--moving", arguments->moving, "Fraction of the boxes that move, from 0 to 1");
   verb->add_option(
       "--frames", arguments->frames,

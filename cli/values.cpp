@@ -52,6 +52,13 @@ void check_dimension(int dimension) {
     throw Unusable(fmt::format("--dimension is {}; expected 2 or 3", dimension));
 }
 
+std::string is_dimension(const std::string& text) {
+  int number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && rest == text.data() + text.size();
+  return is_number ? "" : fmt::format("'{}'; expected 2 or 3", text);
+}
+
 std::string is_seed(const std::string& text) {
   constexpr std::size_t most_digits = 18;
   const bool fits = !text.empty() && text.size() <= most_digits &&

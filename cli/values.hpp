@@ -21,6 +21,9 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
 void check_fraction(const std::string& option, double value);
 void check_dimension(int dimension);
 
+/// For CLI11: what is wrong with a dimension that is no number; empty if it is one.
+std::string is_dimension(const std::string& text);
+
 /// What is wrong with a seed, as a check of CLI11's; empty if nothing is.
 std::string is_seed(const std::string& text);
 

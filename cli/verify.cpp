@@ -63,8 +63,7 @@ Verb add_verify(CLI::App& program) {
       "verify",
       "Checks on a file that algorithms find exactly the pairs there are, in every frame, and that they "
       "track what changes between frames; in the precision of the input. Where one fails, writes a small "
-      "file that "
-      "shows it, and ends with status 1.");
+      "file that shows it, and ends with status 1, as where every one is skipped.");
   verb->add_option("file", arguments->file, "The file; - is standard input")->required();
   verb->add_option(
           "--algorithms", arguments->options.algorithms,

@@ -15,6 +15,19 @@
 namespace broadside::lab {
 namespace {
 
+/// The shortest digits that are just this coordinate, in the precision of the file.
+std::string exact(double coordinate, Precision precision) {
+  // Not "-0".
+  coordinate += 0.0;
+  return precision == Precision::float32 ? fmt::format("{}", static_cast<float>(coordinate))
+                                         : fmt::format("{}", coordinate);
+}
+
+/// Four digits, or all before the point.
+std::string shortened(double extent) {
+  return extent >= 1e4 && extent < 1e15 ? fmt::format("{:.0f}", extent) : fmt::format("{:.4g}", extent);
+}
+
 std::string axes_text(const FileInfo& info) {
   Columns table("<>>>>>>>>>");
   table.add({"axis", "from", "to", "extent min", "1 %", "25 %", "50 %", "75 %", "99 %", "max"});
@@ -23,9 +36,9 @@ std::string axes_text(const FileInfo& info) {
     const AxisInfo& along = info.axes[axis];
     const bool is_there = along.min <= along.max;
     std::vector<std::string> row = {std::string(1, names[axis]),
-                                    is_there ? fmt::format("{:.6g}", along.min) : "-",
-                                    is_there ? fmt::format("{:.6g}", along.max) : "-"};
-    for (const double extent : along.extents) row.push_back(fmt::format("{:.4g}", extent));
+                                    is_there ? exact(along.min, info.precision) : "-",
+                                    is_there ? exact(along.max, info.precision) : "-"};
+    for (const double extent : along.extents) row.push_back(info.present > 0 ? shortened(extent) : "-");
     table.add(std::move(row));
   }
   return table.text("  ");
@@ -52,22 +65,25 @@ std::string sizes_text(const FileInfo& info) {
     const double bar = std::ceil(longest_bar * static_cast<double>(bins[i].boxes) / most);
     table.add({range, grouped(bins[i].boxes), std::string(static_cast<std::size_t>(bar), '#')});
   }
-  return table.text("  ");
+  std::string text = table.text("  ");
+  if (info.points > 0) text += fmt::format("  {} left out\n", counted(info.points, "point", "points"));
+  if (info.infinite > 0)
+    text += fmt::format("  {} left out\n", counted(info.infinite, "infinite box", "infinite boxes"));
+  return text;
 }
 
 std::string motion_text(const FileInfo& info) {
   if (info.frames < 2) return {};
   return fmt::format(
-      "  {} after the first: {:.3g} % of the boxes move in one (least {:.3g} %, most {:.3g} %), {} "
-      "are "
-      "added, {} removed\n",
+      "  {} after the first: in a frame, {:.3g} % of the boxes move (median; {:.3g} % to {:.3g} %); "
+      "in all, {} added, {} removed\n",
       counted(info.frames - 1, "frame", "frames"), 100 * info.moving[1], 100 * info.moving[0],
       100 * info.moving[2], grouped(info.added), grouped(info.removed));
 }
 
-/// "all", "none" or "7 of 12".
+/// "all", "none" or "7".
 std::string share(std::uint64_t some, std::uint64_t all) {
-  return some == all ? "all" : some == 0 ? "none" : fmt::format("{} of {}", grouped(some), grouped(all));
+  return some == all ? "all" : some == 0 ? "none" : grouped(some);
 }
 
 std::string coordinates_text(const FileInfo& info) {
@@ -81,7 +97,25 @@ std::string coordinates_text(const FileInfo& info) {
   return text + '\n';
 }
 
+/// Which boxes have no size, or no finite one; empty where all have.
+std::string kinds_text(const FileInfo& info) {
+  std::string text;
+  const auto add = [&text](std::uint64_t count, const std::string& what) {
+    if (count > 0) text += (text.empty() ? "  " : ", ") + what;
+  };
+  add(info.points, counted(info.points, "point", "points"));
+  add(info.flat, grouped(info.flat) + " flat (without extent on some axis, but not on all)");
+  add(info.infinite, grouped(info.infinite) + " infinite");
+  return text.empty() ? text : text + '\n';
+}
+
 std::string reading_text(const FileInfo& info) {
+  // What takes no time has no speed: what is measured is the opening.
+  constexpr std::uint64_t least_bytes = 1'000'000;
+  constexpr std::uint64_t least_boxes = 50'000;
+  if (info.bytes > 0 ? info.bytes < least_bytes : info.boxes < least_boxes)
+    return fmt::format("  read in {}{}\n", duration(info.seconds),
+                       info.bytes > 0 ? ": " + bytes(info.bytes) : "");
   const double seconds = std::max(info.seconds, 1e-9);
   const double boxes_a_second = static_cast<double>(info.boxes) / seconds;
   std::string text = fmt::format("  read in {}: ", duration(info.seconds));
@@ -95,16 +129,13 @@ std::string reading_text(const FileInfo& info) {
 }  // namespace
 
 std::string text_of(const FileInfo& info) {
-  std::string text = fmt::format("{}: {}, {} in {}D, as {}s, {}\n", info.file, info.format,
-                                 counted(info.present, "box", "boxes"), info.dimension, name(info.precision),
-                                 counted(info.frames, "frame", "frames"));
-  if (info.absent > 0)
-    text += fmt::format("  {} without a box\n", counted(info.absent, "place is", "places are"));
+  const std::string absent = info.absent > 0 ? fmt::format(", {} of them absent,", grouped(info.absent)) : "";
+  std::string text = fmt::format("{}: {}, {}{} in {}D, as {}s, {}\n", info.file, info.format,
+                                 counted(info.present + info.absent, "box", "boxes"), absent, info.dimension,
+                                 name(info.precision), counted(info.frames, "frame", "frames"));
   text += motion_text(info);
   text += coordinates_text(info);
-  if (info.points + info.flat + info.infinite > 0)
-    text += fmt::format("  {}, {} without extent on some axis, {} infinite\n",
-                        counted(info.points, "point", "points"), grouped(info.flat), grouped(info.infinite));
+  text += kinds_text(info);
   text += reading_text(info) + '\n' + axes_text(info);
   const std::string sizes = sizes_text(info);
   return sizes.empty() ? text : text + '\n' + sizes;

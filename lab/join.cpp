@@ -1,6 +1,7 @@
 // Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
 #include "lab/join.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -24,8 +25,9 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
     has_more = frames.next(step);
   }
   if (at < frame)
-    throw FileError(fmt::format("{}: frame {} of a file with {}, counted from 0; expected one that it has",
-                                name, frame, counted(at + 1, "frame", "frames")));
+    throw FileError(fmt::format("{}: --frame is {}; expected 0{}, as the file has {}", name, frame,
+                                at == 0 ? "" : fmt::format(" to {}", at),
+                                counted(at + 1, "frame", "frames")));
   return {std::move(name), std::move(boxes), has_more || frame > 0, frames.warning()};
 }
 
@@ -50,6 +52,15 @@ AnyBoxes widened(const AnyBoxes& boxes) {
 
 std::size_t size(const AnyBoxes& boxes) {
   return std::visit([](const auto& list) { return list.size(); }, boxes);
+}
+
+std::size_t absent_count(const AnyBoxes& boxes) {
+  return std::visit(
+      [](const auto& list) {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(list, [](const auto& box) { return is_absent(box); }));
+      },
+      boxes);
 }
 
 int dimension(const AnyBoxes& boxes) noexcept { return boxes.index() % 2 == 0 ? 2 : 3; }

@@ -19,6 +19,7 @@ using AnyBoxes =
     std::variant<std::vector<Box2>, std::vector<Box3>, std::vector<DoubleBox2>, std::vector<DoubleBox3>>;
 
 std::size_t size(const AnyBoxes& boxes);
+std::size_t absent_count(const AnyBoxes& boxes);
 int dimension(const AnyBoxes& boxes) noexcept;
 Precision precision(const AnyBoxes& boxes) noexcept;
 

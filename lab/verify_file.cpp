@@ -90,8 +90,8 @@ std::string text_of(const Counterexample& counterexample) {
 }  // namespace
 
 bool Verification::all_verified() const {
-  return std::ranges::none_of(verdicts,
-                              [](const Verdict& verdict) { return verdict.outcome == Outcome::failed; });
+  return std::ranges::count(verdicts, Outcome::verified, &Verdict::outcome) > 0 &&
+         std::ranges::count(verdicts, Outcome::failed, &Verdict::outcome) == 0;
 }
 
 Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options) {
@@ -105,9 +105,12 @@ Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyO
 
 std::string text_of(const Verification& verification) {
   std::string text = fmt::format(
-      "{}: {} in {}D, as {}s, {}, {}{}\n", verification.file, counted(verification.boxes, "box", "boxes"),
-      verification.dimension, name(verification.precision), counted(verification.frames, "frame", "frames"),
-      counted(verification.pairs, "pair", "pairs"), verification.frames > 1 ? " in the last" : "");
+      "{}: {} in {}D, as {}s, {}", verification.file, counted(verification.boxes, "box", "boxes"),
+      verification.dimension, name(verification.precision), counted(verification.frames, "frame", "frames"));
+  if (verification.pairs)
+    text += fmt::format(", {}{}", counted(*verification.pairs, "pair", "pairs"),
+                        verification.frames > 1 ? " in the last" : "");
+  text += '\n';
   Columns table("<<<");
   std::string faults;
   for (const Verdict& verdict : verification.verdicts) {
@@ -127,6 +130,9 @@ std::string text_of(const Verification& verification) {
     }
   }
   text += table.text("  ");
+  const auto is_skipped = [](const Verdict& verdict) { return verdict.outcome == Outcome::skipped; };
+  if (std::ranges::all_of(verification.verdicts, is_skipped))
+    text += "\nnothing was verified: every algorithm was skipped\n";
   if (!faults.empty()) text += '\n' + faults;
   if (verification.counterexample) text += '\n' + text_of(*verification.counterexample);
   return text;

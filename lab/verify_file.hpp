@@ -54,11 +54,12 @@ struct Verification {
   Precision precision;
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
-  std::uint64_t pairs = 0;  ///< in the last frame
+  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
   std::vector<Verdict> verdicts{};
   std::optional<Counterexample> counterexample{};
   std::string warning{};  ///< what had to be left out of a damaged file; empty otherwise
 
+  /// Whether at least one algorithm was verified, and none failed.
   bool all_verified() const;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace broadside::lab {
 /// What came of a history.
 struct HistoryVerdicts {
   std::vector<Verdict> verdicts;  ///< in the order of the contenders; then the reference's, if it failed
-  std::uint64_t pairs = 0;        ///< in the last frame
+  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
 };
 
 /// Checks the contenders as verify_file does. `known` is where references are taken from.

@@ -38,7 +38,7 @@ struct Comparison {
   std::vector<std::string> warnings;  ///< of files that were read in part, each once
   bool stopped = false;               ///< by the watch; the case that was going on is left out
 
-  /// Whether nothing broke the law.
+  /// Whether something was measured and nothing broke the law.
   bool all_verified() const;
 };
 

@@ -26,7 +26,7 @@ Reference::Reference(const Algorithm& contender, std::span<const Algorithm> know
 }
 
 std::string Reference::text() const {
-  if (is_definition()) return "brute_force";
+  if (is_definition()) return "the definition";
   return fmt::format("{} + {} sampled boxes", algorithm_->name, sampled_boxes);
 }
 

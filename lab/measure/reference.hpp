@@ -32,7 +32,7 @@ class Reference {
   Reference(const Algorithm& contender, std::span<const Algorithm> known, std::size_t boxes,
             std::size_t most_by_definition);
 
-  /// "brute_force", or as in "quadtree + 200 sampled boxes".
+  /// "the definition", or as in "quadtree + 200 sampled boxes".
   std::string text() const;
 
   bool is_definition() const noexcept { return algorithm_ == nullptr; }

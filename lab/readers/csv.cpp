@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -94,7 +95,7 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
       if (!problem.empty())
         lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns");
     } else if (!has_header && !is_table_row(fields)) {
-      lines.refuse(fmt::format("'{}': {}", lines.line().substr(0, 100), problem),
+      lines.refuse(fmt::format("{}: {}", shown(lines.line(), 100), problem),
                    fmt::format("{}; --columns can name them", expected_columns));
     }
   }

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "lab/readers/shown.hpp"
+
 namespace broadside::lab::readers {
 namespace {
 
@@ -215,8 +217,8 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     else
       continue;
     if (*column != none)
-      return fmt::format("columns '{}' and '{}' mean the same", names[static_cast<std::size_t>(*column)],
-                         names[i]);
+      return fmt::format("columns {} and {} mean the same", shown(names[static_cast<std::size_t>(*column)]),
+                         shown(names[i]));
     *column = static_cast<int>(i);
   }
 
@@ -227,7 +229,7 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
   };
   if (columns.has_frames) {
     if (box == none)
-      return fmt::format("column '{}' without a column 'box'", names[static_cast<std::size_t>(frame)]);
+      return fmt::format("column {} without a column 'box'", shown(names[static_cast<std::size_t>(frame)]));
     place(frame, CsvColumns::frame);
     place(box, CsvColumns::box);
   }
@@ -249,16 +251,16 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     const int size = of_axis[static_cast<std::size_t>(Role::size)];
     // Beside bounds on the other two, z and depth need not be those of a box.
     if (position != none && size != none && (axis < 2 || columns.is_computed()))
-      return fmt::format("column '{}' may be a minimum or a centre",
-                         names[static_cast<std::size_t>(position)]);
+      return fmt::format("column {} may be a minimum or a centre",
+                         shown(names[static_cast<std::size_t>(position)]));
     // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
     const auto known = std::ranges::find_if(of_axis, [&](int column) {
       return column != none && column != position && column != of(of_axis, Role::third) &&
              (column != size || axis < 2);
     });
     if (known != of_axis.end())
-      return fmt::format("column '{}' alone does not give bounds on the {} axis",
-                         names[static_cast<std::size_t>(*known)], letter);
+      return fmt::format("column {} alone does not give bounds on the {} axis",
+                         shown(names[static_cast<std::size_t>(*known)]), letter);
     if (axis < 2) return fmt::format("no columns that give bounds on the {} axis", letter);
   }
   return {};

@@ -11,6 +11,7 @@
 
 #include "lab/readers/csv.hpp"
 #include "lab/readers/format.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -80,7 +81,7 @@ class CsvRows {
   void take() {
     const std::vector<int>& places = table_.columns.places;
     const std::string_view line = table_.lines.line();
-    if (line.empty()) table_.lines.refuse("an empty line", "the columns " + table_.columns.wanted());
+    if (line.empty()) table_.lines.refuse("an empty line", "the columns " + plainly(table_.columns.wanted()));
     const char* at = line.data();
     const char* const end = at + line.size();
     bool more = true;
@@ -176,7 +177,8 @@ class CsvRows {
     const std::size_t found = fields_of(table_.lines.line(), table_.separator).size();
     const std::size_t expected = table_.columns.places.size();
     table_.lines.refuse(fmt::format("{} column{}", found, found == 1 ? "" : "s"),
-                        fmt::format("the {} columns {}", expected, fmt::join(table_.columns.names, ",")));
+                        fmt::format("the {} columns {}", expected,
+                                    plainly(fmt::to_string(fmt::join(table_.columns.names, ",")))));
   }
 
   [[noreturn]] void refuse_inverted(const Box<D, Real>& box) const {
@@ -192,7 +194,7 @@ class CsvRows {
   [[noreturn]] void refuse_column(std::size_t column, const std::string& expected) const {
     const std::vector<std::string_view> fields = fields_of(table_.lines.line(), table_.separator);
     table_.lines.refuse(
-        fmt::format("column {} is '{}'", table_.columns.names[column], fields[column].substr(0, 100)),
+        fmt::format("column {} is {}", plainly(table_.columns.names[column]), shown(fields[column], 100)),
         expected);
   }
 

@@ -49,15 +49,36 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
+/// The format that a file's content and extension tell; null if they tell none.
+const Format* format_of(std::string_view begin, const std::string& extension) {
+  const auto find = [begin](std::string_view name) -> const Format* {
+    const auto format = std::ranges::find_if(
+        formats(), [&](const Format& candidate) { return candidate.recognises(begin, name); });
+    return format == formats().end() ? nullptr : &*format;
+  };
+  const Format* const named = find(extension);
+  if (named == nullptr || named->recognises(begin, "")) return named;
+  const Format* const told = find("");
+  return told != nullptr ? told : named;
+}
+
+bool is_text(std::string_view bytes) {
+  return std::ranges::none_of(
+      bytes, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r' && c != '\n'; });
+}
+
 const Format& readable_format(Input& input, const ReadOptions& options) {
   const std::string_view name = options.format;
   const std::string_view begin = input.beginning();
-  for (const Format& format : formats()) {
-    const bool is_it = name.empty() ? format.recognises(begin, input.extension()) : is_called(format, name);
-    if (!is_it) continue;
-    if (format.missing.empty()) return format;
-    throw FileError(fmt::format("{}: {}", input.name(), format.missing));
-  }
+  if (begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF"))
+    throw FileError(fmt::format("{}: begins as text in UTF-16; expected UTF-8", input.name()));
+  const auto wanted =
+      std::ranges::find_if(formats(), [&](const Format& format) { return is_called(format, name); });
+  const Format* const format = name.empty()                ? format_of(begin, input.extension())
+                               : wanted == formats().end() ? nullptr
+                                                           : &*wanted;
+  if (format != nullptr && format->missing.empty()) return *format;
+  if (format != nullptr) throw FileError(fmt::format("{}: {}", input.name(), format->missing));
   if (!name.empty())
     throw FileError(
         fmt::format("{}: unknown format '{}'; expected one of: {}", input.name(), name, listed(can_be_read)));
@@ -65,8 +86,11 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   // A table whose own names nobody knows is one by those that the user gives.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
   if (!options.columns.empty() && table != formats().end()) return *table;
-  throw FileError(
-      fmt::format("{}: is in no format known here; expected one of: {}", input.name(), listed(can_be_read)));
+  throw FileError(fmt::format("{}: is in no format known here; expected one of: {}{}", input.name(),
+                              listed(can_be_read),
+                              is_text(begin) ? "; if it is a table with other names of columns, --format csv "
+                                               "says which are known and --columns gives them"
+                                             : ""));
 }
 
 /// Throws FileError if an option means nothing to the format.

@@ -13,12 +13,23 @@
 #include "lab/readers/format.hpp"
 #include "lab/readers/indexed_mesh.hpp"
 #include "lab/readers/mesh_content.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab {
 namespace {
 
-[[noreturn]] void refuse(const Input& input, std::string_view found) {
-  throw FileError(fmt::format("{}: {}; expected a mesh", input.name(), found));
+[[noreturn]] void refuse(const Input& input, std::string_view found, std::string_view expected = "a mesh") {
+  throw FileError(fmt::format("{}: {}; expected {}", input.name(), found, expected));
+}
+
+/// Refuses a file for what assimp says of it.
+[[noreturn]] void refuse_import(const Input& input, std::string_view reason) {
+  // Its name for what it reads from memory, where nothing told it the kind.
+  if (reason.empty() || reason.find("$$$") != std::string_view::npos)
+    refuse(input, "is a mesh of a kind that its first bytes do not tell, as STL in binary is",
+           "a file with the extension of its kind");
+  while (reason.ends_with('.') || reason.ends_with(' ') || reason.ends_with('\n')) reason.remove_suffix(1);
+  refuse(input, fmt::format("cannot be read: {}", plainly(reason)));
 }
 
 /// assimp trusts the numbers of vertices that a file gives.
@@ -82,6 +93,7 @@ class Collector {
 }  // namespace
 
 IndexedMesh import_mesh(Input& input) {
+  if (input.beginning().empty()) refuse(input, "is empty");
   Assimp::Importer importer;
   const std::string_view content = mesh_content(input.beginning());
   const std::string extension = input.extension();
@@ -95,14 +107,14 @@ IndexedMesh import_mesh(Input& input) {
       const std::string_view bytes = input.bytes();
       scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, std::string(content).c_str());
     }
-    if (scene == nullptr) refuse(input, importer.GetErrorString());
+    if (scene == nullptr) refuse_import(input, importer.GetErrorString());
     check_corners(input, *scene);
   } catch (const FileError&) {
     throw;
   } catch (const std::exception& error) {
-    refuse(input, error.what());
+    refuse_import(input, error.what());
   }
-  if (scene->mRootNode == nullptr) refuse(input, importer.GetErrorString());
+  if (scene->mRootNode == nullptr) refuse_import(input, importer.GetErrorString());
   IndexedMesh mesh = Collector(input, *scene).collect();
   mesh.has_own_vertices = content == "off";
   return mesh;

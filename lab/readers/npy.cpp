@@ -13,6 +13,7 @@
 #include "lab/readers/descriptions.hpp"
 #include "lab/readers/npy_array.hpp"
 #include "lab/readers/npy_header.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -141,9 +142,9 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions&) {
   const bool is_known = std::visit([](const auto& reader) { return reader != nullptr; }, frames);
   if (is_known) return frames;
   throw FileError(
-      fmt::format("{}: numbers of type '{}'; expected floats or integers: f4, f8, i1 to i8 or u1 to u8, "
+      fmt::format("{}: numbers of type {}; expected floats or integers: f4, f8, i1 to i8 or u1 to u8, "
                   "with '<' or '>' before it",
-                  name, header.type.substr(0, 20)));
+                  name, shown(header.type, 20)));
 }
 
 template <int D, typename Real>

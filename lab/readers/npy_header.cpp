@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "lab/readers/format.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -66,8 +67,7 @@ class HeaderText {
 
   [[noreturn]] void refuse(const std::string& expected) const {
     throw FileError(fmt::format("{}: byte {}: {}; expected {} in a NumPy header", name_, end_ - rest_.size(),
-                                rest_.empty() ? "the header ends" : fmt::format("'{}'", rest_.substr(0, 20)),
-                                expected));
+                                rest_.empty() ? "the header ends" : shown(rest_, 20), expected));
   }
 
  private:
@@ -147,8 +147,8 @@ NpyHeader read_npy_header(std::string_view bytes, const std::string& name) {
       has_shape = true;
       header.shape = take_shape(text);
     } else {
-      text.refuse(fmt::format("'descr', 'fortran_order' and 'shape', each once, and not the key '{}' here,",
-                              key.substr(0, 20)));
+      text.refuse(fmt::format("'descr', 'fortran_order' and 'shape', each once, and not the key {} here,",
+                              shown(key, 20)));
     }
     if (text.take(',')) continue;
     text.expect('}');

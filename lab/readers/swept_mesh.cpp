@@ -7,18 +7,23 @@
 #include <fmt/format.h>
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/format.hpp"
 
 namespace broadside::lab {
 namespace {
 
 IndexedMesh read_one(const std::filesystem::path& path, const ReadOptions& options) {
   Input input(path, options.progress);
-  const bool is_mesh = options.format.empty()
-                           ? readers::mesh().recognises(input.beginning(), input.extension())
-                           : options.format == "mesh";
+  const bool is_told = options.format.empty();
+  const auto format = std::ranges::find_if(formats(), [&](const Format& known) {
+    return is_told ? known.recognises(input.beginning(), input.extension()) : known.name == options.format;
+  });
+  const bool is_mesh =
+      is_told ? readers::mesh().recognises(input.beginning(), input.extension()) : options.format == "mesh";
   if (!is_mesh)
-    throw FileError(fmt::format("{}: is {}; expected a mesh, such as a PLY file", input.name(),
-                                options.format.empty() ? "none that is known here" : options.format));
+    throw FileError(
+        fmt::format("{}: is in {}; expected a mesh, such as a PLY file", input.name(),
+                    format == formats().end() ? "no format known here" : "format " + format->name));
   return lab::read_mesh(input);
 }
 

@@ -194,8 +194,8 @@ std::string summary_of(const Comparison& comparison) {
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);
-  text += counted(measured, "measurement", "measurements");
-  text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
+  text += measured == 0 ? "nothing was verified" : counted(measured, "measurement", "measurements");
+  if (measured > 0) text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
   if (skipped > 0) text += fmt::format("; {} skipped", grouped(skipped));
   if (comparison.stopped) text += "; stopped before the end";
   text += "\n";

@@ -39,6 +39,9 @@ double most(const Tunable& tunable) {
 
 std::string range(const Tunable& tunable) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
+  const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
+  // A bound that only keeps a float from becoming 0 says nothing to a reader.
+  if (is_unbounded && tunable.least == std::numeric_limits<float>::min()) return kind + " above 0";
   if (most(tunable) == std::numeric_limits<double>::max())
     return kind + " of at least " + text_of(tunable.least);
   return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));

@@ -27,14 +27,25 @@ TEST(InfoVerb, TellsCountBoundsExtentsAndSizes) {
                                               "0,-inf,1,inf\n"
                                               ",,,\n")});
   EXPECT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output,
-              AllOf(HasSubstr("boxes.csv: csv, 4 boxes in 2D, as doubles, 1 frame\n"),
-                    HasSubstr("  1 place is without a box\n"),
-                    HasSubstr("  14 coordinates: 12 of 14 whole, 12 of 14 exactly floats"),
-                    HasSubstr("  1 point, 1 without extent on some axis, 1 infinite\n"),
-                    HasSubstr("  read in "), HasSubstr(" boxes a second\n"), Not(HasSubstr("frames after"))));
+  EXPECT_THAT(
+      ended.output,
+      AllOf(HasSubstr("boxes.csv: csv, 5 boxes, 1 of them absent, in 2D, as doubles, 1 frame\n"),
+            HasSubstr("  14 coordinates: 12 whole, 12 exactly floats"),
+            HasSubstr("  1 point, 1 flat (without extent on some axis, but not on all), 1 infinite\n"),
+            HasSubstr("  read in "), HasSubstr("  1 point left out\n  1 infinite box left out\n"),
+            Not(HasSubstr(" boxes a second\n")), Not(HasSubstr("frames after"))));
   EXPECT_THAT(ended.output, testing::ContainsRegex("\n  x +-2 +7 +0 +0 +1 +1 +1 +4 +4\n"));
   EXPECT_THAT(ended.output, testing::ContainsRegex("\n +1 to 2 +1 +#+\n +2 to 4 +0\n +4 to 8 +1 +#+\n"));
+}
+
+TEST(InfoVerb, TellsBoundsToTheLastDigit) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("utm.csv", "412345.125,5654321.75,412350.5,5654330.0625\n");
+  EXPECT_THAT(run({"info", file}).output, AllOf(testing::ContainsRegex("\n  x +412345.125 +412350.5 "),
+                                                testing::ContainsRegex("\n  y +5654321.75 +5654330.0625 ")));
+  const std::string tenth = folder.put("tenth.csv", "0.1,0,0.3,1\n");
+  EXPECT_THAT(run({"info", tenth, "--precision", "float"}).output,
+              testing::ContainsRegex("\n  x +0.1 +0.3 "));
 }
 
 TEST(InfoVerb, TellsHowBoxesMove) {
@@ -49,8 +60,8 @@ TEST(InfoVerb, TellsHowBoxesMove) {
                                               "3,,,,,\n")});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("moving.csv: csv, 3 boxes in 2D, as doubles, 4 frames\n"),
-                                  HasSubstr("  3 frames after the first: 0 % of the boxes move in one (least "
-                                            "0 %, most 50 %), 1 are added, 1 removed\n")));
+                                  HasSubstr("  3 frames after the first: in a frame, 0 % of the boxes move "
+                                            "(median; 0 % to 50 %); in all, 1 added, 1 removed\n")));
 }
 
 TEST(InfoVerb, ReadsEveryFormatAndAPipe) {
@@ -60,7 +71,7 @@ TEST(InfoVerb, ReadsEveryFormatAndAPipe) {
     const Ended ended = run({"info", folder.file(name)});
     EXPECT_EQ(ended.status, 0) << ended.errors;
     EXPECT_THAT(ended.output,
-                AllOf(HasSubstr(", 100 boxes in 3D, as "), HasSubstr("all whole"), HasSubstr(" a second, ")));
+                AllOf(HasSubstr(", 100 boxes in 3D, as "), HasSubstr("all whole"), HasSubstr("  read in ")));
   }
   const Ended piped = shell("cat " + folder.file("b.btrace") + " | $BROADSIDE info -");
   EXPECT_THAT(piped.output, HasSubstr("standard input: trace, 100 boxes in 3D, as floats, 1 frame\n"));

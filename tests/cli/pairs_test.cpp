@@ -152,7 +152,7 @@ TEST(PairsVerb, TakesAFrameOfAFileThatMoves) {
   EXPECT_EQ(run({"pairs", "--count", file, "--frame", "1"}).output, "1\n");
   const Ended beyond = run({"pairs", "--count", file, "--frame", "2"});
   EXPECT_EQ(beyond.status, 2);
-  EXPECT_THAT(beyond.errors, HasSubstr("frame 2 of a file with 2 frames, counted from 0"));
+  EXPECT_THAT(beyond.errors, HasSubstr("--frame is 2; expected 0 to 1, as the file has 2 frames"));
 }
 
 /// Two triangles with an edge in common, and one far above them that comes down onto them later.

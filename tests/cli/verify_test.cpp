@@ -23,8 +23,8 @@ TEST(VerifyVerb, ChecksEveryFrameOfAFileWithEveryAlgorithm) {
   const Ended ended = run({"verify", file});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("in 2D, as floats, 7 frames, "),
-                                  HasSubstr("  grid                   verified  against brute_force\n"),
-                                  HasSubstr("  paper_quadtree         verified  against brute_force\n")));
+                                  HasSubstr("  grid                   verified  against the definition\n"),
+                                  HasSubstr("  paper_quadtree         verified  against the definition\n")));
   EXPECT_THAT(ended.errors, IsEmpty());
   EXPECT_EQ(folder.names(), std::vector<std::string>{"moving.btrace"});
 }
@@ -36,6 +36,17 @@ TEST(VerifyVerb, ChecksInThePrecisionOfTheInputFromAPipeToo) {
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("standard input: 500 boxes in 3D, as doubles, 1 frame, "),
                                   HasSubstr("  paper_grid       skipped   does not do 3D\n")));
+}
+
+TEST(VerifyVerb, EndsWithStatusOneWhereNothingIsVerified) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", "min_x,min_y,min_z,max_x,max_y,max_z\n0,0,0,1,1,1\n");
+  const Ended ended = run({"verify", file, "--algorithms", "paper_grid"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("1 frame\n"), HasSubstr("nothing was verified")));
+  const Ended compared = run({"compare", "--scenes", file, "--dimension", "3", "--algorithms", "paper_grid"});
+  EXPECT_EQ(compared.status, 1);
+  EXPECT_THAT(compared.output, HasSubstr("nothing was verified; 1 skipped"));
 }
 
 TEST(VerifyVerb, SaysWhatItDidNotRead) {

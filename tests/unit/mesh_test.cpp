@@ -179,7 +179,7 @@ TEST_F(MeshTest, RefusesToSweepTwoDifferentMeshes) {
                          "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
   EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, other); }), HasSubstr("6 vertices and 3"));
   EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, put("a.csv", "1,2,3,4\n")); }),
-              AllOf(HasSubstr("a.csv"), HasSubstr("expected a mesh")));
+              AllOf(HasSubstr("a.csv: is in format csv"), HasSubstr("expected a mesh")));
   EXPECT_THAT(message_of<FileError>([&] { read_swept_mesh(first, path("nothing.ply")); }),
               HasSubstr("No such file"));
 }

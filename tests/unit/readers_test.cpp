@@ -276,6 +276,25 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   }
 }
 
+TEST_F(Files, AreToldByTheirContentBeforeTheirName) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(open_file(put("mesh.csv", ply)).format->name, "mesh");
+  EXPECT_EQ(open_file(put("boxes.npy", "1,2,3,4\n")).format->name, "csv");
+  EXPECT_THAT(refusal(put("cut.csv", "\x93NUMPY")), HasSubstr("NumPy"));
+}
+
+TEST_F(Files, AreShownInErrorsAsPrintableText) {
+  using namespace std::string_literals;
+  EXPECT_THAT(refusal(put("a.csv", "min_x,min_y,max_x,max_y\n0,0,\0\xff\x1b[1m,1\n"s)),
+              AllOf(HasSubstr("a.csv:2: column max_x is '\?\?\?[1m'; expected a number")));
+  EXPECT_THAT(refusal(put("b.csv", "\0\xffq,w\n"s)),
+              AllOf(HasSubstr("'\?\?q,w'"), HasSubstr("expected columns")));
+  EXPECT_THAT(refusal(put("c.npy", "\x93NUMPY\1\0\4\0{\0\xff}"s)), HasSubstr("'\?\?}'; expected a key"));
+  EXPECT_THAT(refusal(put("d.csv", "\xff\xfem\0i\0n\0"s)), HasSubstr("UTF-16; expected UTF-8"));
+}
+
 TEST_F(Files, AreReadThroughAPipeAndToldByTheirContent) {
   const History<3> history{{{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 0.5F}, {0, 9, 0.5F}}}, {}};
   for (const Format& format : formats()) {

@@ -19,7 +19,7 @@ Algorithm called(std::string name) {
 TEST(Reference, IsTheDefinitionForFewBoxes) {
   const Reference reference(called("grid"), algorithms(), 20'000, 20'000);
   EXPECT_TRUE(reference.is_definition());
-  EXPECT_EQ(reference.text(), "brute_force");
+  EXPECT_EQ(reference.text(), "the definition");
 }
 
 TEST(Reference, IsOfAnotherStructureForMany) {

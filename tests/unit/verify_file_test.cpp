@@ -20,6 +20,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class VerifyFile : public Files {
  protected:
@@ -64,7 +65,7 @@ TEST_F(VerifyFile, PassesAlgorithmsThatAreRightAndWritesNothing) {
   EXPECT_EQ(count_files(), 1u);
   EXPECT_THAT(lab::text_of(verification),
               AllOf(HasSubstr("row.csv: 300 boxes in 2D, as doubles, 1 frame, 299 pairs\n"),
-                    HasSubstr("  grid                   verified  against brute_force\n")));
+                    HasSubstr("  grid                   verified  against the definition\n")));
 }
 
 TEST_F(VerifyFile, ShowsAMissingPairWithTheTwoBoxesThatMakeIt) {
@@ -80,7 +81,7 @@ TEST_F(VerifyFile, ShowsAMissingPairWithTheTwoBoxesThatMakeIt) {
   EXPECT_THAT(verification.counterexample->fault, HasSubstr("pair (0, 1) is missing"));
   EXPECT_EQ(verification.counterexample->command,
             "verify " + path("small.csv").string() + " --algorithms misses");
-  EXPECT_THAT(lab::text_of(verification), AllOf(HasSubstr("  misses  FAILED    against brute_force\n"),
+  EXPECT_THAT(lab::text_of(verification), AllOf(HasSubstr("  misses  FAILED    against the definition\n"),
                                                 HasSubstr("small.csv: 2 boxes, on which misses fails\n"),
                                                 HasSubstr("to see it again: broadside verify ")));
   // What was written is a file of its own, and shows the same.
@@ -144,9 +145,21 @@ TEST_F(VerifyFile, SkipsWhatWouldExceedTheBudgetAndSaysWhere) {
   const std::filesystem::path file = row(12'000);
   options_.budget_seconds = 1e-9;
   const Verification verification = verified(file, "brute_force");
-  EXPECT_TRUE(verification.all_verified());
+  EXPECT_FALSE(verification.all_verified());
+  EXPECT_FALSE(verification.pairs);
+  EXPECT_THAT(lab::text_of(verification), AllOf(Not(HasSubstr(" pairs")), HasSubstr("nothing was verified")));
   EXPECT_EQ(verification.verdicts[0].outcome, Outcome::skipped);
   EXPECT_THAT(verification.verdicts[0].reason, AllOf(HasSubstr("estimated"), HasSubstr("budget 1e-09 s")));
+}
+
+TEST_F(VerifyFile, CountsNoPairsOfALastFrameThatNobodyReached) {
+  const std::filesystem::path file =
+      put("moving.csv",
+          "frame,box,min_x,min_y,max_x,max_y\n0,0,0,0,1,1\n0,1,0,0,1,1\n1,0,5,5,6,6\n2,0,6,6,7,7\n");
+  EXPECT_EQ(verified(file, "grid").pairs, 0u);
+  const Verification stopped = verified(file, "throws");
+  EXPECT_FALSE(stopped.pairs);
+  EXPECT_THAT(lab::text_of(stopped), Not(HasSubstr("in the last")));
 }
 
 TEST_F(VerifyFile, RefusesAnUnknownAlgorithmBeforeItReads) {
