@@ -140,7 +140,8 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
   int count = 0;
   for (const Role role : {Role::zeroth, Role::first, Role::second, Role::third}) {
     if (of(found, role) == none) continue;
-    list += fmt::format("{}'{}'", list.empty() ? "" : ", ", names[static_cast<std::size_t>(of(found, role))]);
+    list += fmt::format("{}{}", list.empty() ? "" : ", ",
+                        shown(names[static_cast<std::size_t>(of(found, role))]));
     ++count;
   }
   return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);

@@ -250,7 +250,7 @@ TEST(PairsVerb, RefusesWhatItCannotUseAndSaysWhy) {
       {{"/"}, {"/: cannot be read: Is a directory"}},
       {{folder.put("empty.csv", "")}, {"empty.csv", "empty"}},
       {{folder.put("words.csv", "min_x,min_y,max_x,max_y\n0,0,much,1\n")}, {"words.csv:2", "'much'"}},
-      {{folder.put("bad.csv", "min_x,min_y,max_x,max_y\n0,0,\x1b[2J,1\n")}, {"bad.csv:2", "'\\x1b[2J'"}},
+      {{folder.put("bad.csv", "min_x,min_y,max_x,max_y\n0,0,\x1b[2J,1\n")}, {"bad.csv:2", "'?[2J'"}},
       {{file, solid}, {"in 2D", "in 3D", "--dimension 2"}},
       {{file, "--order", "any"}, {"--order is 'any'", "expected sorted or found"}},
       {{"--swept", file, "--left", "faces", "--right", "faces"}, {"--swept with 1 file", "expected two"}},
