@@ -148,7 +148,7 @@ TEST_F(TraceFiles, GiveBackHistoriesWithoutBoxesOrSteps) {
 
 TEST_F(TraceFiles, AreRecognisedByTheirFirstBytesWhateverTheyAreCalled) {
   EXPECT_TRUE(read_file(put("boxes.csv", small_trace())).in_2d);
-  EXPECT_THAT(refusal(put("a.btrace", "min_x,min_y,max_x,max_y\n")), HasSubstr("the first bytes are 6d 69"));
+  EXPECT_THAT(refusal(put("a.btrace", "mislaid\n")), HasSubstr("the first bytes are 6d 69"));
 }
 
 TEST_F(TraceFiles, AreScenesThatSayWhereTheyWereCutOff) {
