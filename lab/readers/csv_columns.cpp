@@ -238,7 +238,7 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     const Found& of_axis = found[static_cast<std::size_t>(axis)];
     const char letter = axes[static_cast<std::size_t>(axis)];
     if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
-      const std::string points = points_of(of_axis, names);
+      std::string points = points_of(of_axis, names);
       if (!points.empty()) return points;
     }
     if (const std::optional<Choice> choice = choose(of_axis)) {

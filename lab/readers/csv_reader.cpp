@@ -5,6 +5,7 @@
 // line with nothing but a frame for a frame in which nothing changes.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -182,7 +183,7 @@ class CsvRows {
   }
 
   [[noreturn]] void refuse_inverted(const Box<D, Real>& box) const {
-    const auto is_nan = [](Real number) { return number != number; };
+    const auto is_nan = [](Real number) { return std::isnan(number); };
     if (std::ranges::any_of(box.min, is_nan) || std::ranges::any_of(box.max, is_nan))
       table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
     table_.lines.refuse(
