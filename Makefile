@@ -34,8 +34,12 @@ check-format: setup-ci
 clean: ## Remove everything that was built or fetched
 	rm -rf build
 
+# The other libraries of a comparison are installed for it, unless PEERS=no.
+PEERS := yes
+compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+
 setup:
-	@scripts/setup
+	@scripts/setup $(setup_options)
 
 setup-ci:
 	@scripts/setup --ci

@@ -12,6 +12,7 @@
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/peers/peers.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/scenes/scene.hpp"
 
@@ -102,6 +103,9 @@ Exit run() {
   const lab::Catalogue catalogue;
   std::vector<Entry> algorithms;
   for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
+  for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
+    algorithms.push_back(
+        {peer.name, std::string(name(AlgorithmKind::peer)), "", "not there: " + peer.reason, {}});
   print_entries("Algorithms", algorithms);
 
   std::vector<Entry> scenes;

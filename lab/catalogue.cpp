@@ -8,6 +8,8 @@
 
 #include "broadside/error.hpp"
 
+#include "lab/peers/peers.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -30,7 +32,9 @@ bool is_group(std::string_view name) {
 
 }  // namespace
 
-Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside::algorithms().end()) {}
+Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside::algorithms().end()) {
+  for (Algorithm& peer : peers::peers()) algorithms_.push_back(std::move(peer));
+}
 
 void Catalogue::add(Algorithm algorithm) {
   if (!is_name(algorithm.name))
@@ -66,6 +70,9 @@ std::vector<Contender> Catalogue::select(std::string_view list) const {
     Spec spec = Spec::parse(part);
     const Algorithm* const algorithm = find_algorithm(spec.name, algorithms_);
     if (algorithm == nullptr) {
+      const auto missing = std::ranges::find(peers::missing_peers(), spec.name, &peers::MissingPeer::name);
+      if (missing != peers::missing_peers().end())
+        throw InvalidSpec("peer '" + spec.name + "' is not in this build: " + missing->reason);
       std::string known = "own, paper, peers, all";
       for (const Algorithm& other : algorithms_) known += ", " + other.name;
       throw InvalidSpec("unknown algorithm '" + spec.name + "'; expected one of: " + known);

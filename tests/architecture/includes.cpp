@@ -22,6 +22,7 @@ const std::vector<Rule>& rules() {
   const std::string inner = library + R"(|"(core|kernels)/[a-z_]+\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
+  const std::string peers = R"(|<(CGAL|boost|geos|embree3|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
@@ -30,7 +31,7 @@ const std::vector<Rule>& rules() {
       {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
       {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")"},
       {"lab/recordings/", lab + engines},
-      {"lab/peers/", lab + engines},
+      {"lab/peers/", lab + engines + peers},
       {"lab/readers/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
@@ -38,8 +39,10 @@ const std::vector<Rule>& rules() {
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
       {"examples/", lab + R"(|<broadside/[a-z_]+\.hpp>)"},
-      // Tests look into every room but the faces, and at the engines through the lab alone.
-      {"tests/", R"((?!["<](cli/|box2d|bullet|bt[A-Z]|Bullet[A-Z]|assimp)).*)"},
+      // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
+      // CGAL is their oracle.
+      {"tests/",
+       R"((?!["<](cli/|box2d|bullet|bt[A-Z]|Bullet[A-Z]|assimp|boost/|geos|embree|ode/|fcl/|chipmunk/)).*)"},
   };
   return list;
 }

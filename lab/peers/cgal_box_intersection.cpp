@@ -1,0 +1,61 @@
+// CGAL's box_self_intersection_d: Zomorodian and Edelsbrunner's hybrid of segment trees and sweeps.
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/version.h>
+
+#include "lab/peers/peers.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+template <int D>
+class CgalBoxIntersection final : public PairFinder<D> {
+ private:
+  // A box's address is what CGAL tells boxes apart by, so that what it sorts are pointers: its manual's
+  // advice against moving boxes around.
+  using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    boxes_.clear();
+    boxes_.reserve(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      float min[D];
+      float max[D];
+      std::ranges::copy(boxes[i].min, min);
+      std::ranges::copy(boxes[i].max, max);
+      boxes_.emplace_back(min, max, BoxId(i));
+    }
+    pointers_.clear();
+    pointers_.reserve(boxes.size());
+    for (const CgalBox& box : boxes_) pointers_.push_back(&box);
+    const auto report = [&pairs](const CgalBox* a, const CgalBox* b) { pairs.add(a->info(), b->info()); };
+    CGAL::box_self_intersection_d(pointers_.begin(), pointers_.end(), report, standard_cutoff,
+                                  CGAL::Box_intersection_d::CLOSED);
+  }
+
+  static constexpr std::ptrdiff_t standard_cutoff = 10;
+
+  std::vector<CgalBox> boxes_;
+  std::vector<const CgalBox*> pointers_;
+};
+
+}  // namespace
+
+Algorithm cgal_box_intersection() {
+  return {
+      .name = "cgal_box_intersection",
+      .summary = "CGAL's box_self_intersection_d: a hybrid of streamed segment trees and sweeps",
+      .source =
+          "CGAL, Intersecting Sequences of dD Iso-oriented Boxes, after Zomorodian and Edelsbrunner 2000",
+      .kind = AlgorithmKind::peer,
+      .version = "CGAL " CGAL_VERSION_STR,
+      .finder_2d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<2>>(); },
+      .finder_3d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<3>>(); },
+  };
+}
+
+}  // namespace broadside::lab::peers

@@ -1,0 +1,50 @@
+// The one list of peers; which of them are in this build was decided at configure time (CMakeLists.txt).
+#include "lab/peers/peers.hpp"
+
+#include <initializer_list>
+#include <string_view>
+
+namespace broadside::lab::peers {
+namespace {
+
+/// Every peer that the lab knows: those built in, and the names of the others.
+struct PeerList {
+  std::vector<Algorithm> there;
+  std::vector<MissingPeer> missing;
+
+  PeerList() {
+    // What is in a branch that is not taken need not exist.
+    if constexpr (BROADSIDE_HAS_CGAL)
+      add({cgal_box_intersection()});
+    else
+      miss("libcgal-dev", {"cgal_box_intersection"});
+  }
+
+  void add(std::initializer_list<Algorithm> algorithms) {
+    for (const Algorithm& algorithm : algorithms) {
+      there.push_back(algorithm);
+      there.back().kind = AlgorithmKind::peer;
+    }
+  }
+
+  void miss(std::string_view package, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) {
+      missing.push_back(
+          {std::string(name),
+           std::string(package) + " was missing at configure time; install it and configure again"});
+    }
+  }
+};
+
+const PeerList& peer_list() {
+  static const PeerList list;
+  return list;
+}
+
+}  // namespace
+
+std::vector<Algorithm> peers() { return peer_list().there; }
+
+std::span<const MissingPeer> missing_peers() { return peer_list().missing; }
+
+}  // namespace broadside::lab::peers

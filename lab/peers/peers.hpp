@@ -1,0 +1,28 @@
+// The other libraries in the comparison: one function for each of their algorithms.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+
+namespace broadside::lab::peers {
+
+/// The peers that were built in, in a fixed order.
+std::vector<Algorithm> peers();
+
+/// A peer that could be there and is not.
+struct MissingPeer {
+  std::string name;
+  std::string reason;  ///< the package whose lack at configure time left it out
+};
+
+/// The peers that were left out of this build, in the same order. Thread-safe.
+std::span<const MissingPeer> missing_peers();
+
+// One for each file. What is not in the build is declared and not defined.
+
+Algorithm cgal_box_intersection();
+
+}  // namespace broadside::lab::peers
