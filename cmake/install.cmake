@@ -9,9 +9,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
-# The library depends on nothing, so its list of targets is the whole package. Below 1.0 a minor version may break
-# what the one before promised.
+# A static library needs Highway where it is linked. Below 1.0 a minor version may break what the one before promised.
 file(WRITE ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake
+     "include(CMakeFindDependencyMacro)\n"
+     "find_dependency(hwy)\n"
      "include(\${CMAKE_CURRENT_LIST_DIR}/BroadsideTargets.cmake)\n")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)

@@ -7,6 +7,7 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 #include "broadside/find_pairs.hpp"
+#include "broadside/instruction_set.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"

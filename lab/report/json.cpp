@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "broadside/instruction_set.hpp"
+
 #include "lab/measure/samples.hpp"
 #include "lab/report/machine.hpp"
 
@@ -62,7 +64,7 @@ Json measurement_json(const Case& of, const Measurement& measurement) {
   json["kind"] = name(measurement.kind);
   json["mode"] = of.mode == Mode::find ? "find" : "track";
   json["threads"] = 1;
-  json["target"] = nullptr;
+  json["target"] = measurement.kind == AlgorithmKind::own ? Json(instruction_set()) : Json();
   json["pairs"] = or_null(measurement.pairs);
   json["pair_hash"] = measurement.pair_hash ? Json(fmt::format("{:016x}", *measurement.pair_hash)) : Json();
   json["verified"] =

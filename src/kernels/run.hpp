@@ -4,12 +4,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside::kernels {
+
+/// Kernels may read this many elements beyond a run's last one, whose min[0] must then be NaN.
+inline constexpr std::size_t read_ahead = 16;
 
 /// `size` boxes seen as arrays. Axis 0 of a run is the axis that is swept; which axis of the caller's boxes
 /// that is, is the caller's affair.
@@ -25,6 +29,10 @@ struct Run {
   const std::uint32_t* apart;
 
   std::size_t size;
+
+  /// By how much at most a box of a run that is swept may begin before one that stands before it: 0 where
+  /// the run is sorted by min[0], a bucket's width where it is only sorted by buckets.
+  float slack = 0;
 };
 
 /// What to set of `apart` for a box of a search between two sets, of which the first `left_count` boxes are
@@ -42,29 +50,36 @@ class RunBuffer {
 
   std::size_t size() const noexcept { return size_; }
 
-  /// Makes room for `count` boxes, so that append() need not.
+  /// Makes room for `count` boxes, so that append() and put() need not.
   void reserve(std::size_t count) {
-    if (count <= id_.size()) return;
+    if (count + read_ahead <= id_.size()) return;
     for (int axis = 0; axis < D; ++axis) {
-      min_[axis].resize(count);
-      max_[axis].resize(count);
+      min_[axis].resize(count + read_ahead);
+      max_[axis].resize(count + read_ahead);
     }
-    id_.resize(count);
-    apart_.resize(count);
+    id_.resize(count + read_ahead);
+    apart_.resize(count + read_ahead);
   }
 
   /// Adds a box whose axes are already in the run's order. reserve() must have made the room.
-  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) {
+  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) { put(size_++, box, id, apart); }
+
+  /// Sets the box at a place for which reserve() has made room; set_size() tells how many there are then.
+  void put(std::size_t place, const Box<D>& box, BoxId id, std::uint32_t apart) {
     for (int axis = 0; axis < D; ++axis) {
-      min_[axis][size_] = box.min[axis];
-      max_[axis][size_] = box.max[axis];
+      min_[axis][place] = box.min[axis];
+      max_[axis][place] = box.max[axis];
     }
-    id_[size_] = id;
-    apart_[size_] = apart;
-    ++size_;
+    id_[place] = id;
+    apart_[place] = apart;
   }
 
-  Run<D> view() const noexcept {
+  void set_size(std::size_t size) noexcept { size_ = size; }
+
+  /// The run; holds until the buffer is changed.
+  Run<D> view(float slack = 0) {
+    reserve(size_);
+    for (std::size_t i = 0; i < read_ahead; ++i) min_[0][size_ + i] = std::numeric_limits<float>::quiet_NaN();
     Run<D> run{};
     for (int axis = 0; axis < D; ++axis) {
       run.min[axis] = min_[axis].data();
@@ -73,6 +88,7 @@ class RunBuffer {
     run.id = id_.data();
     run.apart = apart_.data();
     run.size = size_;
+    run.slack = slack;
     return run;
   }
 

@@ -1,152 +1,257 @@
 // The kernels: a sorted run swept against itself or against another, and all of a run compared.
 //
-// Hits are written without a branch, since whether two candidates overlap is what no predictor can know: each
-// candidate writes its pair and the place to write moves on by one if it was a hit. Where the candidates are
-// many, blocks without any hit are passed over first, by a loop that compilers vectorise.
+// Written once with Highway, compiled for every instruction set it knows, chosen when the program runs. Hits
+// are written without a branch, since whether two candidates overlap is what no predictor can know: the
+// partners' ids are compressed to the front, a whole vector of pairs is stored, and the place to write moves
+// on by as many as were hits.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/sweep.cpp"
 #include "kernels/sweep.hpp"
 
-#include <algorithm>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
-namespace broadside::kernels {
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-/// Candidates looked at together. Of 16, g++ 12 unrolls the loop before it could vectorise it.
-constexpr std::size_t block = 24;
+namespace hn = hwy::HWY_NAMESPACE;
 
-/// One box of a run, held in registers while it is compared.
-template <int D>
-struct Query {
-  Query(const Run<D>& run, std::size_t i) : id(run.id[i]), apart(run.apart[i]) {
-    for (int axis = 0; axis < D; ++axis) {
-      min[axis] = run.min[axis][i];
-      max[axis] = run.max[axis][i];
+using Floats = hn::CappedTag<float, read_ahead>;
+using Ids = hn::Rebind<std::uint32_t, Floats>;
+using FloatVector = hn::Vec<Floats>;
+using IdVector = hn::Vec<Ids>;
+using Hits = hn::Mask<Ids>;
+
+/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
+class Writer {
+ public:
+  explicit Writer(PairSink& sink) : sink_(&sink) { take(); }
+
+  ~Writer() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
+
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// Writes the pairs of `query` with those of `ids` that are hits.
+  HWY_INLINE void write(IdVector query, IdVector ids, Hits hits) {
+    const Ids tag;
+    const IdVector partners = hn::Compress(ids, hits);
+    const IdVector first = hn::Min(partners, query);
+    const IdVector second = hn::Max(partners, query);
+    if constexpr (hn::MaxLanes(Ids()) == 1) {
+      *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+    } else {
+      hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
+    }
+    out_ += hn::CountTrue(tag, hits);
+    if (HWY_UNLIKELY(out_ > last_)) {
+      sink_->commit(static_cast<std::size_t>(out_ - begin_));
+      begin_ = out_;  // if the sink throws, this much is committed already
+      take();
     }
   }
 
-  float min[D];
-  float max[D];
-  BoxId id;
-  std::uint32_t apart;
+ private:
+  void take() {
+    begin_ = out_ = sink_->room(PairSink::max_room);
+    last_ = begin_ + PairSink::max_room - read_ahead;
+  }
+
+  PairSink* sink_;
+  Pair* begin_ = nullptr;
+  Pair* out_ = nullptr;
+  Pair* last_ = nullptr;  // beyond it a whole vector of pairs may not fit
 };
 
-/// Whether box j of the run and the query overlap on the axes from `First` on and are to be reported here: 1
-/// or 0.
-template <int First, bool Apart, int D>
-inline std::uint32_t hit(const Query<D>& query, const Run<D>& run, std::size_t j) {
-  std::uint32_t touching = 1;
-  for (int axis = First; axis < D; ++axis) {
-    touching &= static_cast<std::uint32_t>(run.min[axis][j] <= query.max[axis]);
-    touching &= static_cast<std::uint32_t>(query.min[axis] <= run.max[axis][j]);
+/// One box of a run, in every lane.
+template <int D>
+struct Query {
+  HWY_INLINE Query(const Run<D>& run, std::size_t i)
+      : id(hn::Set(Ids(), index(run.id[i]))), apart(hn::Set(Ids(), run.apart[i])) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = hn::Set(Floats(), run.min[axis][i]);
+      max[axis] = hn::Set(Floats(), run.max[axis][i]);
+    }
   }
-  if constexpr (Apart) touching &= static_cast<std::uint32_t>((query.apart & run.apart[j]) == 0);
-  return touching;
+
+  FloatVector min[D];
+  FloatVector max[D];
+  IdVector id;
+  IdVector apart;
+};
+
+/// Which of the boxes from `at` on begin on axis 0 no later than the query ends.
+template <int D>
+HWY_INLINE hn::Mask<Floats> begins(const Query<D>& query, const Run<D>& run, std::size_t at) {
+  return hn::Le(hn::LoadU(Floats(), run.min[0] + at), query.max[0]);
 }
 
-inline Pair ordered(BoxId a, BoxId b) { return {std::min(a, b), std::max(a, b)}; }
-
-/// Compares the query with the boxes [begin, end) of the run, at most max_room of them.
-template <int First, bool Apart, int D>
-inline void compare(const Query<D>& query, const Run<D>& run, std::size_t begin, std::size_t end,
-                    PairSink& pairs) {
-  Pair* const out = pairs.room(end - begin);
-  std::size_t count = 0;
-  for (std::size_t j = begin; j < end; ++j) {
-    out[count] = ordered(query.id, run.id[j]);
-    count += hit<First, Apart>(query, run, j);
-  }
-  pairs.commit(count);
-}
-
-/// Compares the query with one whole block of the run. Where nothing or everything in it is a hit, no place
-/// to write depends on the candidate before.
-template <int First, bool Apart, int D>
-inline void compare_block(const Query<D>& query, const Run<D>& run, std::size_t begin, PairSink& pairs) {
-  std::uint32_t hits = 0;
-  for (std::size_t j = begin; j < begin + block; ++j) hits += hit<First, Apart>(query, run, j);
-  if (hits == block) {
-    Pair* const out = pairs.room(block);
-    for (std::size_t j = 0; j < block; ++j) out[j] = ordered(query.id, run.id[begin + j]);
-    pairs.commit(block);
-  } else if (hits != 0) {
-    compare<First, Apart>(query, run, begin, begin + block, pairs);
-  }
-}
-
-/// Compares the query with the boxes from `begin` on that start on axis 0 no later than it ends. Returns
-/// where it stopped.
+/// Which of the boxes from `at` on overlap the query and are not kept apart from it.
 template <bool Apart, int D>
-inline std::size_t sweep_from(const Query<D>& query, const Run<D>& run, std::size_t begin, PairSink& pairs) {
-  const float* const min = run.min[0];
-  const float last = query.max[0];
-  std::size_t j = begin;
-  for (; j + block <= run.size && min[j + block - 1] <= last; j += block)
-    compare_block<1, Apart>(query, run, j, pairs);
-  Pair* const out = pairs.room(block);
-  std::size_t count = 0;
-  for (; j < run.size && min[j] <= last; ++j) {
-    out[count] = ordered(query.id, run.id[j]);
-    count += hit<1, Apart>(query, run, j);
+HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t at,
+                         hn::Mask<Floats> candidates) {
+  const Floats floats;
+  auto touching = hn::And(candidates, hn::Le(query.min[0], hn::LoadU(floats, run.max[0] + at)));
+  for (int axis = 1; axis < D; ++axis) {
+    touching = hn::And(touching, hn::Le(hn::LoadU(floats, run.min[axis] + at), query.max[axis]));
+    touching = hn::And(touching, hn::Le(query.min[axis], hn::LoadU(floats, run.max[axis] + at)));
   }
-  pairs.commit(count);
-  return j;
+  const Hits hits = hn::RebindMask(Ids(), touching);
+  if constexpr (!Apart) return hits;
+  const IdVector common = hn::And(query.apart, hn::LoadU(Ids(), run.apart + at));
+  return hn::And(hits, hn::Eq(common, hn::Zero(Ids())));
 }
 
-/// Compares the query with the boxes from `begin` on.
 template <int D>
-inline void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin, PairSink& pairs) {
-  std::size_t j = begin;
-  for (; j + block <= run.size; j += block) compare_block<0, false>(query, run, j, pairs);
-  compare<0, false>(query, run, j, run.size, pairs);
+HWY_INLINE IdVector ids(const Run<D>& run, std::size_t at) {
+  return hn::LoadU(Ids(), reinterpret_cast<const std::uint32_t*>(run.id) + at);
 }
 
-}  // namespace
-
+/// Compares the query with the boxes from `begin` on that may start on axis 0 no later than it ends. Returns
+/// how many do.
 template <int D>
-std::uint64_t sweep(const Run<D>& run, PairSink& pairs) {
-  std::uint64_t tests = 0;
-  for (std::size_t i = 0; i < run.size; ++i)
-    tests += sweep_from<true>(Query<D>(run, i), run, i + 1, pairs) - i - 1;
+HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D>& run, std::size_t begin,
+                                  Writer& pairs) {
+  const Floats floats;
+  auto candidates = begins(query, run, begin);
+  std::size_t tests = hn::CountTrue(floats, candidates);
+  pairs.write(query.id, ids(run, begin), overlaps<true>(query, run, begin, candidates));
+  // Where candidates are many, most vectors of them hold no hit.
+  for (std::size_t at = begin + hn::Lanes(floats); run.min[0][at] <= last; at += hn::Lanes(floats)) {
+    candidates = begins(query, run, at);
+    tests += hn::CountTrue(floats, candidates);
+    const Hits hits = overlaps<true>(query, run, at, candidates);
+    if (!hn::AllFalse(Ids(), hits)) pairs.write(query.id, ids(run, at), hits);
+  }
   return tests;
 }
 
 template <int D>
-std::uint64_t sweep(const Run<D>& a, const Run<D>& b, PairSink& pairs) {
-  // Each pair has one box that starts first, or at the same place: there the box of `a` is taken for the
-  // first.
+std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
+  Writer pairs(sink);
+  std::uint64_t tests = 0;
+  for (std::size_t i = 0; i + 1 < run.size; ++i)
+    tests += sweep_from(Query<D>(run, i), run.max[0][i] + run.slack, run, i + 1, pairs);
+  return tests;
+}
+
+template <int D>
+std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
+  // Each pair has a box that is taken first; the other one is then still to come in its run.
+  Writer pairs(sink);
   std::uint64_t tests = 0;
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size && j < b.size) {
     if (a.min[0][i] <= b.min[0][j]) {
-      tests += sweep_from<true>(Query<D>(a, i), b, j, pairs) - j;
+      tests += sweep_from(Query<D>(a, i), a.max[0][i] + b.slack, b, j, pairs);
       ++i;
     } else {
-      tests += sweep_from<true>(Query<D>(b, j), a, i, pairs) - i;
+      tests += sweep_from(Query<D>(b, j), b.max[0][j] + a.slack, a, i, pairs);
       ++j;
     }
   }
   return tests;
 }
 
+/// Compares the query with all boxes from `begin` on.
 template <int D>
-std::uint64_t compare_all(const Run<D>& run, PairSink& pairs) {
+HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin, Writer& pairs) {
+  for (std::size_t at = begin; at < run.size; at += hn::Lanes(Floats())) {
+    const Hits hits = overlaps<false>(query, run, at, begins(query, run, at));
+    if (!hn::AllFalse(Ids(), hits)) pairs.write(query.id, ids(run, at), hits);
+  }
+}
+
+template <int D>
+std::uint64_t compare_run(const Run<D>& run, PairSink& sink) {
+  Writer pairs(sink);
   for (std::size_t i = 0; i < run.size; ++i) compare_from(Query<D>(run, i), run, i + 1, pairs);
   return std::uint64_t{run.size} * (run.size - 1) / 2;
 }
 
 template <int D>
-std::uint64_t compare_all(const Run<D>& a, const Run<D>& b, PairSink& pairs) {
+std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
+  Writer pairs(sink);
   for (std::size_t i = 0; i < a.size; ++i) compare_from(Query<D>(a, i), b, 0, pairs);
   return std::uint64_t{a.size} * b.size;
 }
 
-template std::uint64_t sweep(const Run<2>&, PairSink&);
-template std::uint64_t sweep(const Run<3>&, PairSink&);
-template std::uint64_t sweep(const Run<2>&, const Run<2>&, PairSink&);
-template std::uint64_t sweep(const Run<3>&, const Run<3>&, PairSink&);
-template std::uint64_t compare_all(const Run<2>&, PairSink&);
-template std::uint64_t compare_all(const Run<3>&, PairSink&);
-template std::uint64_t compare_all(const Run<2>&, const Run<2>&, PairSink&);
-template std::uint64_t compare_all(const Run<3>&, const Run<3>&, PairSink&);
+}  // namespace
+
+// What the dispatch below can name: no templates.
+std::uint64_t sweep_run_2(const Run<2>& run, PairSink& pairs) { return sweep_run(run, pairs); }
+std::uint64_t sweep_run_3(const Run<3>& run, PairSink& pairs) { return sweep_run(run, pairs); }
+std::uint64_t sweep_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
+  return sweep_runs(a, b, pairs);
+}
+std::uint64_t sweep_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
+  return sweep_runs(a, b, pairs);
+}
+std::uint64_t compare_run_2(const Run<2>& run, PairSink& pairs) { return compare_run(run, pairs); }
+std::uint64_t compare_run_3(const Run<3>& run, PairSink& pairs) { return compare_run(run, pairs); }
+std::uint64_t compare_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
+  return compare_runs(a, b, pairs);
+}
+std::uint64_t compare_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
+  return compare_runs(a, b, pairs);
+}
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace broadside::kernels {
+
+HWY_EXPORT(sweep_run_2);
+HWY_EXPORT(sweep_run_3);
+HWY_EXPORT(sweep_runs_2);
+HWY_EXPORT(sweep_runs_3);
+HWY_EXPORT(compare_run_2);
+HWY_EXPORT(compare_run_3);
+HWY_EXPORT(compare_runs_2);
+HWY_EXPORT(compare_runs_3);
+
+template <>
+std::uint64_t sweep(const Run<2>& run, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(sweep_run_2)(run, pairs);
+}
+
+template <>
+std::uint64_t sweep(const Run<3>& run, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(sweep_run_3)(run, pairs);
+}
+
+template <>
+std::uint64_t sweep(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(sweep_runs_2)(a, b, pairs);
+}
+
+template <>
+std::uint64_t sweep(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(sweep_runs_3)(a, b, pairs);
+}
+
+template <>
+std::uint64_t compare_all(const Run<2>& run, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(compare_run_2)(run, pairs);
+}
+
+template <>
+std::uint64_t compare_all(const Run<3>& run, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(compare_run_3)(run, pairs);
+}
+
+template <>
+std::uint64_t compare_all(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(compare_runs_2)(a, b, pairs);
+}
+
+template <>
+std::uint64_t compare_all(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(compare_runs_3)(a, b, pairs);
+}
 
 }  // namespace broadside::kernels
+#endif  // HWY_ONCE

@@ -26,7 +26,8 @@ const std::vector<Rule>& rules() {
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
-      {"src/kernels/", standard + R"(|"broadside/(box|pair)\.hpp"|"kernels/[a-z_]+\.hpp")"},
+      {"src/kernels/",
+       standard + R"(|"broadside/(box|pair|instruction_set)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
       {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
       {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")"},
