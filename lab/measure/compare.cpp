@@ -117,9 +117,9 @@ class Runner {
       return;
     }
     const Contest contest{contenders_, catalogue_.algorithms(), options_.effort, watch};
-    std::vector<Measurement> measurements =
-        of.mode == Mode::find ? measure_find<D>(of, inputs, contest) : measure_track<D>(of, inputs, contest);
-    comparison_.cases.push_back({std::move(of), std::move(measurements)});
+    comparison_.cases.push_back(of.mode == Mode::find
+                                    ? measure_find<D>(of, inputs, contest)
+                                    : CaseResult{of, measure_track<D>(of, inputs, contest)});
     if (options_.finished) options_.finished(comparison_.cases.back());
   }
 

@@ -1,6 +1,7 @@
 // Measures finders: every contender on the same boxes, in turns, each result checked.
 #include "lab/measure/find_case.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/allocation.hpp"
+#include "lab/measure/floor.hpp"
 #include "lab/measure/reference.hpp"
 
 namespace broadside::lab {
@@ -44,7 +46,7 @@ class FindCase {
   FindCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
       : case_(of), inputs_(inputs), contest_(contest) {}
 
-  std::vector<Measurement> run() {
+  CaseResult run() {
     std::vector<Measurement> entries;
     for (const Contender& contender : contest_.contenders) entries.push_back(entry_of(contender));
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -52,8 +54,10 @@ class FindCase {
         contestants_.push_back({&contest_.contenders[i], &entries[i]});
     }
     for (Contestant<D>& contestant : contestants_) first_call(contestant);
+    has_floor_ = !contestants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
+    if (has_floor_) call_floor(0);  // to have it warm
     for (std::size_t round = 0; round < contest_.effort.most_samples; ++round) play(round);
-    return entries;
+    return {case_, std::move(entries), std::move(floor_ms_)};
   }
 
  private:
@@ -105,24 +109,57 @@ class FindCase {
   }
 
   /// One timed call of each contestant that is not done, on the same boxes, another one first in each round.
+  /// The floor has the seat behind the last.
   void play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
-    for (std::size_t turn = 0; turn < contestants_.size(); ++turn) {
-      Contestant<D>& contestant = contestants_[(turn + round) % contestants_.size()];
-      if (contestant.done) continue;
-      Measurement& entry = *contestant.entry;
-      contest_.watch.at(fmt::format("{}, round {}", entry.algorithm, round + 1));
-      pairs_.reserve(expectation(*contestant.contender->algorithm, input).count);
-      settle(contestant, fault_of(entry, [&] {
-               const double milliseconds = call(*contestant.finder, boxes_of(input));
-               entry.samples_ms.push_back(milliseconds);
-               contestant.spent_ms += milliseconds;
-               return check(contestant, input);
-             }));
-      if (entry.samples_ms.size() >= contest_.effort.least_samples &&
-          contestant.spent_ms >= contest_.effort.share_seconds * 1e3)
-        contestant.done = true;
+    const std::size_t seats = contestants_.size() + (has_floor_ ? 1 : 0);
+    for (std::size_t turn = 0; turn < seats; ++turn) {
+      const std::size_t seat = (turn + round) % seats;
+      if (seat < contestants_.size())
+        sample(contestants_[seat], input, round);
+      else
+        sample_floor(input);
     }
+  }
+
+  void sample(Contestant<D>& contestant, std::size_t input, std::size_t round) {
+    if (contestant.done) return;
+    Measurement& entry = *contestant.entry;
+    contest_.watch.at(fmt::format("{}, round {}", entry.algorithm, round + 1));
+    pairs_.reserve(expectation(*contestant.contender->algorithm, input).count);
+    settle(contestant, fault_of(entry, [&] {
+             const double milliseconds = call(*contestant.finder, boxes_of(input));
+             entry.samples_ms.push_back(milliseconds);
+             contestant.spent_ms += milliseconds;
+             return check(contestant, input);
+           }));
+    contestant.done = contestant.done || is_enough(entry.samples_ms, contestant.spent_ms);
+  }
+
+  /// Goes on as long as any contestant does.
+  void sample_floor(std::size_t input) {
+    const bool last = std::ranges::all_of(contestants_, &Contestant<D>::done);
+    if (last && floor_ms_.size() >= contest_.effort.least_samples) return;
+    contest_.watch.at("the floor");
+    floor_ms_.push_back(call_floor(input));
+  }
+
+  /// Whether a contestant has had its share of samples.
+  bool is_enough(const std::vector<double>& samples_ms, double spent_ms) const {
+    return samples_ms.size() >= contest_.effort.least_samples &&
+           spent_ms >= contest_.effort.share_seconds * 1e3;
+  }
+
+  /// Milliseconds for the floor's work, with as many pairs as a search must give.
+  double call_floor(std::size_t input) {
+    const auto known = std::ranges::find(expectations_, input, [](const auto& e) { return e->input; });
+    const std::size_t count = known != expectations_.end()
+                                  ? (*known)->count
+                                  : expectation(*contestants_[0].contender->algorithm, input).count;
+    pairs_.resize(count);
+    const Stopwatch watch;
+    floor_.run(boxes_of(input), pairs_);
+    return watch.milliseconds();
   }
 
   /// Milliseconds for one search, whose pairs are then in pairs_.
@@ -181,17 +218,19 @@ class FindCase {
   std::vector<Contestant<D>> contestants_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
+  Floor<D> floor_;
+  bool has_floor_ = false;
+  std::vector<double> floor_ms_;
 };
 
 }  // namespace
 
 template <int D>
-std::vector<Measurement> measure_find(const Case& of, std::span<const History<D>> inputs,
-                                      const Contest& contest) {
+CaseResult measure_find(const Case& of, std::span<const History<D>> inputs, const Contest& contest) {
   return FindCase<D>(of, inputs, contest).run();
 }
 
-template std::vector<Measurement> measure_find(const Case&, std::span<const History<2>>, const Contest&);
-template std::vector<Measurement> measure_find(const Case&, std::span<const History<3>>, const Contest&);
+template CaseResult measure_find(const Case&, std::span<const History<2>>, const Contest&);
+template CaseResult measure_find(const Case&, std::span<const History<3>>, const Contest&);
 
 }  // namespace broadside::lab

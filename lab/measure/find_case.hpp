@@ -11,11 +11,10 @@ namespace broadside::lab {
 
 /// Times one whole find() at a time, into a vector whose memory is there already, on the first boxes of each
 /// input (one a seed of the case) in rotation, and checks every result. One measurement a contender, in their
-/// order.
+/// order. The floor takes its turns among the contenders.
 ///
 /// Throws Stopped. What a contender throws is its failure and no error.
 template <int D>
-std::vector<Measurement> measure_find(const Case& of, std::span<const History<D>> inputs,
-                                      const Contest& contest);
+CaseResult measure_find(const Case& of, std::span<const History<D>> inputs, const Contest& contest);
 
 }  // namespace broadside::lab

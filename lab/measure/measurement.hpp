@@ -57,6 +57,7 @@ struct Measurement {
 struct CaseResult {
   Case of;
   std::vector<Measurement> measurements;
+  std::vector<double> floor_ms{};  ///< samples of the floor (floor.hpp); none where it makes no sense
 };
 
 /// How much time an algorithm may take in a case.

@@ -45,7 +45,8 @@ Json build_json() {
           {"flags", or_null(build.flags)}};
 }
 
-Json measurement_json(const Case& of, const Measurement& measurement) {
+Json measurement_json(const CaseResult& result, const Measurement& measurement) {
+  const Case& of = result.of;
   const std::vector<double>& samples = measurement.samples_ms;
   const bool timed = !samples.empty();
   const auto& statistics = measurement.statistics;
@@ -80,6 +81,7 @@ Json measurement_json(const Case& of, const Measurement& measurement) {
   json["search_ms"] = nullptr;
   json["ns_per_box"] =
       timed && of.boxes > 0 ? Json(median(samples) * 1e6 / static_cast<double>(of.boxes)) : Json();
+  json["floor_ms"] = result.floor_ms.empty() ? Json() : Json(median(result.floor_ms));
   json["tests"] = statistics ? Json(statistics->tests) : Json();
   json["references"] = statistics ? Json(statistics->references) : Json();
   json["own_bytes"] = or_null(measurement.own_bytes);
@@ -100,7 +102,7 @@ std::string json_of(const Comparison& comparison, std::span<const std::string> c
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {
       text += separator;
-      text += text_of(measurement_json(result.of, measurement));
+      text += text_of(measurement_json(result, measurement));
       separator = ",\n";
     }
   }

@@ -131,40 +131,56 @@ std::vector<Standing> standings(const Comparison& comparison) {
 std::string table_of(const CaseResult& result) {
   const Case& of = result.of;
   const double fastest = fastest_of(result);
+  const double floor = result.floor_ms.empty() ? 0 : median(result.floor_ms);
   const double boxes = static_cast<double>(std::max<std::size_t>(of.boxes, 1));
   const Unit unit = unit_for(fastest);
   const bool any_estimate = std::ranges::any_of(
       result.measurements, [](const Measurement& m) { return m.estimated_ms.has_value(); });
   const std::string no_mark = any_estimate ? "     " : "";  // as wide as " est."
   const bool tracked = of.mode == Mode::track;
+  const auto range = [&](const std::vector<double>& samples) {
+    return unit.text(std::ranges::min(samples)) + ".." +
+           unit.text(tracked ? percentile(samples, 0.99) : std::ranges::max(samples));
+  };
 
-  Columns columns("<>>>>>><<");
-  columns.add({"algorithm", (tracked ? unit.name + " a frame" : unit.name) + no_mark, "ratio", "ns a box",
-               "tests a box", "memory", "peak", tracked ? "min..p99" : "min..max", ""});
+  // Where there is no floor, there is no column for it.
+  Columns columns(floor > 0 ? "<>>>>>>><<" : "<>>>>>><<");
+  const auto add = [&](std::vector<std::string> row, const std::string& over_floor) {
+    if (floor > 0) row.insert(row.begin() + 3, over_floor);
+    columns.add(std::move(row));
+  };
+  add({"algorithm", (tracked ? unit.name + " a frame" : unit.name) + no_mark, "ratio", "ns a box",
+       "tests a box", "memory", "peak", tracked ? "min..p99" : "min..max", ""},
+      "floors");
   for (const Measurement* const measurement : in_order(result)) {
     const auto& statistics = measurement->statistics;
     const bool timed = is_timed(*measurement);
     const double time = time_of(*measurement);
-    const std::vector<double>& samples = measurement->samples_ms;
     const bool estimated = measurement->estimated_ms.has_value();
     const double ratio = fastest > 0 ? time / fastest : INFINITY;
-    columns.add({
-        measurement->algorithm,
-        timed       ? unit.text(time) + no_mark
-        : estimated ? "~" + unit.text(time) + " est."
-                    : "-" + no_mark,
-        !std::isfinite(ratio) ? "-"
-        : timed               ? ratio_text(ratio)
-                              : "~" + ratio_text(ratio),
-        timed ? rounded(time * 1e6 / boxes) : "-",
-        timed && statistics ? rounded(static_cast<double>(statistics->tests) / boxes) : "-",
-        timed && measurement->own_bytes ? bytes(*measurement->own_bytes) : "-",
-        timed && measurement->peak_bytes ? bytes(*measurement->peak_bytes) : "-",
-        timed ? unit.text(std::ranges::min(samples)) + ".." +
-                    unit.text(tracked ? percentile(samples, 0.99) : std::ranges::max(samples))
-              : "-",
-        verdict(*measurement),
-    });
+    add(
+        {
+            measurement->algorithm,
+            timed       ? unit.text(time) + no_mark
+            : estimated ? "~" + unit.text(time) + " est."
+                        : "-" + no_mark,
+            !std::isfinite(ratio) ? "-"
+            : timed               ? ratio_text(ratio)
+                                  : "~" + ratio_text(ratio),
+            timed ? rounded(time * 1e6 / boxes) : "-",
+            timed && statistics ? rounded(static_cast<double>(statistics->tests) / boxes) : "-",
+            timed && measurement->own_bytes ? bytes(*measurement->own_bytes) : "-",
+            timed && measurement->peak_bytes ? bytes(*measurement->peak_bytes) : "-",
+            timed ? range(measurement->samples_ms) : "-",
+            verdict(*measurement),
+        },
+        timed ? ratio_text(time / floor) : "-");
+  }
+  if (floor > 0) {
+    add({"the floor", unit.text(floor) + no_mark, fastest > 0 ? ratio_text(floor / fastest) : "-",
+         rounded(floor * 1e6 / boxes), "-", "-", "-", range(result.floor_ms),
+         "boxes sorted and gathered, pairs written"},
+        "1.00");
   }
   return heading(result) + columns.text("  ");
 }

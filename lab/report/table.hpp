@@ -8,7 +8,8 @@
 namespace broadside::lab {
 
 /// One case: a line that says what it is, and a line for each algorithm, the fastest first, those without a
-/// time last. Plain text.
+/// time last. Where the floor was timed, its line ends the table, and each time is given in floors as well.
+/// Plain text.
 std::string table_of(const CaseResult& result);
 
 /// What all cases come to: each algorithm's ratio to the fastest as a geometric mean, how many measurements

@@ -94,6 +94,19 @@ TEST(Table, ShowsMedianRatioAndTheRestOfALine) {
             "  second     9.00   2.00       900         5.00  64.0 kB  65.0 kB  8.00..10.0  verified");
 }
 
+TEST(Table, EndsWithTheFloorAndCountsInFloors) {
+  CaseResult result = still_case({timed("second", {9}), timed("first", {4.5}), failed("wrong")});
+  result.floor_ms = {1.4, 1.6, 1.5};
+  const auto lines = lines_of(table_of(result));
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_THAT(lines[1], StartsWith("  algorithm    ms  ratio  floors  ns a box "));
+  EXPECT_THAT(lines[2], StartsWith("  first      4.50   1.00    3.00       450 "));
+  EXPECT_THAT(lines[3], StartsWith("  second     9.00   2.00    6.00       900 "));
+  EXPECT_THAT(lines[4], StartsWith("  wrong         -      -       -         - "));
+  EXPECT_THAT(lines[5], StartsWith("  the floor  1.50   0.33    1.00       150 "));
+  EXPECT_THAT(lines[5], HasSubstr("  1.40..1.60  boxes sorted and gathered, pairs written"));
+}
+
 TEST(Table, LabelsAnEstimateAndKeepsTheColumnsAligned) {
   const auto lines = lines_of(table_of(still_case({timed("first", {4.5}), skipped("slow")})));
   EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,111 "));
@@ -175,12 +188,12 @@ TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
     EXPECT_TRUE(json["build"].contains(field));
   std::vector<std::string> fields;
   for (const auto& item : json["measurements"][0].items()) fields.push_back(item.key());
-  EXPECT_THAT(fields,
-              testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes", "frames",
-                                   "moving", "algorithm", "version", "kind", "mode", "threads", "target",
-                                   "pairs", "pair_hash", "verified", "verified_by", "skipped", "median_ms",
-                                   "min_ms", "p99_ms", "max_ms", "samples_ms", "build_ms", "search_ms",
-                                   "ns_per_box", "tests", "references", "own_bytes", "peak_bytes"));
+  EXPECT_THAT(fields, testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes",
+                                           "frames", "moving", "algorithm", "version", "kind", "mode",
+                                           "threads", "target", "pairs", "pair_hash", "verified",
+                                           "verified_by", "skipped", "median_ms", "min_ms", "p99_ms",
+                                           "max_ms", "samples_ms", "build_ms", "search_ms", "ns_per_box",
+                                           "floor_ms", "tests", "references", "own_bytes", "peak_bytes"));
 }
 
 TEST(JsonResults, HoldWhatWasMeasured) {
@@ -198,6 +211,16 @@ TEST(JsonResults, HoldWhatWasMeasured) {
   EXPECT_EQ(measurement["samples_ms"], (Json{1.0, 2.0, 6.0}));
   EXPECT_EQ(measurement["ns_per_box"], 200);
   EXPECT_EQ(measurement["tests"], 50'000);
+}
+
+TEST(JsonResults, HaveTheFloorOfTheCaseInEachMeasurement) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("grid", {4}), failed("wrong")}), still_case({timed("grid", {4})})};
+  comparison.cases[0].floor_ms = {3, 1, 2};
+  const Json json = Json::parse(json_of(comparison, std::vector<std::string>{}));
+  EXPECT_EQ(json["measurements"][0]["floor_ms"], 2);
+  EXPECT_EQ(json["measurements"][1]["floor_ms"], 2);
+  EXPECT_TRUE(json["measurements"][2]["floor_ms"].is_null());
 }
 
 TEST(JsonResults, SayWhyThereIsNoTimeAndLeaveNullWhatIsNotKnown) {
