@@ -37,9 +37,17 @@ std::vector<LawCase> law_cases_in(int dimension);
 std::string name(const LawCase& law_case);
 void PrintTo(const LawCase& law_case, std::ostream* out);
 
+/// Whether the tests run on one instruction set instead of the best one: BROADSIDE_INSTRUCTION_SET names it.
+bool is_instruction_set_chosen();
+
 /// The base of the tests of every law.
 class Law : public testing::TestWithParam<LawCase> {
  protected:
+  void SetUp() override {
+    if (is_instruction_set_chosen() && algorithm().kind != AlgorithmKind::own)
+      GTEST_SKIP() << algorithm().name << " does not use the kernels";
+  }
+
   const Algorithm& algorithm() const { return *GetParam().algorithm; }
 
   /// The algorithm's spec with no value given.

@@ -1,0 +1,248 @@
+// The kernels on every instruction set there is: the pairs of their definition, in its order, and its count
+// of tests.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/box.hpp"
+#include "broadside/instruction_set.hpp"
+#include "broadside/sinks.hpp"
+
+#include "kernels/sweep.hpp"
+#include "tests/instruction_sets.hpp"
+
+namespace broadside::kernels {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+template <int D>
+struct Entry {
+  Box<D> box;
+  BoxId id;
+  std::uint32_t apart;
+};
+
+template <int D>
+using Entries = std::vector<Entry<D>>;
+
+struct Result {
+  std::vector<Pair> pairs;
+  std::uint64_t tests = 0;
+
+  friend bool operator==(const Result&, const Result&) = default;
+};
+
+/// Compares two entries as a kernel does. Whether `a` and `b` were a test is returned.
+template <int D>
+bool test(const Entry<D>& a, const Entry<D>& b, bool looks_at_apart, Result& result) {
+  if (b.box.min[0] > a.box.max[0]) return false;
+  if (overlap(a.box, b.box) && (!looks_at_apart || (a.apart & b.apart) == 0))
+    result.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
+  return true;
+}
+
+template <int D>
+Result swept(const Entries<D>& run) {
+  Result result;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    for (std::size_t j = i + 1; j < run.size(); ++j)
+      result.tests += test(run[i], run[j], true, result) ? 1 : 0;
+  }
+  return result;
+}
+
+template <int D>
+Result swept(const Entries<D>& a, const Entries<D>& b) {
+  Result result;
+  const auto test_from = [&](const Entry<D>& entry, const Entries<D>& others, std::size_t at) {
+    for (; at < others.size(); ++at) result.tests += test(entry, others[at], true, result) ? 1 : 0;
+  };
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (a[i].box.min[0] <= b[j].box.min[0])
+      test_from(a[i++], b, j);
+    else
+      test_from(b[j++], a, i);
+  }
+  return result;
+}
+
+template <int D>
+Result compared(const Entries<D>& run) {
+  Result result;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    for (std::size_t j = i + 1; j < run.size(); ++j) test(run[i], run[j], false, result);
+  }
+  result.tests = run.size() * (run.size() - 1) / 2;
+  return result;
+}
+
+template <int D>
+Result compared(const Entries<D>& a, const Entries<D>& b) {
+  Result result;
+  for (const Entry<D>& one : a) {
+    for (const Entry<D>& other : b) test(one, other, false, result);
+  }
+  result.tests = a.size() * b.size();
+  return result;
+}
+
+/// What a kernel called by `search` finds.
+template <typename Search>
+Result found(Search search) {
+  Result result;
+  PairCollector collector(result.pairs);
+  result.tests = search(static_cast<PairSink&>(collector));
+  collector.flush();
+  return result;
+}
+
+/// A run of `entries` in the memory of others before it, whose boxes then lie behind its end.
+template <int D>
+Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, float slack = 0) {
+  buffer.clear();
+  buffer.reserve(entries.size());
+  for (const Entry<D>& entry : entries) buffer.append(entry.box, entry.id, entry.apart);
+  return buffer.view(slack);
+}
+
+/// How boxes are drawn.
+struct Kind {
+  std::string name;
+  int values;  ///< coordinates are whole numbers below this one: where they are few, many are equal
+  int most_extent;
+  bool infinite;        ///< some reach to infinity, on either side or both
+  std::uint32_t apart;  ///< these bits of `apart` are set at random
+};
+
+const std::vector<Kind> kinds = {
+    {"sparse", 4000, 60, false, 0},
+    {"ties", 12, 3, false, 0},
+    {"points on one another", 2, 0, false, 0},
+    {"infinite", 60, 10, true, 0},
+    {"apart", 40, 20, false, 7U},
+    {"two sets", 60, 30, false, 3U << 30},
+    {"everything overlaps", 1, 0, true, 0},
+};
+
+template <int D>
+Entries<D> entries_of(const Kind& kind, std::size_t count, std::uint32_t first_id, std::mt19937& random) {
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  Entries<D> entries(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      float& min = entries[i].box.min[axis];
+      float& max = entries[i].box.max[axis];
+      min = static_cast<float>(below(kind.values));
+      max = min + static_cast<float>(below(kind.most_extent + 1));
+      if (!kind.infinite || below(4) != 0) continue;
+      const int sides = below(5);  // one of them: a box at an infinite point
+      if (sides != 0) max = infinity;
+      if (sides != 1) min = sides == 2 ? infinity : -infinity;
+    }
+    entries[i].id = BoxId(first_id + i);
+    entries[i].apart = static_cast<std::uint32_t>(random()) & kind.apart;
+  }
+  std::ranges::shuffle(entries, random);  // ids must not rise with the places
+  return entries;
+}
+
+/// The widths of buckets by which runs are sorted; 0: wholly sorted. The coarsest one comes first, since a
+/// sort leaves in a bucket what order it finds.
+constexpr float slacks[] = {20, 1.5F, 0};
+
+/// Sorts as kernels::sweep() asks for: by min[0], or only by which multiple of `slack` it lies above.
+template <int D>
+void sort_run(Entries<D>& entries, float slack = 0) {
+  std::ranges::stable_sort(entries, {}, [slack](const Entry<D>& entry) {
+    const float min = entry.box.min[0];
+    return slack == 0 || std::isinf(min) ? min : std::floor(min / slack);
+  });
+}
+
+/// Runs `body.operator()<D>(kind, entries, others)` on every instruction set and sizes from 0 to 200.
+template <typename Body>
+void on_all(Body body) {
+  for (const std::string& name : instruction_sets_here()) {
+    const OnInstructionSet chosen(name);
+    ASSERT_EQ(instruction_set(), name);
+    for (const Kind& kind : kinds) {
+      SCOPED_TRACE(name + ", " + kind.name);
+      std::mt19937 random(17);
+      for (std::size_t size = 200; size != std::size_t(-1); size -= size > 70 ? 13 : 1) {
+        const std::size_t other = random() % 200;
+        const auto ids = static_cast<std::uint32_t>(size);
+        body.template operator()<2>(entries_of<2>(kind, size, 0, random),
+                                    entries_of<2>(kind, other, ids, random));
+        body.template operator()<3>(entries_of<3>(kind, size, 0, random),
+                                    entries_of<3>(kind, other, ids, random));
+        if (testing::Test::HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(Kernels, AreThereForPlainCppAtLeast) {
+  const std::vector<std::string> names = instruction_sets_here();
+  ASSERT_FALSE(names.empty());
+  for (const std::string& name : names) EXPECT_TRUE(is_instruction_set(name)) << name;
+  EXPECT_EQ(instruction_set(), names.front());
+  EXPECT_FALSE(is_instruction_set("Unknown"));
+}
+
+TEST(Kernels, SweepARunAsDefinedOnEveryInstructionSet) {
+  on_all([]<int D>(Entries<D> run, const Entries<D>&) {
+    static RunBuffer<D> buffer;
+    for (const float slack : slacks) {
+      sort_run(run, slack);
+      EXPECT_EQ(found([&](PairSink& pairs) { return sweep(fill(buffer, run, slack), pairs); }), swept(run))
+          << run.size() << " boxes, slack " << slack;
+    }
+  });
+}
+
+TEST(Kernels, SweepTwoRunsAsDefinedOnEveryInstructionSet) {
+  on_all([]<int D>(Entries<D> a, Entries<D> b) {
+    static RunBuffer<D> first;
+    static RunBuffer<D> second;
+    for (const float slack : slacks) {
+      sort_run(a, slack);
+      sort_run(b);
+      EXPECT_EQ(found([&](PairSink& pairs) { return sweep(fill(first, a, slack), fill(second, b), pairs); }),
+                swept(a, b))
+          << a.size() << " and " << b.size() << " boxes, slack " << slack;
+      EXPECT_EQ(found([&](PairSink& pairs) { return sweep(fill(second, b), fill(first, a, slack), pairs); }),
+                swept(b, a))
+          << b.size() << " and " << a.size() << " boxes, slack " << slack;
+    }
+  });
+}
+
+TEST(Kernels, CompareAllOfARunOnEveryInstructionSet) {
+  on_all([]<int D>(const Entries<D>& run, const Entries<D>&) {
+    static RunBuffer<D> buffer;
+    EXPECT_EQ(found([&](PairSink& pairs) { return compare_all(fill(buffer, run), pairs); }), compared(run))
+        << run.size();
+  });
+}
+
+TEST(Kernels, CompareAllOfTwoRunsOnEveryInstructionSet) {
+  on_all([]<int D>(const Entries<D>& a, const Entries<D>& b) {
+    static RunBuffer<D> first;
+    static RunBuffer<D> second;
+    EXPECT_EQ(found([&](PairSink& pairs) { return compare_all(fill(first, a), fill(second, b), pairs); }),
+              compared(a, b))
+        << a.size() << " and " << b.size();
+  });
+}
+
+}  // namespace
+}  // namespace broadside::kernels
