@@ -1,0 +1,84 @@
+// The kernels alone, by the number of boxes in a run and by instruction set: kernels
+// [--benchmark_filter=...].
+//
+// Runs are such that a box has some eight candidates on the swept axis, whatever their size. A time is that
+// of a whole call; pairs of boxes compared and pairs found, a second, stand beside it.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <hwy/targets.h>
+
+#include "broadside/sinks.hpp"
+
+#include "kernels/run.hpp"
+#include "kernels/sweep.hpp"
+#include "lab/scenes/random.hpp"
+
+namespace broadside::bench {
+namespace {
+
+template <int D>
+kernels::RunBuffer<D> run_of(std::size_t count, std::uint64_t seed) {
+  lab::Random random(seed);
+  std::vector<Box<D>> boxes(count);
+  for (Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = static_cast<float>(random.between(0, axis == 0 ? static_cast<double>(count) / 8 : 4));
+      box.max[axis] = box.min[axis] + 1;
+    }
+  }
+  std::ranges::sort(boxes, {}, [](const Box<D>& box) { return box.min[0]; });
+  kernels::RunBuffer<D> run;
+  run.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) run.append(boxes[i], BoxId{i});
+  return run;
+}
+
+/// Times one kernel, `call(a, b, pairs)`, with the kernels of one of Highway's targets.
+template <int D, typename Call>
+void time_kernel(benchmark::State& state, std::int64_t target, Call call) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  const auto count = static_cast<std::size_t>(state.range(0));
+  kernels::RunBuffer<D> a = run_of<D>(count, 1);
+  kernels::RunBuffer<D> b = run_of<D>(count, 2);
+  PairCounter pairs;
+  std::uint64_t tests = 0;
+  for (auto _ : state) tests += call(a.view(), b.view(), pairs);
+  pairs.flush();
+  state.counters["tests"] = {static_cast<double>(tests), benchmark::Counter::kIsRate};
+  state.counters["pairs"] = {static_cast<double>(pairs.count()), benchmark::Counter::kIsRate};
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+template <int D>
+void register_kernels(std::int64_t target) {
+  using Run = kernels::Run<D>;
+  const std::string end = "/" + std::to_string(D) + "D/" + hwy::TargetName(target);
+  const auto add = [&](const std::string& name, auto call) {
+    benchmark::RegisterBenchmark((name + end).c_str(), time_kernel<D, decltype(call)>, target, call)
+        ->RangeMultiplier(4)
+        ->Range(16, 4096);
+  };
+  add("sweep_run", [](const Run& a, const Run&, PairSink& pairs) { return kernels::sweep(a, pairs); });
+  add("sweep_runs", [](const Run& a, const Run& b, PairSink& pairs) { return kernels::sweep(a, b, pairs); });
+  add("compare_run",
+      [](const Run& a, const Run&, PairSink& pairs) { return kernels::compare_all(a, pairs); });
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** arguments) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    broadside::bench::register_kernels<2>(target);
+    broadside::bench::register_kernels<3>(target);
+  }
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}
