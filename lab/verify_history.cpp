@@ -69,21 +69,21 @@ class HistoryCheck {
   }
 
  private:
-  /// Finds the fullest frame, and whether there are infinite boxes.
+  /// Finds the fullest frame, and what may be beyond limits.
   void look_through() {
     std::vector<Box<D, Real>> boxes = history_.boxes;
     fullest_ = boxes;
-    any_infinite_ = any_infinite<D, Real>(boxes);
+    extremes_.take<D, Real>(boxes);
     for (const Step<D, Real>& step : history_.steps) {
       lab::apply(step, boxes);
-      any_infinite_ = any_infinite_ || any_infinite<D, Real>(step.boxes);
+      extremes_.take<D, Real>(step.boxes);
       if (boxes.size() > fullest_.size()) fullest_ = boxes;
     }
   }
 
   void let_in(const Contender& contender) {
     Verdict verdict{.algorithm = contender.spec.text()};
-    verdict.reason = unfit(contender, D, any_infinite_);
+    verdict.reason = unfit(contender, D, extremes_);
     if (verdict.reason.empty()) verdict.reason = too_slow(contender);
     if (!verdict.reason.empty()) {
       verdict.outcome = Outcome::skipped;
@@ -246,7 +246,7 @@ class HistoryCheck {
   std::span<const Algorithm> known_;
   const VerifyOptions& options_;
   std::vector<Box<D, Real>> fullest_;  // the boxes of the frame with the most places
-  bool any_infinite_ = false;
+  Extremes extremes_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Contestant<D, Real>> contestants_;
   HistoryVerdicts result_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,6 +46,12 @@ struct Algorithm {
   MakeTracker<3> tracker_3d{};
 
   bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
+
+  /// Declared limit: the greatest magnitude of a finite coordinate that is within it.
+  double largest_coordinate = std::numeric_limits<double>::max();
+
+  /// Whether it takes memory otherwise than through operator new, so that the lab cannot count it.
+  bool own_allocator = false;
 
   /// Whether it does `dimension`.
   bool has_dimension(int dimension) const {

@@ -51,16 +51,19 @@ void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, doubl
   entry.estimated_ms = estimate.seconds * 1e3;
 }
 
-void count_memory(Measurement& entry, const std::optional<Allocation>& allocation) {
-  if (!allocation) return;
+void count_memory(Measurement& entry, const Algorithm& algorithm,
+                  const std::optional<Allocation>& allocation) {
+  if (!allocation || algorithm.own_allocator) return;
   entry.own_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->kept, 0));
   entry.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->peak, 0));
 }
 
-std::string unfit(const Contender& contender, int dimension, bool infinite) {
+std::string unfit(const Contender& contender, int dimension, const Extremes& extremes) {
   const Algorithm& algorithm = *contender.algorithm;
   if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
-  if (infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
+  if (extremes.infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
+  if (extremes.largest > algorithm.largest_coordinate)
+    return fmt::format("does not take coordinates beyond {:.3g}", algorithm.largest_coordinate);
   try {
     // A value may make sense in one dimension only, such as an axis.
     dimension == 2 ? void(make_finder<2>(algorithm, contender.spec))
@@ -72,17 +75,23 @@ std::string unfit(const Contender& contender, int dimension, bool infinite) {
 }
 
 template <int D, typename Real>
-bool any_infinite(std::type_identity_t<std::span<const Box<D, Real>>> boxes) {
-  return std::ranges::any_of(boxes, [](const Box<D, Real>& box) {
-    const auto infinite = [](Real coordinate) { return std::isinf(coordinate); };
-    return is_present(box) &&
-           (std::ranges::any_of(box.min, infinite) || std::ranges::any_of(box.max, infinite));
-  });
+void Extremes::take(std::type_identity_t<std::span<const Box<D, Real>>> boxes) {
+  for (const Box<D, Real>& box : boxes) {
+    if (!is_present(box)) continue;
+    for (const auto& corner : {box.min, box.max}) {
+      for (const Real coordinate : corner) {
+        if (std::isinf(coordinate))
+          infinite = true;
+        else
+          largest = std::max(largest, std::abs(static_cast<double>(coordinate)));
+      }
+    }
+  }
 }
 
-template bool any_infinite<2, float>(std::span<const Box2>);
-template bool any_infinite<3, float>(std::span<const Box3>);
-template bool any_infinite<2, double>(std::span<const DoubleBox2>);
-template bool any_infinite<3, double>(std::span<const DoubleBox3>);
+template void Extremes::take<2, float>(std::span<const Box2>);
+template void Extremes::take<3, float>(std::span<const Box3>);
+template void Extremes::take<2, double>(std::span<const DoubleBox2>);
+template void Extremes::take<3, double>(std::span<const DoubleBox3>);
 
 }  // namespace broadside::lab

@@ -65,14 +65,21 @@ void fail(Measurement& entry, const std::string& fault);
 /// Marks the contender as too slow for `budget` seconds, in which it would have to make `calls` calls.
 void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, double budget);
 
-/// Notes the memory that was counted, if it was.
-void count_memory(Measurement& entry, const std::optional<Allocation>& allocation);
+/// Notes the memory that was counted, if it was and if all that `algorithm` takes could be counted.
+void count_memory(Measurement& entry, const Algorithm& algorithm,
+                  const std::optional<Allocation>& allocation);
 
-/// Why `algorithm` cannot take boxes of this dimension, some of them infinite or none; empty if it can.
-std::string unfit(const Contender& contender, int dimension, bool infinite);
+/// What boxes have that may be beyond an algorithm's declared limits, absent ones aside.
+struct Extremes {
+  bool infinite = false;  ///< whether any of them reaches to infinity
+  double largest = 0;     ///< the greatest magnitude of their finite coordinates
 
-/// Whether any of the boxes reaches to infinity, absent ones aside.
-template <int D, typename Real = float>
-bool any_infinite(std::type_identity_t<std::span<const Box<D, Real>>> boxes);
+  /// Takes in more boxes.
+  template <int D, typename Real = float>
+  void take(std::type_identity_t<std::span<const Box<D, Real>>> boxes);
+};
+
+/// Why the contender cannot take boxes of this dimension and with these extremes; empty if it can.
+std::string unfit(const Contender& contender, int dimension, const Extremes& extremes);
 
 }  // namespace broadside::lab

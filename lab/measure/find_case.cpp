@@ -44,7 +44,9 @@ template <int D>
 class FindCase {
  public:
   FindCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
-      : case_(of), inputs_(inputs), contest_(contest) {}
+      : case_(of), inputs_(inputs), contest_(contest) {
+    for (const History<D>& input : inputs) extremes_.take<D>(input.boxes);
+  }
 
   CaseResult run() {
     std::vector<Measurement> entries;
@@ -65,7 +67,7 @@ class FindCase {
 
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
-    entry.reason = unfit(contender, D, any_infinite<D>(boxes_of(0)));
+    entry.reason = unfit(contender, D, extremes_);
     if (!entry.reason.empty()) return false;
     const double budget = contest_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
@@ -96,7 +98,7 @@ class FindCase {
              const AllocationMeter meter;
              contestant.finder = make_finder<D>(*contestant.contender->algorithm, contestant.contender->spec);
              const double milliseconds = call(*contestant.finder, boxes_of(0));
-             count_memory(entry, meter.read());
+             count_memory(entry, *contestant.contender->algorithm, meter.read());
              entry.pairs = pairs_.size();
              entry.pair_hash = hash_of(pairs_);
              entry.statistics = contestant.finder->statistics();
@@ -215,6 +217,7 @@ class FindCase {
   const Case& case_;
   std::span<const History<D>> inputs_;
   const Contest& contest_;
+  Extremes extremes_;
   std::vector<Contestant<D>> contestants_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all

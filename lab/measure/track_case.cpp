@@ -68,7 +68,12 @@ template <int D>
 class TrackCase {
  public:
   TrackCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
-      : case_(of), inputs_(inputs), contest_(contest) {}
+      : case_(of), inputs_(inputs), contest_(contest) {
+    for (const History<D>& input : inputs) {
+      extremes_.take<D>(input.boxes);
+      for (const Step<D>& step : input.steps) extremes_.take<D>(step.boxes);
+    }
+  }
 
   std::vector<Measurement> run() {
     std::vector<Measurement> entries;
@@ -94,10 +99,7 @@ class TrackCase {
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
     const History<D>& history = inputs_[0];
-    const bool infinite =
-        any_infinite<D>(history.boxes) ||
-        std::ranges::any_of(history.steps, [](const Step<D>& step) { return any_infinite<D>(step.boxes); });
-    entry.reason = unfit(contender, D, infinite);
+    entry.reason = unfit(contender, D, extremes_);
     if (!entry.reason.empty()) return false;
     const double frames = static_cast<double>(case_.frames + 1);
     const double budget = contest_.effort.budget_seconds;
@@ -192,7 +194,7 @@ class TrackCase {
       Allocation& memory = contestant.memory;
       memory.peak = std::max(memory.peak, memory.kept + allocation->peak);
       memory.kept += allocation->kept;
-      count_memory(*contestant.entry, memory);
+      count_memory(*contestant.entry, *contestant.contender->algorithm, memory);
     }
     return milliseconds;
   }
@@ -248,6 +250,7 @@ class TrackCase {
   const Case& case_;
   std::span<const History<D>> inputs_;
   const Contest& contest_;
+  Extremes extremes_;
   std::vector<Contestant<D>> contestants_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   Events events_;  // of the last update; its memory serves all

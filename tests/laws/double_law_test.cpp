@@ -116,7 +116,7 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
   inputs.push_back({"touching to the last bit", lattice<D>(dice, 600, {4.0e6 / 3})});
   // So far from each other that they are split, and that in the middle of the second.
   inputs.push_back({"touching at the border of regions", lattice<D>(dice, 1200, {-1e9, 4.0e6 / 3, 1e9})});
-  if (algorithm.infinite_boxes) {
+  {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Boxes<D> boxes = boxes_at<D>(dice, 400, {1e6}, side, 1);
     for (std::size_t i = 0; i < boxes.size(); i += 13) boxes[i] = absent_box<D, double>();
@@ -127,6 +127,10 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     boxes[7].max.fill(std::numeric_limits<double>::max());
     inputs.push_back({"infinite and absent boxes together", boxes});
   }
+  std::erase_if(inputs, [&](const DoubleInput<D>& input) {
+    return std::ranges::any_of(input.boxes,
+                               [&](const Box<D, double>& box) { return is_beyond(algorithm, box); });
+  });
   return inputs;
 }
 

@@ -22,7 +22,14 @@ std::vector<Pair> pairs_of(PairFinder<D>& finder, std::span<const Box<D>> boxes)
   return pairs;
 }
 
-class FinderLaw : public Law {};
+class FinderLaw : public Law {
+ protected:
+  /// The pairs, of which a peer does not promise any order.
+  std::vector<Pair> compared(std::vector<Pair> pairs) const {
+    if (algorithm().kind == AlgorithmKind::peer) std::ranges::sort(pairs);
+    return pairs;
+  }
+};
 
 TEST_P(FinderLaw, FindsEachOverlappingPairOnce) {
   in_dimension([&]<int D>() {
@@ -38,7 +45,8 @@ TEST_P(FinderLaw, HasNoMemoryThatShows) {
     for (int round = 0; round < 2; ++round) {
       for (const Input<D>& input : inputs) {
         const auto fresh = make_finder<D>(algorithm(), spec());
-        EXPECT_EQ(pairs_of<D>(*used, input.boxes), pairs_of<D>(*fresh, input.boxes)) << input.name;
+        EXPECT_EQ(compared(pairs_of<D>(*used, input.boxes)), compared(pairs_of<D>(*fresh, input.boxes)))
+            << input.name;
       }
       Dice(1).shuffle(inputs);
     }

@@ -223,11 +223,17 @@ void add_extremes(std::vector<Input<D>>& inputs) {
 
 }  // namespace
 
-template <int D>
-bool is_infinite(const Box<D>& box) {
-  const auto infinite = [](float value) { return std::isinf(value); };
-  return !is_absent(box) &&
-         (std::ranges::any_of(box.min, infinite) || std::ranges::any_of(box.max, infinite));
+template <int D, typename Real>
+bool is_beyond(const Algorithm& algorithm, const Box<D, Real>& box) {
+  if (is_absent(box)) return false;
+  const auto beyond = [&](Real value) {
+    return std::isinf(value) ? !algorithm.infinite_boxes : std::abs(value) > algorithm.largest_coordinate;
+  };
+  return std::ranges::any_of(box.min, beyond) || std::ranges::any_of(box.max, beyond);
+}
+
+bool takes_any_floats(const Algorithm& algorithm) {
+  return algorithm.infinite_boxes && algorithm.largest_coordinate >= largest;
 }
 
 template <int D>
@@ -238,14 +244,15 @@ std::vector<Input<D>> hard_inputs(const Algorithm& algorithm, std::size_t crowd)
   add_flat(inputs);
   add_scales(inputs);
   add_extremes(inputs);
-  if (!algorithm.infinite_boxes) {
-    for (Input<D>& input : inputs) std::erase_if(input.boxes, is_infinite<D>);
-  }
+  for (Input<D>& input : inputs)
+    std::erase_if(input.boxes, [&](const Box<D>& box) { return is_beyond(algorithm, box); });
   return inputs;
 }
 
-template bool is_infinite(const Box<2>&);
-template bool is_infinite(const Box<3>&);
+template bool is_beyond(const Algorithm&, const Box<2>&);
+template bool is_beyond(const Algorithm&, const Box<3>&);
+template bool is_beyond(const Algorithm&, const Box<2, double>&);
+template bool is_beyond(const Algorithm&, const Box<3, double>&);
 template std::vector<Input<2>> hard_inputs(const Algorithm&, std::size_t);
 template std::vector<Input<3>> hard_inputs(const Algorithm&, std::size_t);
 

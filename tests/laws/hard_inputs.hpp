@@ -21,8 +21,11 @@ struct Input {
 template <int D>
 std::vector<Input<D>> hard_inputs(const Algorithm& algorithm, std::size_t crowd = 300);
 
-/// Whether the box has an infinite coordinate; false for the absent box.
-template <int D>
-bool is_infinite(const Box<D>& box);
+/// Whether the box is beyond the algorithm's declared limits; false for the absent box.
+template <int D, typename Real>
+bool is_beyond(const Algorithm& algorithm, const Box<D, Real>& box);
+
+/// Whether boxes of any floats but NaN are within its limits.
+bool takes_any_floats(const Algorithm& algorithm);
 
 }  // namespace broadside::laws

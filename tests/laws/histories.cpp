@@ -199,7 +199,7 @@ std::vector<NamedHistory<D>> hard_histories(const Algorithm& algorithm) {
   };
   std::vector<std::pair<std::string, Boxes<D>>> kinds = {{"whole numbers", whole_numbers<D>()},
                                                          {"real numbers", real_numbers<D>()}};
-  if (algorithm.infinite_boxes) kinds.emplace_back("special values", special_values<D>());
+  if (takes_any_floats(algorithm)) kinds.emplace_back("special values", special_values<D>());
   for (const auto& [name, kind] : kinds) {
     add(name + ", few changes", kind, {150, frames, 8, 0, 5});
     add(name + ", many changes", kind, {150, frames, 150, 0, 20});

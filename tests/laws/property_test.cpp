@@ -63,7 +63,7 @@ class Property : public Law {
   /// `boxes` without those that are beyond the algorithm's declared limits.
   template <int D>
   void keep_to_limits(std::vector<Box<D>>& boxes) const {
-    if (!algorithm().infinite_boxes) std::erase_if(boxes, is_infinite<D>);
+    std::erase_if(boxes, [&](const Box<D>& box) { return is_beyond(algorithm(), box); });
   }
 
   /// The algorithm's specs: with nothing set, and with each tunable strained.
@@ -111,7 +111,7 @@ TEST_P(Property, TracksBoxesOnALattice) {
 }
 
 TEST_P(Property, TracksAnyBoxes) {
-  if (!algorithm().infinite_boxes) GTEST_SKIP() << algorithm().name << " does not do infinite boxes";
+  if (!takes_any_floats(algorithm())) GTEST_SKIP() << algorithm().name << " does not take any boxes";
   in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>(any_box<D>())); });
 }
 

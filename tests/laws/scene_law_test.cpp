@@ -22,10 +22,11 @@ class SceneLaw : public Law {
   std::optional<lab::History<D>> history_of(const lab::Scene& scene, const lab::SceneRequest& request) const {
     if (!scene.has_dimension(D)) return std::nullopt;
     lab::History<D> history = lab::make_history<D>(scene, {scene.name, {}}, request);
-    bool infinite = std::ranges::any_of(history.boxes, is_infinite<D>);
-    for (const lab::Step<D>& step : history.steps)
-      infinite |= std::ranges::any_of(step.boxes, is_infinite<D>);
-    if (infinite && !algorithm().infinite_boxes) return std::nullopt;
+    const auto beyond = [&](const Box<D>& box) { return is_beyond(algorithm(), box); };
+    if (std::ranges::any_of(history.boxes, beyond)) return std::nullopt;
+    for (const lab::Step<D>& step : history.steps) {
+      if (std::ranges::any_of(step.boxes, beyond)) return std::nullopt;
+    }
     return history;
   }
 };
