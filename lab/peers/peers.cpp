@@ -18,6 +18,22 @@ struct PeerList {
       add({cgal_box_intersection()});
     else
       miss("libcgal-dev", {"cgal_box_intersection"});
+    if constexpr (BROADSIDE_HAS_BOOST)
+      add({boost_rtree()});
+    else
+      miss("libboost-dev", {"boost_rtree"});
+    if constexpr (BROADSIDE_HAS_GEOS)
+      add({geos_strtree()});
+    else
+      miss("libgeos++-dev", {"geos_strtree"});
+    if constexpr (BROADSIDE_HAS_EMBREE)
+      add({embree_collide()});
+    else
+      miss("libembree-dev", {"embree_collide"});
+    if constexpr (BROADSIDE_HAS_BULLET)
+      add({bullet_dbvt(), bullet_axis_sweep()});
+    else
+      miss("libbullet-dev", {"bullet_dbvt", "bullet_axis_sweep"});
   }
 
   void add(std::initializer_list<Algorithm> algorithms) {

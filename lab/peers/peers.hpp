@@ -23,6 +23,11 @@ std::span<const MissingPeer> missing_peers();
 
 // One for each file. What is not in the build is declared and not defined.
 
+Algorithm boost_rtree();
+Algorithm bullet_axis_sweep();
+Algorithm bullet_dbvt();
 Algorithm cgal_box_intersection();
+Algorithm embree_collide();
+Algorithm geos_strtree();
 
 }  // namespace broadside::lab::peers
