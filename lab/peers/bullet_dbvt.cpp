@@ -121,6 +121,8 @@ Algorithm bullet_dbvt() {
       .finder_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
       .tracker_2d = tracker<2>,
       .tracker_3d = tracker<3>,
+      .infinite_boxes = false,  // moving boxes are made larger, and their centres compared
+      .largest_coordinate = 1e30,
       .own_allocator = true,
   };
 }

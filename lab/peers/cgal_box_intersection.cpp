@@ -15,8 +15,7 @@ namespace {
 template <int D>
 class CgalBoxIntersection final : public PairFinder<D> {
  private:
-  // A box's address is what CGAL tells boxes apart by, so that what it sorts are pointers: its manual's
-  // advice against moving boxes around.
+  // What CGAL sorts are pointers: its manual's advice for boxes that are larger than those.
   using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
@@ -55,6 +54,8 @@ Algorithm cgal_box_intersection() {
       .version = "CGAL " CGAL_VERSION_STR,
       .finder_2d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<2>>(); },
       .finder_3d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<3>>(); },
+      .infinite_boxes = false,  // the least and the greatest float are its ends of the axes
+      .largest_coordinate = 3.4e38,
   };
 }
 

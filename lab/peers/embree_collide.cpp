@@ -1,4 +1,5 @@
 // Embree's rtcCollide: a hierarchy of boxes joined with itself.
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <stdexcept>
@@ -28,8 +29,6 @@ class EmbreeCollide final : public PairFinder<3> {
     if (!device_) throw_error(nullptr);
     scene_.reset(rtcNewScene(device_.get()));
     geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
-    // Searched once, a hierarchy built fast is worth more than a good one.
-    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserData(geometry_.get(), this);
     rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
@@ -45,6 +44,13 @@ class EmbreeCollide final : public PairFinder<3> {
     thrown_ = nullptr;
     // A device with one thread would hold all of the process to one; an arena with one holds what runs in it.
     arena_.execute([this] {
+      // Searched once, a hierarchy built fast is worth more than a good one. But the fast builder ends the
+      // program where all boxes are one point.
+      const Box3& first = boxes_.front();
+      const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box3& box) {
+                                   return box.min == first.min && box.max == first.max;
+                                 });
+      rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
       rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
       rtcCommitGeometry(geometry_.get());
       rtcCommitScene(scene_.get());

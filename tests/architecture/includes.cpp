@@ -22,7 +22,7 @@ const std::vector<Rule>& rules() {
   const std::string inner = library + R"(|"(core|kernels)/[a-z_]+\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
-  const std::string peers = R"(|<(CGAL|boost|geos|embree3|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
+  const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
