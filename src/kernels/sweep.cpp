@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/compress.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
@@ -36,7 +38,7 @@ class Writer {
   /// Writes the pairs of `query` with those of `ids` that are hits.
   HWY_INLINE void write(IdVector query, IdVector ids, Hits hits) {
     const Ids tag;
-    const IdVector partners = hn::Compress(ids, hits);
+    const IdVector partners = compress(tag, ids, hits);
     const IdVector first = hn::Min(partners, query);
     const IdVector second = hn::Max(partners, query);
     if constexpr (hn::MaxLanes(Ids()) == 1) {
