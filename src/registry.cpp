@@ -39,7 +39,7 @@ std::string_view name(AlgorithmKind kind) noexcept {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),
+      own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),   own::bvh(),
       paper::brute_force(), paper::grid(), paper::sweep_and_prune(), paper::quadtree(),
   };
   return list;

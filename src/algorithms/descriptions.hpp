@@ -9,5 +9,6 @@ Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
+Algorithm bvh();
 
 }  // namespace broadside::own

@@ -43,7 +43,7 @@ struct GoldenOrder {
   std::uint64_t hash;
 };
 
-constexpr std::array<GoldenOrder, 8> golden_orders = {{
+constexpr std::array<GoldenOrder, 10> golden_orders = {{
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
     {"grid", 2, 0xc6e509ec197de519U},
@@ -52,6 +52,8 @@ constexpr std::array<GoldenOrder, 8> golden_orders = {{
     {"sweep_and_prune", 3, 0x4f601e2af8c50ebeU},
     {"quadtree", 2, 0xc3cce26035314221U},
     {"quadtree", 3, 0x58186a9ee7252c3aU},
+    {"bvh", 2, 0x84e8fe29d048d7edU},
+    {"bvh", 3, 0x308519112b5d1736U},
 }};
 
 template <int D>

@@ -1,0 +1,276 @@
+// The join of a tree of boxes with itself, written once for every instruction set.
+//
+// A node's children are compared with those of all nodes that its bounds touch, sixteen at a time, so that
+// what is found on one level is looked at on the next and each two nodes meet once: the one that stands first
+// looks at those behind it. In a leaf, sixteen boxes are compared at once with the bounds of another leaf;
+// those that touch them are collected over all such leaves and then compared with the boxes in them. Lists
+// are written without branches: hits are compressed to the front, and the end of the list moves on by as
+// many.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/box_tree.cpp"
+#include "kernels/box_tree.hpp"
+
+#include <algorithm>
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, fan_out>;
+using Numbers = hn::Rebind<std::uint32_t, Floats>;
+using FloatVector = hn::Vec<Floats>;
+using NumberVector = hn::Vec<Numbers>;
+using Hits = hn::Mask<Numbers>;
+
+/// The elements of a vector, sixteen of which are one or several.
+constexpr std::size_t lanes = hn::MaxLanes(Floats());
+
+/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
+class Writer {
+ public:
+  explicit Writer(PairSink& sink) : sink_(&sink) { take(); }
+
+  ~Writer() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
+
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// Writes the pairs of `query` with those of `ids` that are hits.
+  HWY_INLINE void write(NumberVector query, NumberVector ids, Hits hits) {
+    const Numbers tag;
+    const std::size_t count = hn::CountTrue(tag, hits);
+    const NumberVector partners = hn::Compress(ids, hits);
+    const NumberVector first = hn::Min(partners, query);
+    const NumberVector second = hn::Max(partners, query);
+#if HWY_TARGET == HWY_SCALAR
+    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+#else
+    hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
+#endif
+    out_ += count;
+    if (HWY_UNLIKELY(out_ > last_)) {
+      sink_->commit(static_cast<std::size_t>(out_ - begin_));
+      begin_ = out_;  // if the sink throws, this much is committed already
+      take();
+    }
+  }
+
+ private:
+  void take() {
+    begin_ = out_ = sink_->room(PairSink::max_room);
+    last_ = begin_ + PairSink::max_room - fan_out;
+  }
+
+  PairSink* sink_;
+  Pair* begin_ = nullptr;
+  Pair* out_ = nullptr;
+  Pair* last_ = nullptr;  // beyond it a whole vector of pairs may not fit
+};
+
+/// One box or the bounds of one node, in every lane.
+template <int D>
+struct Query {
+  HWY_INLINE Query(const TreeLevel<D>& level, std::size_t place) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = hn::Set(Floats(), level.min[axis][place]);
+      max[axis] = hn::Set(Floats(), level.max[axis][place]);
+    }
+  }
+
+  /// Which of the boxes or bounds from `at` on it overlaps.
+  HWY_INLINE Hits touching(const TreeLevel<D>& level, std::size_t at) const {
+    const Floats floats;
+    auto hits = hn::Le(hn::LoadU(floats, level.min[0] + at), max[0]);
+    hits = hn::And(hits, hn::Le(min[0], hn::LoadU(floats, level.max[0] + at)));
+    for (int axis = 1; axis < D; ++axis) {
+      hits = hn::And(hits, hn::Le(hn::LoadU(floats, level.min[axis] + at), max[axis]));
+      hits = hn::And(hits, hn::Le(min[axis], hn::LoadU(floats, level.max[axis] + at)));
+    }
+    return hn::RebindMask(Numbers(), hits);
+  }
+
+  FloatVector min[D];
+  FloatVector max[D];
+};
+
+/// The numbers from `begin` on, one a lane.
+HWY_INLINE NumberVector numbers_from(std::size_t begin) {
+  return hn::Iota(Numbers(), static_cast<std::uint32_t>(begin));
+}
+
+HWY_INLINE NumberVector all_lanes(std::size_t number) {
+  return hn::Set(Numbers(), static_cast<std::uint32_t>(number));
+}
+
+template <int D>
+class Join {
+ public:
+  Join(const BoxTree<D>& tree, PairSink& sink) : tree_(tree), pairs_(sink) {}
+
+  std::uint64_t run() {
+    const std::uint32_t root = 0;
+    children_of(0, tree_.level_count - 1, &root, 1);
+    return tests_;
+  }
+
+ private:
+  /// Joins what lies below `node`, whose children stand on `level`, with what lies below the nodes of `list`:
+  /// those that touch it and do not stand before it.
+  void children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count) {
+    if (level == 0) return leaf(node, list, count);
+    const TreeLevel<D>& children = tree_.levels[level];
+    std::uint32_t* const touched = tree_.candidates[level];
+    const std::size_t border = tree_.left_size >> (4 * level);
+    const std::size_t end = std::min((node + 1) * fan_out, children.size);
+    for (std::size_t child = node * fan_out; child < end; ++child) {
+      if (tree_.left_size != 0 && child << (4 * level) >= tree_.left_size) break;  // no box of the left set
+      const Query<D> query(children, child);
+      const NumberVector first = all_lanes(std::max(child, border));
+      std::size_t touched_count = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t begin = std::size_t{list[i]} * fan_out;
+        for (std::size_t at = begin; at < begin + fan_out; at += lanes) {
+          const NumberVector numbers = numbers_from(at);
+          const Hits hits = hn::AndNot(hn::Gt(first, numbers), query.touching(children, at));
+          hn::StoreU(hn::Compress(numbers, hits), Numbers(), touched + touched_count);
+          touched_count += hn::CountTrue(Numbers(), hits);
+        }
+      }
+      children_of(child, level - 1, touched, touched_count);
+    }
+  }
+
+  /// Joins the boxes of a leaf with each other and with those of the leaves of `list`.
+  HWY_INLINE void leaf(std::size_t node, const std::uint32_t* list, std::size_t count) {
+    const TreeLevel<D>& boxes = tree_.levels[0];
+    const std::size_t begin = node * fan_out;
+    if (tree_.left_size == 0) {
+      within(begin);
+      ++list;  // which is led by this leaf itself
+      --count;
+    }
+    if (count == 0) return;
+    const TreeLevel<D>& leaves = tree_.levels[1];
+    std::size_t queried = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Query<D> bounds(leaves, list[i]);
+      const std::size_t other = std::size_t{list[i]} * fan_out;
+      for (std::size_t at = 0; at < fan_out; at += lanes) {
+        const Hits hits = bounds.touching(boxes, begin + at);
+        hn::StoreU(hn::Compress(numbers_from(other + at), hits), Numbers(), queries_ + queried);
+        queried += hn::CountTrue(Numbers(), hits);
+      }
+      if (HWY_UNLIKELY(queried > most_queries)) {
+        across(begin, queried);
+        queried = 0;
+      }
+    }
+    across(begin, queried);
+  }
+
+  /// Compares the boxes of the leaf that begins at `begin` with each other.
+  HWY_INLINE void within(std::size_t begin) {
+    for (std::size_t i = 0; i + 1 < fan_out; ++i) {
+      const Query<D> query(tree_.levels[0], begin + i);
+      const NumberVector id = all_lanes(index(tree_.id[begin + i]));
+      for (std::size_t at = (i + 1) / lanes * lanes; at < fan_out; at += lanes) {
+        const Hits later = hn::Gt(numbers_from(at), all_lanes(i));
+        pairs_.write(id, ids(begin + at), hn::And(query.touching(tree_.levels[0], begin + at), later));
+      }
+    }
+    tests_ += fan_out * (fan_out - 1) / 2;
+  }
+
+  /// Does the first `count` of queries_: compares boxes of the leaf that begins at `begin` with other leaves.
+  HWY_INLINE void across(std::size_t begin, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = begin + queries_[i] % fan_out;
+      const std::size_t other = queries_[i] / fan_out * fan_out;
+      const Query<D> query(tree_.levels[0], place);
+      const NumberVector id = all_lanes(index(tree_.id[place]));
+      for (std::size_t at = other; at < other + fan_out; at += lanes)
+        pairs_.write(id, ids(at), query.touching(tree_.levels[0], at));
+    }
+    tests_ += count * fan_out;
+  }
+
+  HWY_INLINE NumberVector ids(std::size_t at) const {
+    return hn::LoadU(Numbers(), reinterpret_cast<const std::uint32_t*>(tree_.id) + at);
+  }
+
+  static constexpr std::size_t most_queries = 1024;
+
+  const BoxTree<D>& tree_;
+  Writer pairs_;
+  std::uint64_t tests_ = 0;
+  std::uint32_t
+      queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
+};
+
+template <int D>
+void bound_level(const BoxTree<D>& tree, std::size_t parent) {
+  const Floats floats;
+  const TreeLevel<D>& below = tree.levels[parent - 1];
+  const TreeLevel<D>& level = tree.levels[parent];
+  for (int axis = 0; axis < D; ++axis) {
+    for (std::size_t node = 0; node < level.size; ++node) {
+      const float* const mins = below.min[axis] + node * fan_out;
+      const float* const maxs = below.max[axis] + node * fan_out;
+      auto min = hn::LoadU(floats, mins);
+      auto max = hn::LoadU(floats, maxs);
+      for (std::size_t at = lanes; at < fan_out; at += lanes) {
+        min = hn::Min(min, hn::LoadU(floats, mins + at));
+        max = hn::Max(max, hn::LoadU(floats, maxs + at));
+      }
+      level.min[axis][node] = hn::GetLane(hn::MinOfLanes(floats, min));
+      level.max[axis][node] = hn::GetLane(hn::MaxOfLanes(floats, max));
+    }
+  }
+}
+
+}  // namespace
+
+// What the dispatch below can name: no templates.
+std::uint64_t join_2(const BoxTree<2>& tree, PairSink& pairs) { return Join<2>(tree, pairs).run(); }
+std::uint64_t join_3(const BoxTree<3>& tree, PairSink& pairs) { return Join<3>(tree, pairs).run(); }
+void set_bounds_2(const BoxTree<2>& tree, std::size_t parent) { bound_level(tree, parent); }
+void set_bounds_3(const BoxTree<3>& tree, std::size_t parent) { bound_level(tree, parent); }
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace broadside::kernels {
+
+HWY_EXPORT(join_2);
+HWY_EXPORT(join_3);
+HWY_EXPORT(set_bounds_2);
+HWY_EXPORT(set_bounds_3);
+
+template <>
+std::uint64_t join(const BoxTree<2>& tree, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_2)(tree, pairs);
+}
+
+template <>
+std::uint64_t join(const BoxTree<3>& tree, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_3)(tree, pairs);
+}
+
+template <>
+void set_bounds(const BoxTree<2>& tree, std::size_t parent) {
+  HWY_DYNAMIC_DISPATCH(set_bounds_2)(tree, parent);
+}
+
+template <>
+void set_bounds(const BoxTree<3>& tree, std::size_t parent) {
+  HWY_DYNAMIC_DISPATCH(set_bounds_3)(tree, parent);
+}
+
+}  // namespace broadside::kernels
+#endif  // HWY_ONCE

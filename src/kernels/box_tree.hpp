@@ -1,0 +1,55 @@
+// A tree of boxes, sixteen to a node, and the join of the tree with itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "broadside/pair.hpp"
+
+namespace broadside::kernels {
+
+/// How many children a node has: so many bounds (or boxes, in a leaf) are compared at once. The same on every
+/// instruction set, since it fixes the order of the pairs.
+inline constexpr std::size_t fan_out = 16;
+
+/// A tree over 2^32 boxes has no more levels.
+inline constexpr std::size_t most_levels = 9;
+
+/// What stands on one level: the boxes (level 0), or the bounds of sixteen things each of the level below.
+/// Arrays hold a multiple of `fan_out` elements, those beyond `size` being NaN; so are places of level 0 that
+/// hold no box.
+template <int D>
+struct TreeLevel {
+  std::array<float*, D> min;
+  std::array<float*, D> max;
+  std::size_t size;
+};
+
+/// Boxes in an order in which neighbours in the array are neighbours in space, and bounds over them. The
+/// topmost level has at most `fan_out` elements.
+template <int D>
+struct BoxTree {
+  std::array<TreeLevel<D>, most_levels> levels;
+  std::size_t level_count;
+  const BoxId* id;  ///< of the boxes on level 0
+
+  /// In a search between two sets, how many places of level 0 hold the left one: a multiple of `fan_out`.
+  /// Else 0.
+  std::size_t left_size;
+
+  /// Scratch memory: for each level but 0, as many elements as the level's arrays have and `fan_out` more.
+  std::array<std::uint32_t*, most_levels> candidates;
+};
+
+/// Sets the bounds on level `parent` > 0 from those on the level below, whose places beyond its size and
+/// without a box must be absent boxes (not yet NaN).
+template <int D>
+void set_bounds(const BoxTree<D>& tree, std::size_t parent);
+
+/// Reports the pairs of overlapping boxes, or those between the two sets. Returns the number of pairs of
+/// boxes compared, where a leaf counts as full.
+template <int D>
+std::uint64_t join(const BoxTree<D>& tree, PairSink& pairs);
+
+}  // namespace broadside::kernels
