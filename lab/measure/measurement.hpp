@@ -62,11 +62,11 @@ struct CaseResult {
 
 /// How much time an algorithm may take in a case.
 struct Effort {
-  double budget_seconds = 15;      ///< for one search, or a whole history; above it the algorithm is skipped
-  double share_seconds = 0.15;     ///< timed calls go on until they have taken this long together ...
+  double budget_seconds = 5;       ///< for one search, or a whole history; above it the algorithm is skipped
+  double share_seconds = 0.06;     ///< timed calls go on until they have taken this long together ...
   std::size_t least_samples = 3;   ///< ... and are at least so many ...
   std::size_t most_samples = 100;  ///< ... and at most so many ...
-  double single_sample_seconds = 1;  ///< ... unless one takes so long that it is left at one
+  double single_sample_seconds = 0.3;  ///< ... unless one takes so long that it is left at one
 };
 
 }  // namespace broadside::lab

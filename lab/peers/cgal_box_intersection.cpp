@@ -14,8 +14,10 @@ namespace {
 
 template <int D>
 class CgalBoxIntersection final : public PairFinder<D> {
+ public:
+  explicit CgalBoxIntersection(const Settings& settings) : cutoff_(settings.integer("cutoff")) {}
+
  private:
-  // What CGAL sorts are pointers: its manual's advice for boxes that are larger than those.
   using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
@@ -28,18 +30,14 @@ class CgalBoxIntersection final : public PairFinder<D> {
       std::ranges::copy(boxes[i].max, max);
       boxes_.emplace_back(min, max, BoxId(i));
     }
-    pointers_.clear();
-    pointers_.reserve(boxes.size());
-    for (const CgalBox& box : boxes_) pointers_.push_back(&box);
-    const auto report = [&pairs](const CgalBox* a, const CgalBox* b) { pairs.add(a->info(), b->info()); };
-    CGAL::box_self_intersection_d(pointers_.begin(), pointers_.end(), report, standard_cutoff,
+    const auto report = [&pairs](const CgalBox& a, const CgalBox& b) { pairs.add(a.info(), b.info()); };
+    // It sorts the boxes themselves; pointers to them, which it takes as well, are slower.
+    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report, cutoff_,
                                   CGAL::Box_intersection_d::CLOSED);
   }
 
-  static constexpr std::ptrdiff_t standard_cutoff = 10;
-
+  std::ptrdiff_t cutoff_;
   std::vector<CgalBox> boxes_;
-  std::vector<const CgalBox*> pointers_;
 };
 
 }  // namespace
@@ -52,8 +50,16 @@ Algorithm cgal_box_intersection() {
           "CGAL, Intersecting Sequences of dD Iso-oriented Boxes, after Zomorodian and Edelsbrunner 2000",
       .kind = AlgorithmKind::peer,
       .version = "CGAL " CGAL_VERSION_STR,
-      .finder_2d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<CgalBoxIntersection<3>>(); },
+      .tunables = {{.name = "cutoff",
+                    .summary = "boxes, below which it sweeps instead of splitting",
+                    .standard = "10",
+                    .type = Tunable::Type::integer,
+                    .least = 1,
+                    .most = 1e9}},
+      .finder_2d =
+          [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<2>>(settings); },
+      .finder_3d =
+          [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<3>>(settings); },
       .infinite_boxes = false,  // the least and the greatest float are its ends of the axes
       .largest_coordinate = 3.4e38,
   };

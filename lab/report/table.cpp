@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -88,6 +89,47 @@ std::string heading(const CaseResult& result) {
   const std::string references = references_of(result);
   if (!references.empty()) text += ", checked against " + references;
   return text + "\n";
+}
+
+/// The fastest measurement of a kind; null where none was timed.
+const Measurement* fastest_of_kind(const CaseResult& result, AlgorithmKind kind) {
+  const Measurement* fastest = nullptr;
+  for (const Measurement& measurement : result.measurements) {
+    if (measurement.kind != kind || !is_timed(measurement)) continue;
+    if (fastest == nullptr || time_of(measurement) < time_of(*fastest)) fastest = &measurement;
+  }
+  return fastest;
+}
+
+/// How many times as fast as the fastest peer our fastest algorithm is; empty where either is missing.
+std::optional<double> lead_of(const CaseResult& result) {
+  const Measurement* const own = fastest_of_kind(result, AlgorithmKind::own);
+  const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
+  if (own == nullptr || peer == nullptr) return std::nullopt;
+  return time_of(*peer) / time_of(*own);
+}
+
+/// The lead as a line; empty where there is none.
+std::string lead_text(const CaseResult& result) {
+  const std::optional<double> lead = lead_of(result);
+  if (!lead) return "";
+  return fmt::format("  {} is {} times as fast as the fastest peer, {}\n",
+                     fastest_of_kind(result, AlgorithmKind::own)->algorithm, ratio_text(*lead),
+                     fastest_of_kind(result, AlgorithmKind::peer)->algorithm);
+}
+
+/// The leads of all cases as a line; empty where no case has one.
+std::string leads_text(const Comparison& comparison) {
+  std::vector<double> leads;
+  for (const CaseResult& result : comparison.cases) {
+    if (const std::optional<double> lead = lead_of(result)) leads.push_back(*lead);
+  }
+  if (leads.empty()) return "";
+  return fmt::format(
+      "the fastest of ours is {} times as fast as the fastest peer, geometric mean of {}; at least {} "
+      "times\n",
+      ratio_text(geometric_mean(leads)), counted(leads.size(), "case", "cases"),
+      ratio_text(std::ranges::min(leads)));
 }
 
 std::string verdict(const Measurement& measurement) {
@@ -182,7 +224,7 @@ std::string table_of(const CaseResult& result) {
          "boxes sorted and gathered, pairs written"},
         "1.00");
   }
-  return heading(result) + columns.text("  ");
+  return heading(result) + columns.text("  ") + lead_text(result);
 }
 
 std::string summary_of(const Comparison& comparison) {
@@ -206,7 +248,7 @@ std::string summary_of(const Comparison& comparison) {
       columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
                    standing.ratios.empty() ? "-" : ratio_text(standing.mean()), ""});
     }
-    text += columns.text("  ") + "\n";
+    text += columns.text("  ") + leads_text(comparison) + "\n";
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);

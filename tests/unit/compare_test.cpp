@@ -126,6 +126,33 @@ TEST(Compare, TakesWhatAnAlgorithmThrowsForItsFailure) {
   }
 }
 
+TEST(Compare, LeavesOutBoxesThatAreBeyondDeclaredLimits) {
+  Algorithm limited = *find_algorithm("grid");
+  limited.name = "limited";
+  limited.largest_coordinate = 1;
+  for (const CaseRequest& request : {small_still, small_moving}) {
+    Catalogue catalogue;
+    catalogue.add(limited);
+    const Measurement measurement = only(compare(catalogue, options_for("limited", {request})));
+    EXPECT_EQ(measurement.outcome, Outcome::skipped);
+    EXPECT_EQ(measurement.reason, "does not take coordinates beyond 1");
+  }
+}
+
+TEST(Compare, CountsNoMemoryWhereItCannotAllBeCounted) {
+  Algorithm own_allocator = *find_algorithm("grid");
+  own_allocator.name = "own_allocator";
+  own_allocator.own_allocator = true;
+  for (const CaseRequest& request : {small_still, small_moving}) {
+    Catalogue catalogue;
+    catalogue.add(own_allocator);
+    const Measurement measurement = only(compare(catalogue, options_for("own_allocator", {request})));
+    EXPECT_EQ(measurement.outcome, Outcome::verified);
+    EXPECT_FALSE(measurement.own_bytes.has_value());
+    EXPECT_FALSE(measurement.peak_bytes.has_value());
+  }
+}
+
 TEST(Compare, SkipsWhatIsTooSlowForTheBudgetAndEstimatesIt) {
   for (const std::size_t frames : {std::size_t{0}, std::size_t{2}}) {
     CompareOptions options = options_for("brute_force,grid", {{"uniform", 2, 5'100, 0.1, frames}});

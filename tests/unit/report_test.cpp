@@ -107,6 +107,28 @@ TEST(Table, EndsWithTheFloorAndCountsInFloors) {
   EXPECT_THAT(lines[5], HasSubstr("  1.40..1.60  boxes sorted and gathered, pairs written"));
 }
 
+TEST(Table, EndsWithOurLeadOverTheFastestPeer) {
+  CaseResult result =
+      still_case({timed("ours", {2}), timed("slower", {3}), timed("theirs", {9}), timed("another", {8})});
+  EXPECT_EQ(lines_of(table_of(result)).size(), 6u);
+  result.measurements[2].kind = AlgorithmKind::peer;
+  result.measurements[3].kind = AlgorithmKind::peer;
+  EXPECT_EQ(lines_of(table_of(result)).back(), "  ours is 4.00 times as fast as the fastest peer, another");
+}
+
+TEST(Summary, MeansOurLeadsOverTheFastestPeers) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("ours", {2}), timed("theirs", {8})}),
+                      still_case({timed("ours", {3}), timed("theirs", {3})}),
+                      still_case({timed("ours", {1})})};
+  for (CaseResult& result : comparison.cases) {
+    if (result.measurements.size() > 1) result.measurements[1].kind = AlgorithmKind::peer;
+  }
+  EXPECT_THAT(summary_of(comparison),
+              HasSubstr("the fastest of ours is 2.00 times as fast as the fastest peer, geometric mean of 2 "
+                        "cases; at least 1.00 times\n"));
+}
+
 TEST(Table, LabelsAnEstimateAndKeepsTheColumnsAligned) {
   const auto lines = lines_of(table_of(still_case({timed("first", {4.5}), skipped("slow")})));
   EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,111 "));

@@ -1,0 +1,67 @@
+// The list of other libraries: what is there, what is missing, and that nothing is forgotten.
+#include "lab/peers/peers.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+
+#include "lab/catalogue.hpp"
+#include "message.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::UnorderedElementsAreArray;
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(BROADSIDE_SOURCE_DIR + ("/" + path));
+  EXPECT_TRUE(file.is_open()) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Peers, AreEachThereOrMissing) {
+  const std::string header = text_of("lab/peers/peers.hpp");
+  static const std::regex declaration(R"(\nAlgorithm ([a-z0-9_]+)\(\);)");
+  std::vector<std::string> declared;
+  for (std::sregex_iterator match(header.begin(), header.end(), declaration), end; match != end; ++match)
+    declared.push_back((*match)[1]);
+  std::vector<std::string> listed;
+  for (const Algorithm& peer : peers::peers()) listed.push_back(peer.name);
+  for (const peers::MissingPeer& peer : peers::missing_peers()) listed.push_back(peer.name);
+  EXPECT_THAT(listed, UnorderedElementsAreArray(declared));
+}
+
+TEST(Peers, AreInTheCatalogueAsPeersWithTheirVersions) {
+  const Catalogue catalogue;
+  for (const Algorithm& peer : peers::peers()) {
+    const Algorithm* const found = find_algorithm(peer.name, catalogue.algorithms());
+    ASSERT_NE(found, nullptr) << peer.name;
+    EXPECT_EQ(found->kind, AlgorithmKind::peer) << peer.name;
+    EXPECT_FALSE(found->version.empty()) << peer.name;
+    EXPECT_FALSE(found->summary.empty()) << peer.name;
+    EXPECT_FALSE(found->source.empty()) << peer.name;
+    EXPECT_TRUE(found->has_dimension(2) || found->has_dimension(3)) << peer.name;
+  }
+}
+
+TEST(Peers, ThatAreMissingAreNamedWithAPackageThatSetupInstalls) {
+  const std::string packages = text_of("packages-peers.txt");
+  for (const peers::MissingPeer& peer : peers::missing_peers()) {
+    const std::string package = peer.reason.substr(0, peer.reason.find(' '));
+    EXPECT_THAT(packages, HasSubstr("\n" + package + "\n")) << peer.name;
+    EXPECT_THAT(message_of<InvalidSpec>([&] { Catalogue().select("grid," + peer.name); }),
+                AllOf(HasSubstr("peer '" + peer.name + "' is not in this build: "), HasSubstr(package)));
+  }
+}
+
+}  // namespace
+}  // namespace broadside::lab
