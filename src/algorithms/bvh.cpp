@@ -99,7 +99,9 @@ class Bvh final : public PairFinder<D> {
       for (int axis = 0; axis < D; ++axis)
         size = std::max(size, (box.max[axis] - box.min[axis]) * inverse[axis]);
       std::uint32_t group = 0;
-      for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
+      if (size > class_borders[0]) {
+        for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
+      }
       if (left != 0 && i >= left) group += classes;
       const std::uint32_t key = group * buckets.count + buckets(box.min[0]);
       keys_[i] = static_cast<std::uint16_t>(key);
@@ -238,7 +240,11 @@ class Bvh final : public PairFinder<D> {
                           std::min(count / 2, most_buckets));
     std::array<std::uint32_t, most_buckets> places;
     std::fill_n(places.begin(), buckets.count, 0);
-    for (std::size_t i = 0; i < count; ++i) ++places[buckets(entry(i).box.min[axis])];
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t bucket = buckets(entry(i).box.min[axis]);
+      keys_[i] = static_cast<std::uint16_t>(bucket);
+      ++places[bucket];
+    }
     std::uint32_t begin = 0;
     std::uint32_t heaviest = 0;
     for (std::uint32_t bucket = 0; bucket < buckets.count; ++bucket) {
@@ -252,7 +258,7 @@ class Bvh final : public PairFinder<D> {
       for (const core::KeyedPlace& place : radix_.sort()) put(place.place, to++);
       return;
     }
-    for (std::size_t i = 0; i < count; ++i) put(i, places[buckets(entry(i).box.min[axis])]++);
+    for (std::size_t i = 0; i < count; ++i) put(i, places[keys_[i]]++);
   }
 
   void put(std::size_t place, const Entry& entry) {
@@ -332,8 +338,8 @@ class Bvh final : public PairFinder<D> {
   }();
 
   core::Sample<D> sample_;
-  std::array<float, D> typical_{};  // a box's usual extents, or more where boxes lie further apart
-  std::vector<std::uint16_t> keys_;
+  std::array<float, D> typical_{};   // a box's usual extents, or more where boxes lie further apart
+  std::vector<std::uint16_t> keys_;  // a box's bucket
   std::vector<std::uint32_t> counts_;
   std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end
   std::vector<Entry> entries_;

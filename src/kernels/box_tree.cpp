@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/compress.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
@@ -44,13 +46,21 @@ class Writer {
   HWY_INLINE void write(NumberVector query, NumberVector ids, Hits hits) {
     const Numbers tag;
     const std::size_t count = hn::CountTrue(tag, hits);
-    const NumberVector partners = hn::Compress(ids, hits);
+    const NumberVector partners = compress(tag, ids, hits);
     const NumberVector first = hn::Min(partners, query);
     const NumberVector second = hn::Max(partners, query);
 #if HWY_TARGET == HWY_SCALAR
     *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
 #else
-    hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
+    if constexpr (lanes >= 8) {
+      // Interleaving half a vector takes half the shuffles, and hits are seldom more.
+      const hn::Half<Numbers> half;
+      store(hn::LowerHalf(half, first), hn::LowerHalf(half, second), out_);
+      if (HWY_UNLIKELY(count > lanes / 2))
+        store(hn::UpperHalf(half, first), hn::UpperHalf(half, second), out_ + lanes / 2);
+    } else {
+      hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
+    }
 #endif
     out_ += count;
     if (HWY_UNLIKELY(out_ > last_)) {
@@ -61,6 +71,17 @@ class Writer {
   }
 
  private:
+#if HWY_TARGET != HWY_SCALAR
+  using HalfVector = hn::Vec<hn::Half<Numbers>>;
+
+  /// Stores half a vector of pairs.
+  static HWY_INLINE void store(HalfVector first, HalfVector second, Pair* out) {
+    const hn::RepartitionToWide<Numbers> wide;
+    const auto high = hn::ShiftLeft<32>(hn::PromoteTo(wide, second));
+    hn::StoreU(hn::Or(hn::PromoteTo(wide, first), high), wide, reinterpret_cast<std::uint64_t*>(out));
+  }
+#endif
+
   void take() {
     begin_ = out_ = sink_->room(PairSink::max_room);
     last_ = begin_ + PairSink::max_room - fan_out;
@@ -137,7 +158,7 @@ class Join {
         for (std::size_t at = begin; at < begin + fan_out; at += lanes) {
           const NumberVector numbers = numbers_from(at);
           const Hits hits = hn::AndNot(hn::Gt(first, numbers), query.touching(children, at));
-          hn::StoreU(hn::Compress(numbers, hits), Numbers(), touched + touched_count);
+          hn::StoreU(compress(Numbers(), numbers, hits), Numbers(), touched + touched_count);
           touched_count += hn::CountTrue(Numbers(), hits);
         }
       }
@@ -162,7 +183,7 @@ class Join {
       const std::size_t other = std::size_t{list[i]} * fan_out;
       for (std::size_t at = 0; at < fan_out; at += lanes) {
         const Hits hits = bounds.touching(boxes, begin + at);
-        hn::StoreU(hn::Compress(numbers_from(other + at), hits), Numbers(), queries_ + queried);
+        hn::StoreU(compress(Numbers(), numbers_from(other + at), hits), Numbers(), queries_ + queried);
         queried += hn::CountTrue(Numbers(), hits);
       }
       if (HWY_UNLIKELY(queried > most_queries)) {
