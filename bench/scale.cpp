@@ -1,0 +1,76 @@
+// The memory that each of our own algorithms takes for many boxes: scale [BOXES [SCENE [ALGORITHMS]]].
+//
+// One call each, of a finder made for it, whose pairs are hashed and not kept: so what is counted is what the
+// call takes above the boxes that go in and the pairs that come out. All must find the same pairs.
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "broadside/broadside.hpp"
+
+#include "lab/catalogue.hpp"
+#include "lab/measure/allocation.hpp"
+#include "lab/measure/contest.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/machine.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::bench {
+namespace {
+
+template <int D>
+void measure(const lab::NamedScene& named, std::size_t boxes, const std::string& algorithms) {
+  const lab::History<D> input =
+      lab::make_history<D>(named.scene, named.spec, {.boxes = boxes, .seed = 1, .frames = 0, .moving = 0});
+  const lab::Catalogue catalogue;
+  const auto count = static_cast<double>(input.boxes.size());
+  std::uint64_t expected = 0;
+  for (const lab::Contender& contender : catalogue.select(algorithms)) {
+    // It would compare each box with each.
+    if (algorithms == "own" && contender.spec.text() == "brute_force") continue;
+    PairHasher pairs;
+    const lab::AllocationMeter meter;
+    const auto finder = make_finder<D>(*contender.algorithm, contender.spec);
+    const lab::Stopwatch watch;
+    finder->find(input.boxes, pairs);
+    const double milliseconds = watch.milliseconds();
+    const auto memory = meter.read();
+    if (expected != 0 && pairs.hash() != expected)
+      throw std::runtime_error(fmt::format("{}: {} pairs; expected those that the algorithm before it found",
+                                           contender.spec.text(), pairs.count()));
+    expected = pairs.hash();
+    fmt::print("{}D  {:<20} {:>14} {:>8.2f} {:>9.1f} {:>12.1f} {:>7.1f}\n", D, contender.spec.text(),
+               lab::grouped(pairs.count()), milliseconds / 1e3, milliseconds * 1e6 / count,
+               memory ? static_cast<double>(memory->kept) / count : 0,
+               memory ? static_cast<double>(memory->peak) / count : 0);
+    std::fflush(stdout);
+  }
+}
+
+void run(std::size_t boxes, const std::string& scene, const std::string& algorithms) {
+  const lab::NamedScene named = lab::find_scene(scene);
+  const lab::Machine machine = lab::this_machine();
+  fmt::print("{}, {} boxes; {}, {} cores; {}\n", scene, lab::grouped(boxes), machine.cpu, machine.cores,
+             lab::this_build().compiler);
+  fmt::print("    {:<20} {:>14} {:>8} {:>9} {:>12} {:>7}\n", "algorithm", "pairs", "s", "ns a box",
+             "bytes a box", "at peak");
+  measure<2>(named, boxes, algorithms);
+  measure<3>(named, boxes, algorithms);
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** arguments) {
+  try {
+    broadside::bench::run(count > 1 ? std::stoul(arguments[1]) : 10'000'000,
+                          count > 2 ? arguments[2] : "uniform", count > 3 ? arguments[3] : "own");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "scale: {}\n", error.what());
+    return 1;
+  }
+}
