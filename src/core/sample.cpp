@@ -9,7 +9,7 @@
 namespace broadside::core {
 namespace {
 
-constexpr std::size_t most_samples = 512;
+constexpr std::size_t most_samples = 256;
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// A few boxes are sampled densely; of many, so few that sampling is a small part of the work.
@@ -66,6 +66,10 @@ void Sample<D>::take(std::span<const Box<D>> boxes) {
     std::ranges::sort(maxima_);
     sample.overlap = overlapping_part(sample.minima, maxima_);
     set_bounds(sample, maxima_);
+    const double range = static_cast<double>(sample.high) - sample.low;
+    sample.mean_extent = 0;
+    for (const float extent : extents_)
+      sample.mean_extent += std::min<double>(extent, range) / static_cast<double>(count);
     const auto middle = extents_.begin() + static_cast<std::ptrdiff_t>(extents_.size() / 2);
     std::nth_element(extents_.begin(), middle, extents_.end());
     sample.extent = extents_.empty() ? 0 : *middle;

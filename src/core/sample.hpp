@@ -16,9 +16,10 @@ struct AxisSample {
   /// about n / 2 times this many pairs a box.
   double overlap = 1;
 
-  float low = 0;     ///< the finite bounds between which the sampled boxes lie, but for far outliers
-  float high = 0;    ///<
-  float extent = 0;  ///< the median of the boxes' extents, at most FLT_MAX
+  float low = 0;           ///< the finite bounds between which the sampled boxes lie, but for far outliers
+  float high = 0;          ///<
+  float extent = 0;        ///< the median of the boxes' extents, at most FLT_MAX
+  double mean_extent = 0;  ///< and their mean, an extent counting as no more than the bounds' distance
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "broadside/box.hpp"
@@ -12,7 +13,8 @@
 
 namespace broadside::kernels {
 
-/// Kernels may read this many elements beyond a run's last one, whose min[0] must then be NaN.
+/// Kernels may read this many elements beyond a run's last one, whose min[0] and max[0]
+/// must then be NaN.
 inline constexpr std::size_t read_ahead = 16;
 
 /// `size` boxes seen as arrays. Axis 0 of a run is the axis that is swept; which axis of the caller's boxes
@@ -42,7 +44,16 @@ constexpr std::uint32_t side_bit(BoxId id, std::size_t left_count) noexcept {
   return index(id) < left_count ? 1U << 30 : 1U << 31;
 }
 
-/// The memory of a run that grows box by box; it keeps what it has allocated.
+/// Where the boxes of a run are put.
+template <int D>
+struct RunArrays {
+  std::array<float*, D> min;
+  std::array<float*, D> max;
+  BoxId* id;
+  std::uint32_t* apart;
+};
+
+/// The memory of a run; it keeps what it has allocated.
 template <int D>
 class RunBuffer {
  public:
@@ -50,7 +61,7 @@ class RunBuffer {
 
   std::size_t size() const noexcept { return size_; }
 
-  /// Makes room for `count` boxes, so that append() and put() need not.
+  /// Makes room for `count` boxes, so that append() need not.
   void reserve(std::size_t count) {
     if (count + read_ahead <= id_.size()) return;
     for (int axis = 0; axis < D; ++axis) {
@@ -62,24 +73,42 @@ class RunBuffer {
   }
 
   /// Adds a box whose axes are already in the run's order. reserve() must have made the room.
-  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) { put(size_++, box, id, apart); }
-
-  /// Sets the box at a place for which reserve() has made room; set_size() tells how many there are then.
-  void put(std::size_t place, const Box<D>& box, BoxId id, std::uint32_t apart) {
+  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) {
     for (int axis = 0; axis < D; ++axis) {
-      min_[axis][place] = box.min[axis];
-      max_[axis][place] = box.max[axis];
+      min_[axis][size_] = box.min[axis];
+      max_[axis][size_] = box.max[axis];
     }
-    id_[place] = id;
-    apart_[place] = apart;
+    id_[size_] = id;
+    apart_[size_] = apart;
+    ++size_;
+  }
+
+  /// Where to put boxes in any order, for which reserve() has made room; set_size() then tells how many.
+  RunArrays<D> arrays() {
+    RunArrays<D> arrays;
+    for (int axis = 0; axis < D; ++axis) {
+      arrays.min[axis] = min_[axis].data();
+      arrays.max[axis] = max_[axis].data();
+    }
+    arrays.id = id_.data();
+    arrays.apart = apart_.data();
+    return arrays;
   }
 
   void set_size(std::size_t size) noexcept { size_ = size; }
 
+  /// Sorts a few boxes, at the places [begin, end), by min[0]; equal ones stay in order.
+  void sort(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      for (std::size_t j = i; j > begin && min_[0][j] < min_[0][j - 1]; --j) swap(j, j - 1);
+    }
+  }
+
   /// The run; holds until the buffer is changed.
   Run<D> view(float slack = 0) {
     reserve(size_);
-    for (std::size_t i = 0; i < read_ahead; ++i) min_[0][size_ + i] = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t i = 0; i < read_ahead; ++i)
+      min_[0][size_ + i] = max_[0][size_ + i] = std::numeric_limits<float>::quiet_NaN();
     Run<D> run{};
     for (int axis = 0; axis < D; ++axis) {
       run.min[axis] = min_[axis].data();
@@ -93,6 +122,15 @@ class RunBuffer {
   }
 
  private:
+  void swap(std::size_t a, std::size_t b) {
+    for (int axis = 0; axis < D; ++axis) {
+      std::swap(min_[axis][a], min_[axis][b]);
+      std::swap(max_[axis][a], max_[axis][b]);
+    }
+    std::swap(id_[a], id_[b]);
+    std::swap(apart_[a], apart_[b]);
+  }
+
   std::array<std::vector<float>, D> min_;
   std::array<std::vector<float>, D> max_;
   std::vector<BoxId> id_;

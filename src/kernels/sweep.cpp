@@ -19,7 +19,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, read_ahead>;
+using Floats = hn::CappedTag<float, 16>;
 using Ids = hn::Rebind<std::uint32_t, Floats>;
 using FloatVector = hn::Vec<Floats>;
 using IdVector = hn::Vec<Ids>;
@@ -41,11 +41,19 @@ class Writer {
     const IdVector partners = compress(tag, ids, hits);
     const IdVector first = hn::Min(partners, query);
     const IdVector second = hn::Max(partners, query);
-    if constexpr (hn::MaxLanes(Ids()) == 1) {
-      *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
-    } else {
-      hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
-    }
+#if HWY_TARGET == HWY_SCALAR
+    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+#else
+    const hn::Half<Ids> half;
+    const hn::RepartitionToWide<Ids> wide;
+    auto* const out = reinterpret_cast<std::uint64_t*>(out_);
+    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
+                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
+               wide, out);
+    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
+                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
+               wide, out + hn::Lanes(wide));
+#endif
     out_ += hn::CountTrue(tag, hits);
     if (HWY_UNLIKELY(out_ > last_)) {
       sink_->commit(static_cast<std::size_t>(out_ - begin_));
@@ -129,12 +137,92 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
   return tests;
 }
 
+/// Boxes whose windows are swept together: as many on every instruction set, since it fixes the order.
+constexpr std::size_t together = read_ahead;
+
 template <int D>
 std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
-  Writer pairs(sink);
+  const Floats floats;
+  const Ids idtag;
+  constexpr std::size_t lanes = hn::MaxLanes(Floats());
+  constexpr std::size_t parts = together / lanes;
+  const Run<D> r = run;
+  const float* const min0 = r.min[0];
+  const float* const max0 = r.max[0];
+  const auto* const idp = reinterpret_cast<const std::uint32_t*>(r.id);
+  const std::uint32_t* const apart = r.apart;
   std::uint64_t tests = 0;
-  for (std::size_t i = 0; i + 1 < run.size; ++i)
-    tests += sweep_from(Query<D>(run, i), run.max[0][i] + run.slack, run, i + 1, pairs);
+  Pair* out = sink.room(PairSink::max_room);
+  Pair* begin = out;
+  for (std::size_t base = 0; base + 1 < r.size; base += together) {
+    std::size_t d = 1;
+    for (;;) {
+      std::size_t steps = (PairSink::max_room - static_cast<std::size_t>(out - begin)) / together - 1;
+      if (steps < 2) {
+        sink.commit(static_cast<std::size_t>(out - begin));
+        begin = out;
+        out = begin = sink.room(PairSink::max_room);
+        steps = PairSink::max_room / together - 1;
+      }
+      FloatVector qmin[parts][D], qmax[parts][D], last[parts];
+      IdVector qid[parts], qapart[parts];
+      for (std::size_t k = 0; k < parts; ++k) {
+        const std::size_t i = base + k * lanes;
+        for (int a = 0; a < D; ++a) {
+          qmin[k][a] = hn::LoadU(floats, r.min[a] + i);
+          qmax[k][a] = hn::LoadU(floats, r.max[a] + i);
+        }
+        qid[k] = hn::LoadU(idtag, idp + i);
+        qapart[k] = hn::LoadU(idtag, apart + i);
+        last[k] = hn::Add(qmax[k][0], hn::Set(floats, r.slack));
+      }
+      const std::size_t stop = d + steps;
+      bool done = false;
+      for (; d < stop; ++d) {
+        std::size_t active = 0;
+        for (std::size_t k = 0; k < parts; ++k) {
+          const std::size_t j = base + d + k * lanes;
+          const auto cmin0 = hn::LoadU(floats, min0 + j);
+          active += hn::CountTrue(floats, hn::Le(cmin0, last[k]));
+          const auto candidates = hn::Le(cmin0, qmax[k][0]);
+          auto touching = hn::And(candidates, hn::Le(qmin[k][0], hn::LoadU(floats, max0 + j)));
+          for (int a = 1; a < D; ++a) {
+            touching = hn::And(touching, hn::Le(hn::LoadU(floats, r.min[a] + j), qmax[k][a]));
+            touching = hn::And(touching, hn::Le(qmin[k][a], hn::LoadU(floats, r.max[a] + j)));
+          }
+          const IdVector common = hn::And(qapart[k], hn::LoadU(idtag, apart + j));
+          const Hits hits = hn::And(hn::RebindMask(idtag, touching), hn::Eq(common, hn::Zero(idtag)));
+          const IdVector one = hn::Compress(qid[k], hits);
+          const IdVector two = hn::Compress(hn::LoadU(idtag, idp + j), hits);
+          const std::size_t count = hn::CountTrue(idtag, hits);
+          tests += hn::CountTrue(floats, candidates);
+          const IdVector first = hn::Min(one, two);
+          const IdVector second = hn::Max(one, two);
+#if HWY_TARGET == HWY_SCALAR
+          *out = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+#else
+          const hn::Half<Ids> half;
+          const hn::RepartitionToWide<Ids> wide;
+          auto* const to = reinterpret_cast<std::uint64_t*>(out);
+          hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
+                            hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
+                     wide, to);
+          if (lanes < 16 || count > lanes / 2)
+            hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
+                              hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
+                       wide, to + hn::Lanes(wide));
+#endif
+          out += count;
+        }
+        if (active == 0) {
+          done = true;
+          break;
+        }
+      }
+      if (done) break;
+    }
+  }
+  sink.commit(static_cast<std::size_t>(out - begin));
   return tests;
 }
 

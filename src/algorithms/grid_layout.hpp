@@ -1,0 +1,80 @@
+// Where a grid's cells lie: which axes have cells, how many, and in which cell a coordinate is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+#include "core/sample.hpp"
+
+namespace broadside::own {
+
+/// Cells over all axes but the one that is swept. On each of them they are equally wide, and those at the
+/// ends take in what lies beyond. The cells of the first of these axes make a row; in 3D there are rows one
+/// above the other, in 2D a cell is a row. Some rows together are a slab, which can be searched by itself.
+template <int D>
+class GridLayout {
+ public:
+  static constexpr int gridded = D - 1;
+
+  /// Chooses axes and cells for `count` boxes by what a search would cost; or cells `cell` wide, unless there
+  /// would be too many.
+  void choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell);
+
+  /// The axes of the caller's boxes: first the swept one, then those with cells.
+  const std::array<int, D>& axes() const noexcept { return axes_; }
+
+  std::size_t cells() const noexcept { return cell_count_; }
+  std::size_t row_length() const noexcept { return D == 2 ? 1 : cells_[0]; }
+  std::size_t rows() const noexcept { return cells_[gridded - 1]; }
+  std::size_t slabs() const noexcept { return slab_begin_.size() - 1; }
+
+  /// The first row of a slab; for slabs(), the number of rows.
+  std::size_t slab_begin(std::size_t slab) const { return slab_begin_[slab]; }
+
+  /// The slab that a row is in.
+  std::size_t slab_of(std::size_t row) const { return slab_of_[row]; }
+
+  /// The one formula by which a coordinate has a cell, here on the axis `axes()[1 + axis]`. It rises with the
+  /// coordinate and clamps it, infinite or not.
+  std::uint32_t cell_of(float coordinate, int axis) const {
+    const float cell = (coordinate - low_[axis]) * per_unit_[axis];
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(std::max(cell, 0.0F), last_[axis])));
+  }
+
+  /// The row and, in it, the cell that hold a box's minimum.
+  std::size_t row_of(const Box<D>& box) const { return cell_of(box.min[axes_[D - 1]], gridded - 1); }
+  std::size_t column_of(const Box<D>& box) const { return D == 2 ? 0 : cell_of(box.min[axes_[1]], 0); }
+
+  /// The least coordinate that lies in the cell after `cell`; NaN after the last one, so that nothing reaches
+  /// it.
+  float border(int axis, std::size_t cell) const { return borders_[axis][cell]; }
+  float row_border(std::size_t row) const { return borders_[gridded - 1][row]; }
+  float column_border(std::size_t column) const { return borders_[0][column]; }
+
+  /// The border of a row's slab.
+  float slab_border(std::size_t row) const { return slab_border_[row]; }
+
+ private:
+  void set(const core::Sample<D>& sample, const std::array<double, gridded>& cells);
+  void set_borders(int axis);
+  void set_slabs();
+
+  std::array<int, D> axes_{};
+  std::array<std::uint32_t, gridded> cells_{};
+  std::array<float, gridded> low_{};
+  std::array<float, gridded> per_unit_{};
+  std::array<float, gridded> last_{};
+  std::size_t cell_count_ = 0;
+  std::array<std::vector<float>, gridded> borders_;
+  std::vector<std::uint32_t> slab_begin_;
+  std::vector<std::uint8_t> slab_of_;
+  std::vector<float> slab_border_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,227 @@
+// Sweeps the cells of a grid, slab by slab.
+//
+// A cell's boxes are brought into order by filing them in buckets of the swept axis: one pass to count, one
+// to file. Within a bucket they stay as they came, which the kernels allow for (Run::slack). Where buckets
+// would be too uneven for that, boxes are sorted.
+#include "algorithms/grid_sweep.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kernels/sweep.hpp"
+
+namespace broadside::own {
+namespace {
+
+constexpr std::size_t least_buckets = 16;
+constexpr std::size_t most_buckets = 1 << 13;
+
+/// What lies beyond the range is in the buckets at the ends. So many boxes there are sorted one by one.
+constexpr std::size_t most_beyond = 32;
+
+/// A box may stand in a bucket with so many others on average, before it pays to sort them all.
+constexpr std::size_t most_in_bucket = 48;
+
+}  // namespace
+
+template <int D>
+Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
+                               const GridCells<D>& cells, std::size_t slab, PairSink& pairs) {
+  axes_ = layout.axes();
+  range_ = range;
+  statistics_ = {};
+  const std::size_t length = layout.row_length();
+  columns_.resize(std::max(columns_.size(), length));
+  for (Carried& column : columns_) column.size = 0;
+  const std::size_t end = layout.slab_begin(slab + 1);
+  for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
+    // What reaches into the next slab is filed there.
+    const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
+    along_.size = 0;
+    for (std::size_t column = 0; column < length; ++column) {
+      const std::size_t cell = row * length + column;
+      Lists lists;
+      lists[0] = cells.boxes.subspan(cells.begin[cell], cells.begin[cell + 1] - cells.begin[cell]);
+      lists[1] = columns_[column].list();
+      if constexpr (D == 3) lists[2] = along_.list();
+      sweep_cell(lists, layout.column_border(column), row_border, pairs);
+      std::swap(columns_[column], next_up_);
+      std::swap(along_, next_along_);
+    }
+  }
+  return statistics_;
+}
+
+template <int D>
+void GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row_border, PairSink& pairs) {
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
+  statistics_.references += count;
+  next_up_.size = 0;
+  next_along_.size = 0;
+  if (count == 0) return;
+  // Room for one more than there may be: where none goes on, one is written all the same.
+  next_up_.reserve(count + 1);
+  if constexpr (D == 3) next_along_.reserve(count + 1);
+  bucket_of_.resize(std::max(bucket_of_.size(), count));
+  const Buckets buckets = cut(range_, count);
+  starts_.assign(buckets.count, 0);
+  std::uint16_t* bucket_of = bucket_of_.data();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    // A box goes along the row where it is met first, and up from everywhere.
+    if (D == 3 && i != 1)
+      look_at<true>(lists[i], buckets, column_border, row_border, bucket_of);
+    else
+      look_at<false>(lists[i], buckets, column_border, row_border, bucket_of);
+    bucket_of += lists[i].size();
+  }
+  if (count < 2) return;
+  run_.reserve(count);
+  const float slack = order(lists, count, buckets);
+  run_.set_size(count);
+  statistics_.tests += kernels::sweep(run_.view(slack), pairs);
+}
+
+template <int D>
+typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::size_t count) {
+  Buckets buckets;
+  buckets.count = std::bit_ceil(std::clamp(count, least_buckets, most_buckets));
+  const auto buckets_in_range = static_cast<float>(buckets.count);
+  const float length = range.high - range.low;
+  // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+  buckets.per_unit = std::clamp(length > 0 ? buckets_in_range / length : 1, std::numeric_limits<float>::min(),
+                                std::numeric_limits<float>::max());
+  buckets.low = range.low;
+  buckets.last = buckets_in_range - 1;
+  // A bucket's width and what rounding may add to it.
+  constexpr float rounding = 1e-6F;
+  buckets.slack =
+      length / buckets_in_range * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high));
+  return buckets;
+}
+
+template <int D>
+template <bool Along>
+void GridSweep<D>::look_at(std::span<const Filed<D>> list, const Buckets& buckets, float column_border,
+                           float row_border, std::uint16_t* bucket_of) {
+  const int swept = axes_[0];
+  const int column_axis = axes_[1];
+  const int row_axis = axes_[D - 1];
+  Filed<D>* along = next_along_.memory.data() + next_along_.size;
+  Filed<D>* up = next_up_.memory.data() + next_up_.size;
+  std::uint32_t* const counts = starts_.data();
+  for (const Filed<D>& filed : list) {
+    const std::uint16_t bucket = buckets.of(filed.box.min[swept]);
+    *bucket_of++ = bucket;
+    ++counts[bucket];
+    // Written in any case and kept if it goes on: no predictor could know.
+    *up = filed;
+    up->apart |= 1U << row_axis;
+    up += filed.box.max[row_axis] >= row_border ? 1 : 0;
+    if constexpr (Along) {
+      *along = filed;
+      along->apart |= 1U << column_axis;
+      along += filed.box.max[column_axis] >= column_border ? 1 : 0;
+    }
+  }
+  next_along_.size = static_cast<std::size_t>(along - next_along_.memory.data());
+  next_up_.size = static_cast<std::size_t>(up - next_up_.memory.data());
+}
+
+template <int D>
+float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& buckets) {
+  const std::size_t before = starts_.front();
+  const std::size_t after = starts_.back();
+  if (std::max(before, after) <= most_beyond && are_even(count)) {
+    file_by_bucket(lists);
+    run_.sort(0, before);
+    run_.sort(count - after, count);
+    return buckets.slack;
+  }
+  // The range between the cell's own ends may do better than that of all boxes.
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  SweptRange own{infinity, -infinity};
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      own.low = std::min(own.low, filed.box.min[axes_[0]]);
+      own.high = std::max(own.high, filed.box.min[axes_[0]]);
+    }
+  }
+  if (std::isfinite(own.high - own.low)) {
+    const Buckets narrower = cut(own, count);
+    starts_.assign(narrower.count, 0);
+    std::uint16_t* bucket_of = bucket_of_.data();
+    for (const auto& list : lists) {
+      for (const Filed<D>& filed : list) {
+        *bucket_of = narrower.of(filed.box.min[axes_[0]]);
+        ++starts_[*bucket_of++];
+      }
+    }
+    // Where all begin at one place, there is nothing to be gained by sorting them.
+    if (own.low == own.high || are_even(count)) {
+      file_by_bucket(lists);
+      return narrower.slack;
+    }
+  }
+  file_exactly(lists, count);
+  return 0;
+}
+
+template <int D>
+bool GridSweep<D>::are_even(std::size_t count) const {
+  std::uint64_t squares = 0;
+  for (const std::uint32_t in_bucket : starts_) squares += std::uint64_t{in_bucket} * in_bucket;
+  return squares <= std::uint64_t{most_in_bucket} * count;
+}
+
+template <int D>
+void GridSweep<D>::file_by_bucket(const Lists& lists) {
+  std::uint32_t begin = 0;
+  for (std::uint32_t& start : starts_) start = std::exchange(begin, begin + start);
+  const kernels::RunArrays<D> run = run_.arrays();
+  const std::array<int, D> axes = axes_;
+  std::uint32_t* const starts = starts_.data();
+  const std::uint16_t* bucket_of = bucket_of_.data();
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      const std::size_t place = starts[*bucket_of++]++;
+      for (int axis = 0; axis < D; ++axis) {
+        run.min[axis][place] = filed.box.min[axes[axis]];
+        run.max[axis][place] = filed.box.max[axes[axis]];
+      }
+      run.id[place] = filed.id;
+      run.apart[place] = filed.apart;
+    }
+  }
+}
+
+template <int D>
+void GridSweep<D>::file_exactly(const Lists& lists, std::size_t count) {
+  const std::span<core::KeyedPlace> places = radix_.places(count);
+  together_.clear();
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      places[together_.size()] = {core::sort_key(filed.box.min[axes_[0]]),
+                                  static_cast<std::uint32_t>(together_.size())};
+      together_.push_back(filed);
+    }
+  }
+  run_.clear();
+  for (const core::KeyedPlace& place : radix_.sort()) {
+    const Filed<D>& filed = together_[place.place];
+    Box<D> box;
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = filed.box.min[axes_[axis]];
+      box.max[axis] = filed.box.max[axes_[axis]];
+    }
+    run_.append(box, filed.id, filed.apart);
+  }
+}
+
+template class GridSweep<2>;
+template class GridSweep<3>;
+
+}  // namespace broadside::own
