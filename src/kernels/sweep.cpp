@@ -1,9 +1,9 @@
 // The kernels: a sorted run swept against itself or against another, and all of a run compared.
 //
 // Written once with Highway, compiled for every instruction set it knows, chosen when the program runs. Hits
-// are written without a branch, since whether two candidates overlap is what no predictor can know: the
-// partners' ids are compressed to the front, a whole vector of pairs is stored, and the place to write moves
-// on by as many as were hits.
+// are written without a branch, since whether two candidates overlap is what no predictor can know: ids are
+// compressed to the front, a whole vector of pairs is stored, and the place to write moves on by as many as
+// were hits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/sweep.cpp"
 #include "kernels/sweep.hpp"
@@ -25,53 +25,78 @@ using FloatVector = hn::Vec<Floats>;
 using IdVector = hn::Vec<Ids>;
 using Hits = hn::Mask<Ids>;
 
+/// Boxes of a run that are swept together: as many on every instruction set, since it fixes the order.
+constexpr std::size_t together = read_ahead;
+
 /// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
 class Writer {
  public:
-  explicit Writer(PairSink& sink) : sink_(&sink) { take(); }
+  explicit Writer(PairSink& sink) : sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}
 
   ~Writer() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
 
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Writes the pairs of `query` with those of `ids` that are hits.
-  HWY_INLINE void write(IdVector query, IdVector ids, Hits hits) {
-    const Ids tag;
-    const IdVector partners = compress(tag, ids, hits);
-    const IdVector first = hn::Min(partners, query);
-    const IdVector second = hn::Max(partners, query);
-#if HWY_TARGET == HWY_SCALAR
-    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
-#else
-    const hn::Half<Ids> half;
-    const hn::RepartitionToWide<Ids> wide;
-    auto* const out = reinterpret_cast<std::uint64_t*>(out_);
-    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
-                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
-               wide, out);
-    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
-                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
-               wide, out + hn::Lanes(wide));
-#endif
-    out_ += hn::CountTrue(tag, hits);
-    if (HWY_UNLIKELY(out_ > last_)) {
-      sink_->commit(static_cast<std::size_t>(out_ - begin_));
-      begin_ = out_;  // if the sink throws, this much is committed already
-      take();
+  /// How many times `together` pairs may be written before room() is called again: at least once.
+  HWY_INLINE std::size_t room() {
+    if (HWY_UNLIKELY(left() < 1)) {
+      Pair* const end = out_;
+      Pair* const begin = begin_;
+      begin_ = out_ = end;  // if the sink throws, this much is committed already
+      begin_ = out_ = next_room(*sink_, static_cast<std::size_t>(end - begin));
     }
+    return left();
+  }
+
+  /// Writes the pairs of `a` and `b`, lane by lane, that are hits. Takes the room of a vector.
+  HWY_INLINE void write(IdVector a, IdVector b, Hits hits) {
+    const Ids tag;
+    store(compress(tag, a, hits), compress(tag, b, hits), hn::CountTrue(tag, hits));
+  }
+
+  /// Writes the pairs of `query`, which is the same in every lane, with those of `ids` that are hits.
+  HWY_INLINE void write_of(IdVector query, IdVector ids, Hits hits) {
+    const Ids tag;
+    store(query, compress(tag, ids, hits), hn::CountTrue(tag, hits));
   }
 
  private:
-  void take() {
-    begin_ = out_ = sink_->room(PairSink::max_room);
-    last_ = begin_ + PairSink::max_room - read_ahead;
+  static HWY_NOINLINE Pair* next_room(PairSink& sink, std::size_t written) {
+    sink.commit(written);
+    return sink.room(PairSink::max_room);
+  }
+
+  std::size_t left() const {
+    return (PairSink::max_room - static_cast<std::size_t>(out_ - begin_)) / together;
+  }
+
+  HWY_INLINE void store(IdVector a, IdVector b, std::size_t count) {
+    const IdVector first = hn::Min(a, b);
+    const IdVector second = hn::Max(a, b);
+#if HWY_TARGET == HWY_SCALAR
+    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+#else
+    // A pair is its first id in the low half of 64 bits and its second one in the high half.
+    const hn::Half<Ids> half;
+    const hn::RepartitionToWide<Ids> wide;
+    auto* const to = reinterpret_cast<std::uint64_t*>(out_);
+    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
+                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
+               wide, to);
+    // Of many lanes few are hits.
+    if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide))) {
+      hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
+                        hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
+                 wide, to + hn::Lanes(wide));
+    }
+#endif
+    out_ += count;
   }
 
   PairSink* sink_;
-  Pair* begin_ = nullptr;
-  Pair* out_ = nullptr;
-  Pair* last_ = nullptr;  // beyond it a whole vector of pairs may not fit
+  Pair* begin_;
+  Pair* out_;
 };
 
 /// One box of a run, in every lane.
@@ -124,105 +149,86 @@ template <int D>
 HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D>& run, std::size_t begin,
                                   Writer& pairs) {
   const Floats floats;
-  auto candidates = begins(query, run, begin);
-  std::size_t tests = hn::CountTrue(floats, candidates);
-  pairs.write(query.id, ids(run, begin), overlaps<true>(query, run, begin, candidates));
-  // Where candidates are many, most vectors of them hold no hit.
-  for (std::size_t at = begin + hn::Lanes(floats); run.min[0][at] <= last; at += hn::Lanes(floats)) {
-    candidates = begins(query, run, at);
+  std::size_t tests = 0;
+  for (std::size_t at = begin; run.min[0][at] <= last; at += hn::Lanes(floats)) {
+    const auto candidates = begins(query, run, at);
     tests += hn::CountTrue(floats, candidates);
     const Hits hits = overlaps<true>(query, run, at, candidates);
-    if (!hn::AllFalse(Ids(), hits)) pairs.write(query.id, ids(run, at), hits);
+    // Where candidates are many, most vectors of them hold no hit.
+    if (hn::AllFalse(Ids(), hits)) continue;
+    pairs.room();
+    pairs.write_of(query.id, ids(run, at), hits);
   }
   return tests;
 }
 
-/// Boxes whose windows are swept together: as many on every instruction set, since it fixes the order.
-constexpr std::size_t together = read_ahead;
+/// Boxes of a run that follow each other, one a lane.
+template <int D>
+struct Group {
+  HWY_INLINE void load(const Run<D>& run, std::size_t at) {
+    id = ids(run, at);
+    apart = hn::LoadU(Ids(), run.apart + at);
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = hn::LoadU(Floats(), run.min[axis] + at);
+      max[axis] = hn::LoadU(Floats(), run.max[axis] + at);
+    }
+  }
+
+  FloatVector min[D];
+  FloatVector max[D];
+  IdVector id;
+  IdVector apart;
+};
+
+/// Compares `together` boxes with the ones `distance` places behind each, then with the next ones, and so on
+/// until no window holds more or few do: `distance` is then how far it came. Windows are too short for the
+/// lanes to be one box's candidates. Returns the number of windows that may hold more.
+template <int D>
+HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::size_t& distance,
+                                   std::uint64_t& tests, Writer& pairs) {
+  constexpr std::size_t lanes = hn::MaxLanes(Floats());
+  constexpr std::size_t parts = together / lanes;
+  constexpr std::size_t few_windows = 6;
+  const Floats floats;
+  const FloatVector slack = hn::Set(floats, run.slack);
+  for (;;) {
+    // No call in the loop below: vectors would have to be saved from it.
+    const std::size_t stop = distance + pairs.room();
+    Group<D> groups[parts];
+    for (std::size_t part = 0; part < parts; ++part) groups[part].load(run, begin + part * lanes);
+    std::size_t open = together;
+    for (; distance < stop; ++distance) {
+      open = 0;
+      for (std::size_t part = 0; part < parts; ++part) {
+        const Group<D>& group = groups[part];
+        Group<D> other;
+        other.load(run, begin + part * lanes + distance);
+        open += hn::CountTrue(floats, hn::Le(other.min[0], hn::Add(group.max[0], slack)));
+        const auto candidates = hn::Le(other.min[0], group.max[0]);
+        tests += hn::CountTrue(floats, candidates);
+        auto touching = hn::And(candidates, hn::Le(group.min[0], other.max[0]));
+        for (int axis = 1; axis < D; ++axis) {
+          touching = hn::And(touching, hn::Le(other.min[axis], group.max[axis]));
+          touching = hn::And(touching, hn::Le(group.min[axis], other.max[axis]));
+        }
+        const auto together_here = hn::Eq(hn::And(group.apart, other.apart), hn::Zero(Ids()));
+        pairs.write(group.id, other.id, hn::And(hn::RebindMask(Ids(), touching), together_here));
+      }
+      if (open == 0 || (open <= few_windows && distance >= together)) return open;
+    }
+  }
+}
 
 template <int D>
 std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
-  const Floats floats;
-  const Ids idtag;
-  constexpr std::size_t lanes = hn::MaxLanes(Floats());
-  constexpr std::size_t parts = together / lanes;
-  const Run<D> r = run;
-  const float* const min0 = r.min[0];
-  const float* const max0 = r.max[0];
-  const auto* const idp = reinterpret_cast<const std::uint32_t*>(r.id);
-  const std::uint32_t* const apart = r.apart;
+  Writer pairs(sink);
   std::uint64_t tests = 0;
-  Pair* out = sink.room(PairSink::max_room);
-  Pair* begin = out;
-  for (std::size_t base = 0; base + 1 < r.size; base += together) {
-    std::size_t d = 1;
-    for (;;) {
-      std::size_t steps = (PairSink::max_room - static_cast<std::size_t>(out - begin)) / together - 1;
-      if (steps < 2) {
-        sink.commit(static_cast<std::size_t>(out - begin));
-        begin = out;
-        out = begin = sink.room(PairSink::max_room);
-        steps = PairSink::max_room / together - 1;
-      }
-      FloatVector qmin[parts][D], qmax[parts][D], last[parts];
-      IdVector qid[parts], qapart[parts];
-      for (std::size_t k = 0; k < parts; ++k) {
-        const std::size_t i = base + k * lanes;
-        for (int a = 0; a < D; ++a) {
-          qmin[k][a] = hn::LoadU(floats, r.min[a] + i);
-          qmax[k][a] = hn::LoadU(floats, r.max[a] + i);
-        }
-        qid[k] = hn::LoadU(idtag, idp + i);
-        qapart[k] = hn::LoadU(idtag, apart + i);
-        last[k] = hn::Add(qmax[k][0], hn::Set(floats, r.slack));
-      }
-      const std::size_t stop = d + steps;
-      bool done = false;
-      for (; d < stop; ++d) {
-        std::size_t active = 0;
-        for (std::size_t k = 0; k < parts; ++k) {
-          const std::size_t j = base + d + k * lanes;
-          const auto cmin0 = hn::LoadU(floats, min0 + j);
-          active += hn::CountTrue(floats, hn::Le(cmin0, last[k]));
-          const auto candidates = hn::Le(cmin0, qmax[k][0]);
-          auto touching = hn::And(candidates, hn::Le(qmin[k][0], hn::LoadU(floats, max0 + j)));
-          for (int a = 1; a < D; ++a) {
-            touching = hn::And(touching, hn::Le(hn::LoadU(floats, r.min[a] + j), qmax[k][a]));
-            touching = hn::And(touching, hn::Le(qmin[k][a], hn::LoadU(floats, r.max[a] + j)));
-          }
-          const IdVector common = hn::And(qapart[k], hn::LoadU(idtag, apart + j));
-          const Hits hits = hn::And(hn::RebindMask(idtag, touching), hn::Eq(common, hn::Zero(idtag)));
-          const IdVector one = hn::Compress(qid[k], hits);
-          const IdVector two = hn::Compress(hn::LoadU(idtag, idp + j), hits);
-          const std::size_t count = hn::CountTrue(idtag, hits);
-          tests += hn::CountTrue(floats, candidates);
-          const IdVector first = hn::Min(one, two);
-          const IdVector second = hn::Max(one, two);
-#if HWY_TARGET == HWY_SCALAR
-          *out = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
-#else
-          const hn::Half<Ids> half;
-          const hn::RepartitionToWide<Ids> wide;
-          auto* const to = reinterpret_cast<std::uint64_t*>(out);
-          hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
-                            hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
-                     wide, to);
-          if (lanes < 16 || count > lanes / 2)
-            hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
-                              hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
-                       wide, to + hn::Lanes(wide));
-#endif
-          out += count;
-        }
-        if (active == 0) {
-          done = true;
-          break;
-        }
-      }
-      if (done) break;
-    }
+  for (std::size_t begin = 0; begin + 1 < run.size; begin += together) {
+    std::size_t distance = 1;
+    if (sweep_group(run, begin, distance, tests, pairs) == 0) continue;
+    for (std::size_t i = begin; i < begin + together; ++i)
+      tests += sweep_from(Query<D>(run, i), run.max[0][i] + run.slack, run, i + distance + 1, pairs);
   }
-  sink.commit(static_cast<std::size_t>(out - begin));
   return tests;
 }
 
@@ -250,7 +256,9 @@ template <int D>
 HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin, Writer& pairs) {
   for (std::size_t at = begin; at < run.size; at += hn::Lanes(Floats())) {
     const Hits hits = overlaps<false>(query, run, at, begins(query, run, at));
-    if (!hn::AllFalse(Ids(), hits)) pairs.write(query.id, ids(run, at), hits);
+    if (hn::AllFalse(Ids(), hits)) continue;
+    pairs.room();
+    pairs.write_of(query.id, ids(run, at), hits);
   }
 }
 

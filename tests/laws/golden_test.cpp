@@ -46,8 +46,8 @@ struct GoldenOrder {
 constexpr std::array<GoldenOrder, 10> golden_orders = {{
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
-    {"grid", 2, 0xc6e509ec197de519U},
-    {"grid", 3, 0x9b0e3ef125c5fc6eU},
+    {"grid", 2, 0x97cc9c1c394e3fc5U},
+    {"grid", 3, 0x88c29effb6717262U},
     {"sweep_and_prune", 2, 0x549142ce8c12c165U},
     {"sweep_and_prune", 3, 0x4f601e2af8c50ebeU},
     {"quadtree", 2, 0xc3cce26035314221U},
