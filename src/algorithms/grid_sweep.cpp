@@ -25,6 +25,8 @@ constexpr std::size_t most_beyond = 32;
 /// A box may stand in a bucket with so many others on average, before it pays to sort them all.
 constexpr std::size_t most_in_bucket = 48;
 
+constexpr float largest = std::numeric_limits<float>::max();
+
 }  // namespace
 
 template <int D>
@@ -92,14 +94,15 @@ typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::s
   const auto buckets_in_range = static_cast<float>(buckets.count);
   const float length = range.high - range.low;
   // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
-  buckets.per_unit = std::clamp(length > 0 ? buckets_in_range / length : 1, std::numeric_limits<float>::min(),
-                                std::numeric_limits<float>::max());
+  buckets.per_unit =
+      std::clamp(length > 0 ? buckets_in_range / length : 1, std::numeric_limits<float>::min(), largest);
   buckets.low = range.low;
   buckets.last = buckets_in_range - 1;
   // A bucket's width and what rounding may add to it.
   constexpr float rounding = 1e-6F;
+  const float width = std::max(1 / buckets.per_unit, length / buckets_in_range);
   buckets.slack =
-      length / buckets_in_range * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high));
+      std::min(width * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high)), largest);
   return buckets;
 }
 

@@ -30,12 +30,17 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The names under which the files of a folder should stand in the registry.
+/// The names under which the files of a folder should stand in the registry: all but those that are a part of
+/// another one, as grid_layout.cpp is of grid.cpp.
 std::vector<std::string> names_of_files(const std::string& folder, const std::string& prefix) {
+  const fs::path path = project / "src" / folder;
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(project / "src" / folder)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
     const std::string stem = entry.path().stem();
-    if (entry.path().extension() == ".cpp" && !stem.starts_with("printed")) names.push_back(prefix + stem);
+    const bool is_part =
+        fs::exists(path / (stem.substr(0, stem.rfind('_')) + ".cpp")) && stem.find('_') != std::string::npos;
+    if (entry.path().extension() == ".cpp" && !stem.starts_with("printed") && !is_part)
+      names.push_back(prefix + stem);
   }
   return names;
 }

@@ -49,13 +49,15 @@ const std::vector<Rule>& rules() {
 }
 
 /// Whether `include` is a header of the file's own: one folder, and the name of one begins that of the other
-/// ("algorithms/quadtree_cells.hpp" from quadtree.cpp).
+/// ("algorithms/grid_layout.hpp" from grid.cpp), or they differ in the last word (from grid_sweep.cpp).
 bool is_own_header(const std::filesystem::path& path, std::string_view include) {
   const std::filesystem::path header(include.substr(1, include.size() - 2));
   if (path.parent_path().filename() != header.parent_path()) return false;
   const std::string file = path.stem();
   const std::string own = header.stem();
-  return file == own || file.starts_with(own + "_") || own.starts_with(file + "_");
+  const auto family = [](const std::string& name) { return name.substr(0, name.rfind('_')); };
+  return file == own || file.starts_with(own + "_") || own.starts_with(file + "_") ||
+         (family(file) != file && family(own) != own && family(file) == family(own));
 }
 
 }  // namespace

@@ -46,12 +46,12 @@ struct GoldenOrder {
 constexpr std::array<GoldenOrder, 10> golden_orders = {{
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
-    {"grid", 2, 0x97cc9c1c394e3fc5U},
-    {"grid", 3, 0x88c29effb6717262U},
-    {"sweep_and_prune", 2, 0x549142ce8c12c165U},
-    {"sweep_and_prune", 3, 0x4f601e2af8c50ebeU},
-    {"quadtree", 2, 0xc3cce26035314221U},
-    {"quadtree", 3, 0x58186a9ee7252c3aU},
+    {"grid", 2, 0x00ef862ee0c5d3fdU},
+    {"grid", 3, 0x91bd1d5d7715c49aU},
+    {"sweep_and_prune", 2, 0xc9247fb29c7ca839U},
+    {"sweep_and_prune", 3, 0xb56e0b088d97bcdeU},
+    {"quadtree", 2, 0x85c4c8674de5ec01U},
+    {"quadtree", 3, 0x4e4907df8b50316aU},
     {"bvh", 2, 0x84e8fe29d048d7edU},
     {"bvh", 3, 0x308519112b5d1736U},
 }};
