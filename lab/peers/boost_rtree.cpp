@@ -1,6 +1,9 @@
 // Boost.Geometry's R-tree, packed, and a query for each box.
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
