@@ -34,6 +34,22 @@ struct PeerList {
       add({bullet_dbvt(), bullet_axis_sweep()});
     else
       miss("libbullet-dev", {"bullet_dbvt", "bullet_axis_sweep"});
+    if constexpr (BROADSIDE_HAS_ODE)
+      add({ode_sap(), ode_hash(), ode_quadtree()});
+    else
+      miss("libode-dev", {"ode_sap", "ode_hash", "ode_quadtree"});
+    if constexpr (BROADSIDE_HAS_FCL)
+      add({fcl_dynamic_aabb_tree(), fcl_ssap(), fcl_sap(), fcl_spatial_hash()});
+    else
+      miss("libfcl-dev", {"fcl_dynamic_aabb_tree", "fcl_ssap", "fcl_sap", "fcl_spatial_hash"});
+    if constexpr (BROADSIDE_HAS_BOX2D)
+      add({box2d_tree()});
+    else
+      miss("libbox2d-dev", {"box2d_tree"});
+    if constexpr (BROADSIDE_HAS_CHIPMUNK)
+      add({chipmunk_bb_tree(), chipmunk_space_hash()});
+    else
+      miss("libchipmunk-dev", {"chipmunk_bb_tree", "chipmunk_space_hash"});
   }
 
   void add(std::initializer_list<Algorithm> algorithms) {

@@ -29,5 +29,15 @@ Algorithm bullet_dbvt();
 Algorithm cgal_box_intersection();
 Algorithm embree_collide();
 Algorithm geos_strtree();
+Algorithm ode_sap();
+Algorithm ode_hash();
+Algorithm ode_quadtree();
+Algorithm fcl_dynamic_aabb_tree();
+Algorithm fcl_ssap();
+Algorithm fcl_sap();
+Algorithm fcl_spatial_hash();
+Algorithm box2d_tree();
+Algorithm chipmunk_bb_tree();
+Algorithm chipmunk_space_hash();
 
 }  // namespace broadside::lab::peers

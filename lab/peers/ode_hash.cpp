@@ -1,0 +1,67 @@
+// ODE's hash space: grids of several cell sizes in one hash table.
+#include <algorithm>
+#include <cmath>
+
+#include "lab/peers/ode_space.hpp"
+#include "lab/peers/peers.hpp"
+#include "lab/peers/typical_extent.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+// The space keeps a bit for every pair of boxes and finds it by an int.
+constexpr std::size_t most_boxes = 1 << 17;
+
+struct Levels {
+  int least;  ///< of cells of 2^least
+  int most;
+};
+
+Levels levels_of(std::span<const Box3> boxes) {
+  double greatest = 0;
+  double longest = 0;
+  for (const Box3& box : boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::isinf(box.min[axis]) || std::isinf(box.max[axis])) continue;
+      greatest = std::max<double>({greatest, std::abs(box.min[axis]), std::abs(box.max[axis])});
+      longest = std::max(longest, double{box.max[axis]} - box.min[axis]);
+    }
+  }
+  // A cell's place is an int: what is farther off aborts the program.
+  constexpr int most_bits = 29;
+  const int finest = greatest > 0 ? std::ilogb(greatest) + 1 - most_bits : -most_bits;
+  const int least = std::max(std::ilogb(typical_extent(boxes)) + 1, finest);
+  return {least, longest > 0 ? std::max(std::ilogb(longest) + 1, least) : least};
+}
+
+// The space hashes places as unsigned numbers, so that a cell may be another one to a box that begins before
+// 0 than to one that begins behind it, and pairs be lost. Among positive places that cannot be. What the sum
+// rounds keeps its order.
+double shift_of(std::span<const Box3> boxes) {
+  constexpr int bits = 30;
+  return std::ldexp(1.0, levels_of(boxes).least + bits);
+}
+
+OdeSpace make_space(std::span<const Box3> boxes) {
+  // Its manual: the sizes of the smallest and the largest cells are 2^level. A box goes to cells as large as
+  // itself, and the smaller half of all where the typical one goes.
+  OdeSpace space(dHashSpaceCreate(nullptr));
+  const Levels levels = levels_of(boxes);
+  dHashSpaceSetLevels(space.get(), levels.least, levels.most);
+  return space;
+}
+
+}  // namespace
+
+// Its table is new in each search, so that following motion is searching.
+Algorithm ode_hash() {
+  Algorithm algorithm =
+      ode_space({.make = make_space, .shift = shift_of, .tracks = false, .most_boxes = most_boxes});
+  algorithm.name = "ode_hash";
+  algorithm.summary =
+      "ODE's hash space: grids of several cell sizes in one table, and a bit for every two boxes";
+  algorithm.source = "ODE, dHashSpaceCreate";
+  return algorithm;
+}
+
+}  // namespace broadside::lab::peers

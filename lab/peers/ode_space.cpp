@@ -1,0 +1,224 @@
+// ODE's spaces as finders and trackers: geoms of a class of our own, whose bounds are exactly the boxes, put
+// in one by one; then one dSpaceCollide().
+#include "lab/peers/ode_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lab/peers/callback_sink.hpp"
+#include "lab/peers/peer_tracker.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+/// A box in a space. It must not move in memory while it is there.
+struct Item {
+  Box3 box;
+  BoxId id;
+  double shift;
+};
+
+void bounds_of(dGeomID geom, dReal bounds[6]) {
+  const auto& item = *static_cast<const Item*>(dGeomGetData(geom));
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds[2 * axis] = item.box.min[axis] + item.shift;
+    bounds[2 * axis + 1] = item.box.max[axis] + item.shift;
+  }
+}
+
+/// The number of our class of geoms. ODE is started by the first call and stopped when the program ends.
+int geom_class() {
+  struct Ode {
+    Ode() {
+      dInitODE2(0);
+      dGeomClass box{};
+      box.bytes = 1;  // not used, and not to be none
+      box.collider = [](int) -> dColliderFn* { return nullptr; };
+      box.aabb = bounds_of;
+      number = dCreateGeomClass(&box);
+    }
+    ~Ode() { dCloseODE(); }
+    int number = 0;
+  };
+  static const Ode ode;
+  dAllocateODEDataForThread(dAllocateMaskAll);
+  return ode.number;
+}
+
+struct DestroyGeom {
+  void operator()(dGeomID geom) const { dGeomDestroy(geom); }
+};
+using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
+
+/// What a search hands through to its callback. A space tells boxes that reach to infinity without a test.
+struct Search {
+  std::span<const Box3> boxes;
+  CallbackSink& pairs;
+
+  static void take(void* data, dGeomID first, dGeomID second) {
+    auto& search = *static_cast<Search*>(data);
+    const BoxId a = static_cast<const Item*>(dGeomGetData(first))->id;
+    const BoxId b = static_cast<const Item*>(dGeomGetData(second))->id;
+    if (overlap(search.boxes[index(a)], search.boxes[index(b)])) search.pairs.add(a, b);
+  }
+};
+
+void find_all(dSpaceID space, std::span<const Box3> boxes, CallbackSink& pairs) {
+  Search search{boxes, pairs};
+  dSpaceCollide(space, &search, Search::take);
+}
+
+/// Items and their geoms, which are kept for the next search.
+class Geoms {
+ public:
+  std::size_t size() const { return geoms_.size(); }
+  dGeomID operator[](std::size_t place) const { return geoms_[place].get(); }
+
+  /// Gives the place its box, and marks the geom as moved.
+  void put(std::size_t place, const Box3& box, double shift = 0) {
+    while (geoms_.size() <= place) {
+      items_.push_back({{}, BoxId(items_.size()), 0});
+      geoms_.emplace_back(dCreateGeom(geom_class()));
+      dGeomSetData(geoms_.back().get(), &items_.back());
+    }
+    items_[place].box = box;
+    items_[place].shift = shift;
+    dGeomSetPosition(geoms_[place].get(), 0, 0, 0);
+  }
+
+  /// Adds a geom that is in no space. Its bounds are computed before, so that a tree files it by the new
+  /// ones.
+  void add_to(dSpaceID space, std::size_t place) const {
+    dReal bounds[6];
+    dGeomGetAABB(geoms_[place].get(), bounds);
+    dSpaceAdd(space, geoms_[place].get());
+  }
+
+ private:
+  std::deque<Item> items_;  // by place
+  std::deque<Geom> geoms_;  // point into items_
+};
+
+class OdeFinder final : public PairFinder<3> {
+ public:
+  explicit OdeFinder(const OdeSpaceKind& kind) : kind_(kind) {}
+
+ private:
+  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+    if (boxes.size() > kind_.most_boxes)
+      throw std::length_error(std::to_string(boxes.size()) + " boxes in ODE's hash space; expected at most " +
+                              std::to_string(kind_.most_boxes) + ", as it counts pairs of boxes in an int");
+    const double shift = kind_.shift != nullptr ? kind_.shift(boxes) : 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.put(i, boxes[i], shift);
+    const OdeSpace space = kind_.make(boxes);
+    for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.add_to(space.get(), i);
+    CallbackSink sink(pairs);
+    find_all(space.get(), boxes, sink);
+    // The last one first: it is the first that a list is searched for.
+    for (std::size_t i = boxes.size(); i > 0; --i) dSpaceRemove(space.get(), geoms_[i - 1]);
+    sink.finish();
+  }
+
+  OdeSpaceKind kind_;
+  Geoms geoms_;
+};
+
+class OdeTracker final : public PeerTracker<3> {
+ public:
+  explicit OdeTracker(const OdeSpaceKind& kind) : kind_(kind) {}
+  ~OdeTracker() override { clear(); }
+
+ private:
+  void build(std::span<const Box3> boxes, std::span<const Box3> now) override {
+    clear();
+    space_ = kind_.make(now);
+    for (std::size_t i = 0; i < boxes.size(); ++i) set(i, boxes[i]);
+  }
+
+  void move(const Change<3>& change) override {
+    for (const BoxId id : change.changed) set(index(id), change.now[index(id)]);
+  }
+
+  void collide(const Change<3>& change, PairSink& pairs) override {
+    CallbackSink sink(pairs);
+    find_all(space_.get(), change.now, sink);
+    sink.finish();
+  }
+
+  /// A box that is not there is a geom that is disabled: taking it out would have a tree look through lists.
+  void set(std::size_t place, const Box3& box) {
+    if (!is_present(box)) {
+      if (place < geoms_.size()) dGeomDisable(geoms_[place]);
+      return;
+    }
+    const std::size_t known = geoms_.size();
+    geoms_.put(place, box);
+    for (std::size_t i = known; i < geoms_.size(); ++i) {
+      geoms_.add_to(space_.get(), i);
+      if (i < place) dGeomDisable(geoms_[i]);
+    }
+    dGeomEnable(geoms_[place]);
+  }
+
+  void clear() {
+    if (space_ != nullptr) {
+      for (std::size_t i = geoms_.size(); i > 0; --i) dSpaceRemove(space_.get(), geoms_[i - 1]);
+    }
+    geoms_ = {};
+    space_.reset();
+  }
+
+  OdeSpaceKind kind_;
+  Geoms geoms_;
+  OdeSpace space_;
+};
+
+}  // namespace
+
+std::array<double, 2> range_on(int axis, std::span<const Box3> boxes) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  for (const Box3& box : boxes) {
+    if (!is_present(box)) continue;
+    for (const double at : {box.min[axis], box.max[axis]}) {
+      if (std::isinf(at)) continue;
+      least = std::min(least, at);
+      greatest = std::max(greatest, at);
+    }
+  }
+  return least <= greatest ? std::array{least, greatest} : std::array{0.0, 0.0};
+}
+
+std::array<int, 3> axes_by_extent(std::span<const Box3> boxes) {
+  std::array<double, 3> extents{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [least, greatest] = range_on(axis, boxes);
+    extents[static_cast<std::size_t>(axis)] = greatest - least;
+  }
+  std::array<int, 3> axes{};
+  std::iota(axes.begin(), axes.end(), 0);
+  std::ranges::stable_sort(axes, std::greater(),
+                           [&](int axis) { return extents[static_cast<std::size_t>(axis)]; });
+  return axes;
+}
+
+Algorithm ode_space(const OdeSpaceKind& kind) {
+  Algorithm algorithm{
+      .name = {},
+      .summary = {},
+      .source = {},
+      .kind = AlgorithmKind::peer,
+      .version = "ODE " dODE_VERSION,
+      .finder_3d = [kind](const Settings&) { return std::make_unique<OdeFinder>(kind); },
+  };
+  if (kind.tracks)
+    algorithm.tracker_3d = [kind](const Settings&) { return std::make_unique<OdeTracker>(kind); };
+  return algorithm;
+}
+
+}  // namespace broadside::lab::peers

@@ -1,0 +1,46 @@
+// What ODE's three spaces share: geoms whose bounds are exactly our boxes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include <ode/ode.h>
+
+#include "broadside/algorithm.hpp"
+
+namespace broadside::lab::peers {
+
+/// Destroys a space, which holds no geom any more.
+struct DestroySpace {
+  void operator()(dSpaceID space) const { dSpaceDestroy(space); }
+};
+using OdeSpace = std::unique_ptr<dxSpace, DestroySpace>;
+
+/// One of ODE's spaces.
+struct OdeSpaceKind {
+  /// Makes an empty space that suits `boxes`.
+  OdeSpace (*make)(std::span<const Box3> boxes);
+
+  /// What is added to every coordinate on its way into a space for `boxes`; null where nothing is.
+  double (*shift)(std::span<const Box3> boxes) = nullptr;
+
+  /// Whether what the space keeps from one frame to the next saves it anything.
+  bool tracks = true;
+
+  /// Declared limit.
+  std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
+};
+
+/// The axes in the order of the world's extent on them, the longest first; infinite coordinates aside.
+std::array<int, 3> axes_by_extent(std::span<const Box3> boxes);
+
+/// The least and the greatest coordinate on an axis, infinite ones aside; 0 and 0 if there is none.
+std::array<double, 2> range_on(int axis, std::span<const Box3> boxes);
+
+/// The description of a space: a finder that fills a new one in each call, and a tracker that keeps one.
+Algorithm ode_space(const OdeSpaceKind& kind);
+
+}  // namespace broadside::lab::peers

@@ -1,0 +1,70 @@
+// The tracker of a library that moves its boxes and then tells which pairs there are, not which are new.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/sinks.hpp"
+
+namespace broadside::lab::peers {
+
+/// Makes events of the pairs that a library tells after its boxes moved. The pairs are kept from frame to
+/// frame.
+template <int D>
+class PeerTracker : public PairTracker<D> {
+ private:
+  /// Forgets all boxes and takes those of `boxes` that are present. `now` are those that will be there next,
+  /// where the library must know the size of its world beforehand.
+  virtual void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) = 0;
+
+  /// Takes every change.
+  virtual void move(const Change<D>& change) = 0;
+
+  /// Writes each overlapping pair of `change.now` once; pairs of two boxes that did not change may be left
+  /// out.
+  virtual void collide(const Change<D>& change, PairSink& pairs) = 0;
+
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) final {
+    if (change.rebuild) {
+      build(change.before, change.now);
+      pairs_.clear();
+      find({change.before, change.before, change.changed, change.flags, true}, pairs_);
+    }
+    move(change);
+    find(change, found_);
+    const auto rested = [&change](Pair pair) {
+      return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
+    };
+    const auto overlap_in = [](std::span<const Box<D>> boxes, Pair pair) {
+      const Box<D>& a = boxes[index(pair.first)];
+      const Box<D>& b = boxes[index(pair.second)];
+      return is_present(a) && is_present(b) && overlap(a, b);
+    };
+    auto kept = pairs_.begin();
+    for (const Pair pair : pairs_) {
+      if (rested(pair))
+        *kept++ = pair;
+      else if (!overlap_in(change.now, pair))
+        ended.add(pair.first, pair.second);
+    }
+    pairs_.erase(kept, pairs_.end());
+    for (const Pair pair : found_) {
+      if (rested(pair)) continue;
+      pairs_.push_back(pair);
+      if (!overlap_in(change.before, pair)) begun.add(pair.first, pair.second);
+    }
+  }
+
+  void find(const Change<D>& change, std::vector<Pair>& pairs) {
+    pairs.clear();
+    PairCollector collector(pairs);
+    collide(change, collector);
+    collector.flush();
+  }
+
+  std::vector<Pair> pairs_;  // those of the frame before
+  std::vector<Pair> found_;
+};
+
+}  // namespace broadside::lab::peers

@@ -1,0 +1,89 @@
+// Lengths that the boxes suggest.
+#include "lab/peers/typical_extent.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace broadside::lab::peers {
+namespace {
+
+template <int D>
+double longest_side(const Box<D>& box) {
+  double longest = 0;
+  for (int axis = 0; axis < D; ++axis) longest = std::max(longest, double{box.max[axis]} - box.min[axis]);
+  return longest;
+}
+
+/// The greatest absolute coordinate and the longest side of the world, infinite coordinates aside.
+template <int D>
+std::array<double, 2> reach(std::span<const Box<D>> boxes) {
+  double greatest = 0;
+  double side = 0;
+  for (int axis = 0; axis < D; ++axis) {
+    double min = std::numeric_limits<double>::infinity();
+    double max = -min;
+    for (const Box<D>& box : boxes) {
+      if (!is_present(box)) continue;
+      for (const double at : {box.min[axis], box.max[axis]}) {
+        if (std::isinf(at)) continue;
+        min = std::min(min, at);
+        max = std::max(max, at);
+      }
+    }
+    if (min > max) continue;
+    greatest = std::max({greatest, std::abs(min), std::abs(max)});
+    side = std::max(side, max - min);
+  }
+  return {greatest, side};
+}
+
+/// The number of cells that the boxes touch together, give or take where they lie.
+template <int D>
+double cells_touched(std::span<const Box<D>> boxes, double cell) {
+  double sum = 0;
+  for (const Box<D>& box : boxes) {
+    double cells = is_present(box) ? 1 : 0;
+    for (int axis = 0; axis < D; ++axis)
+      cells *= 2 + std::floor((double{box.max[axis]} - box.min[axis]) / cell);
+    sum += cells;
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int D>
+double typical_extent(std::span<const Box<D>> boxes) {
+  constexpr std::size_t most_samples = 1000;
+  std::vector<double> sides;
+  const std::size_t step = boxes.size() / most_samples + 1;
+  for (std::size_t i = 0; i < boxes.size(); i += step) {
+    const double side = is_present(boxes[i]) ? longest_side(boxes[i]) : 0;
+    if (is_present(boxes[i]) && std::isfinite(side)) sides.push_back(side);
+  }
+  if (sides.empty()) return 1;
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::nth_element(sides.begin(), middle, sides.end());
+  if (*middle > 0) return *middle;
+  const double side = reach(boxes)[1];
+  return side > 0 ? side / std::pow(static_cast<double>(boxes.size()), 1.0 / D) : 1;
+}
+
+template <int D>
+double cell_size(std::span<const Box<D>> boxes, double extents) {
+  constexpr double most_cells = 0x1p20;
+  constexpr double most_references = 8 << D;
+  double cell = std::max(extents * typical_extent(boxes), reach(boxes)[0] / (most_cells / 4));
+  while (cells_touched(boxes, cell) > most_references * static_cast<double>(boxes.size())) cell *= 2;
+  return cell;
+}
+
+template double typical_extent<2>(std::span<const Box2>);
+template double typical_extent<3>(std::span<const Box3>);
+template double cell_size<2>(std::span<const Box2>, double);
+template double cell_size<3>(std::span<const Box3>, double);
+
+}  // namespace broadside::lab::peers
