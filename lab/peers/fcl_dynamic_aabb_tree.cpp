@@ -48,8 +48,7 @@ class FclTreeTracker final : public PeerTracker<3> {
 
   void collide(const Change<3>& change, PairSink& pairs) override {
     FclSearch search{change.now, CallbackSink(pairs)};
-    // One by one where few changed: all of them against each other takes some four times as long a box, as
-    // measured.
+    // One by one where few changed: all against each other takes time for those that rest as well.
     constexpr std::size_t few = 4;
     if (change.changed.size() < change.now.size() / few) {
       Query query{&search, change.flags};
