@@ -77,6 +77,7 @@ class HistoryCheck {
     for (const Step<D, Real>& step : history_.steps) {
       lab::apply(step, boxes);
       extremes_.take<D, Real>(step.boxes);
+      extremes_.boxes = std::max(extremes_.boxes, boxes.size());
       if (boxes.size() > fullest_.size()) fullest_ = boxes;
     }
   }

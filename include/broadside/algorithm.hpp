@@ -2,6 +2,7 @@
 // of them.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -49,6 +50,9 @@ struct Algorithm {
 
   /// Declared limit: the greatest magnitude of a finite coordinate that is within it.
   double largest_coordinate = std::numeric_limits<double>::max();
+
+  /// Declared limit: the most boxes it takes at once.
+  std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
 
   /// Whether it takes memory otherwise than through operator new, so that the lab cannot count it.
   bool own_allocator = false;

@@ -64,6 +64,8 @@ std::string unfit(const Contender& contender, int dimension, const Extremes& ext
   if (extremes.infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
   if (extremes.largest > algorithm.largest_coordinate)
     return fmt::format("does not take coordinates beyond {:.3g}", algorithm.largest_coordinate);
+  if (extremes.boxes > algorithm.most_boxes)
+    return fmt::format("does not take more than {} boxes", grouped(algorithm.most_boxes));
   try {
     // A value may make sense in one dimension only, such as an axis.
     dimension == 2 ? void(make_finder<2>(algorithm, contender.spec))
@@ -75,8 +77,9 @@ std::string unfit(const Contender& contender, int dimension, const Extremes& ext
 }
 
 template <int D, typename Real>
-void Extremes::take(std::type_identity_t<std::span<const Box<D, Real>>> boxes) {
-  for (const Box<D, Real>& box : boxes) {
+void Extremes::take(std::type_identity_t<std::span<const Box<D, Real>>> some) {
+  boxes = std::max(boxes, some.size());
+  for (const Box<D, Real>& box : some) {
     if (!is_present(box)) continue;
     for (const auto& corner : {box.min, box.max}) {
       for (const Real coordinate : corner) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -73,10 +74,11 @@ void count_memory(Measurement& entry, const Algorithm& algorithm,
 struct Extremes {
   bool infinite = false;  ///< whether any of them reaches to infinity
   double largest = 0;     ///< the greatest magnitude of their finite coordinates
+  std::size_t boxes = 0;  ///< the most there are at once
 
   /// Takes in more boxes.
   template <int D, typename Real = float>
-  void take(std::type_identity_t<std::span<const Box<D, Real>>> boxes);
+  void take(std::type_identity_t<std::span<const Box<D, Real>>> some);
 };
 
 /// Why the contender cannot take boxes of this dimension and with these extremes; empty if it can.

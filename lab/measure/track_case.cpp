@@ -71,7 +71,10 @@ class TrackCase {
       : case_(of), inputs_(inputs), contest_(contest) {
     for (const History<D>& input : inputs) {
       extremes_.take<D>(input.boxes);
-      for (const Step<D>& step : input.steps) extremes_.take<D>(step.boxes);
+      for (const Step<D>& step : input.steps) {
+        extremes_.take<D>(step.boxes);
+        extremes_.boxes = std::max(extremes_.boxes, step.size);
+      }
     }
   }
 

@@ -189,6 +189,7 @@ Algorithm box2d_tree() {
       .finder_2d = [](const Settings&) { return std::make_unique<Box2dFinder>(); },
       .tracker_2d = [](const Settings&) { return std::make_unique<Box2dTracker>(); },
       .infinite_boxes = false,
+      .own_allocator = true,
   };
 }
 

@@ -128,6 +128,7 @@ Algorithm chipmunk_index(MakeIndex make) {
       .finder_2d = [make](const Settings&) { return std::make_unique<ChipmunkFinder>(make); },
       .tracker_2d = [make](const Settings&) { return std::make_unique<ChipmunkTracker>(make); },
       .infinite_boxes = false,
+      .own_allocator = true,
   };
 }
 

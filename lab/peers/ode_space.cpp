@@ -215,6 +215,8 @@ Algorithm ode_space(const OdeSpaceKind& kind) {
       .kind = AlgorithmKind::peer,
       .version = "ODE " dODE_VERSION,
       .finder_3d = [kind](const Settings&) { return std::make_unique<OdeFinder>(kind); },
+      .most_boxes = kind.most_boxes,
+      .own_allocator = true,
   };
   if (kind.tracks)
     algorithm.tracker_3d = [kind](const Settings&) { return std::make_unique<OdeTracker>(kind); };

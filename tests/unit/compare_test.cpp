@@ -181,6 +181,20 @@ TEST(Compare, SaysWhichDimensionAndWhichBoxesAnAlgorithmDoesNotDo) {
   EXPECT_EQ(comparison.cases.at(1).measurements.at(0).reason, "does not do 3D");
 }
 
+TEST(Compare, SkipsWhatIsGivenMoreBoxesThanItTakes) {
+  Algorithm small = spoilt("small", [](std::vector<Pair>&, std::size_t) {});
+  for (const std::size_t most : {299, 300}) {
+    small.most_boxes = most;
+    Catalogue catalogue;
+    catalogue.add(small);
+    for (const CaseRequest& request : {small_still, small_moving}) {
+      const Measurement measurement = only(compare(catalogue, options_for("small", {request})));
+      EXPECT_EQ(measurement.outcome, most < 300 ? Outcome::skipped : Outcome::verified) << measurement.reason;
+      EXPECT_EQ(measurement.reason, most < 300 ? "does not take more than 299 boxes" : "");
+    }
+  }
+}
+
 TEST(Compare, CountsTheMemoryThatAnAlgorithmKeeps) {
   struct Keeper final : PairFinder<2> {
     void find_valid(std::span<const Box2>, PairSink&) override {
