@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
@@ -88,7 +89,9 @@ class Bvh final : public PairFinder<D> {
       inverse[axis] = typical_[axis] > 0 ? 1 / typical_[axis] : std::numeric_limits<float>::max();
     }
     const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, most_buckets);
-    const Buckets buckets(sample_[0].low, sample_[0].high, first_buckets);
+    choose_axes(boxes.size());
+    const int first = axes_[0];
+    const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
     const std::size_t left = this->left_count();
     const std::size_t groups = left == 0 ? classes : 2 * classes;
     counts_.assign(groups * buckets.count, 0);
@@ -103,7 +106,7 @@ class Bvh final : public PairFinder<D> {
         for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
       }
       if (left != 0 && i >= left) group += classes;
-      const std::uint32_t key = group * buckets.count + buckets(box.min[0]);
+      const std::uint32_t key = group * buckets.count + buckets(box.min[first]);
       keys_[i] = static_cast<std::uint16_t>(key);
       ++counts_[key];
     }
@@ -118,14 +121,23 @@ class Bvh final : public PairFinder<D> {
     sort_heavy_buckets();
   }
 
+  /// The axis with the most cuts comes last, where order is finest.
+  void choose_axes(std::size_t boxes) {
+    std::iota(axes_.begin(), axes_.end(), 0);
+    const std::array<double, D> parts = parts_of(round_up(boxes) / fan_out, 1);
+    std::ranges::stable_sort(axes_, {}, [&parts](int axis) { return parts[axis]; });
+  }
+
   /// Buckets of which a few hold most boxes do not tell them apart.
   void sort_heavy_buckets() {
     std::uint32_t begin = 0;
     for (const std::uint32_t end : counts_) {
       if (end - begin > std::max<std::size_t>(1024, entries_.size() / 64)) {
-        std::sort(entries_.begin() + begin, entries_.begin() + end, [](const Entry& a, const Entry& b) {
-          return a.box.min[0] != b.box.min[0] ? a.box.min[0] < b.box.min[0] : a.id < b.id;
-        });
+        std::sort(entries_.begin() + begin, entries_.begin() + end,
+                  [first = axes_[0]](const Entry& a, const Entry& b) {
+                    return a.box.min[first] != b.box.min[first] ? a.box.min[first] < b.box.min[first]
+                                                                : a.id < b.id;
+                  });
       }
       begin = end;
     }
@@ -171,20 +183,20 @@ class Bvh final : public PairFinder<D> {
     const auto share = [](std::size_t count, double part) {
       return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(static_cast<double>(count) / part)));
     };
-    const std::size_t slab = share(leaves, parts[0]) * fan_out;
-    const std::size_t strip = D == 2 ? slab : share(slab / fan_out, parts[1]) * fan_out;
+    const std::size_t slab = share(leaves, parts[axes_[0]]) * fan_out;
+    const std::size_t strip = D == 2 ? slab : share(slab / fan_out, parts[axes_[1]]) * fan_out;
     for (std::size_t at = begin; at < end; at += slab, place += slab) {
       const std::size_t count = std::min(slab, end - at);
       const auto entry = [this, at](std::size_t i) -> const Entry& { return entries_[at + i]; };
       if constexpr (D == 2) {
-        order(count, 1, entry, [&](std::size_t i, std::size_t to) { put(place + to, entry(i)); });
+        order(count, axes_[1], entry, [&](std::size_t i, std::size_t to) { put(place + to, entry(i)); });
       } else {
         order_.resize(std::max(order_.size(), count));
-        order(count, 1, entry,
+        order(count, axes_[1], entry,
               [this](std::size_t i, std::size_t to) { order_[to] = static_cast<std::uint32_t>(i); });
         for (std::size_t from = 0; from < count; from += strip) {
           const auto in_strip = [&](std::size_t i) -> const Entry& { return entry(order_[from + i]); };
-          order(std::min(strip, count - from), 2, in_strip,
+          order(std::min(strip, count - from), axes_[2], in_strip,
                 [&](std::size_t i, std::size_t to) { put(place + from + to, in_strip(i)); });
         }
       }
@@ -202,9 +214,10 @@ class Bvh final : public PairFinder<D> {
     }
     std::array<double, D> parts;
     parts.fill(1);
-    // An axis that is too short for a single cut leaves its share to the others.
+    // An axis on which most boxes overlap tells nothing apart. One that is too short for a single cut leaves
+    // its share to the others.
     std::array<bool, D> cut;
-    cut.fill(true);
+    for (int axis = 0; axis < D; ++axis) cut[axis] = ratios[axis] > 2;
     for (int round = 0; round < D; ++round) {
       double product = static_cast<double>(leaves);
       int cuts = 0;
@@ -251,7 +264,7 @@ class Bvh final : public PairFinder<D> {
       heaviest = std::max(heaviest, places[bucket]);
       begin += std::exchange(places[bucket], begin);
     }
-    if (heaviest > 64 && low < high) {
+    if (heaviest > 2 * fan_out && low < high) {
       const std::span<core::KeyedPlace> keyed = radix_.places(count);
       for (std::uint32_t i = 0; i < count; ++i) keyed[i] = {core::sort_key(entry(i).box.min[axis]), i};
       std::size_t to = 0;
@@ -338,6 +351,7 @@ class Bvh final : public PairFinder<D> {
   }();
 
   core::Sample<D> sample_;
+  std::array<int, D> axes_{};        // slabs are cut along the first one, and leaves along the last one
   std::array<float, D> typical_{};   // a box's usual extents, or more where boxes lie further apart
   std::vector<std::uint16_t> keys_;  // a box's bucket
   std::vector<std::uint32_t> counts_;

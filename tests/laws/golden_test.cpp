@@ -53,7 +53,7 @@ constexpr std::array<GoldenOrder, 10> golden_orders = {{
     {"quadtree", 2, 0x85c4c8674de5ec01U},
     {"quadtree", 3, 0x4e4907df8b50316aU},
     {"bvh", 2, 0x84e8fe29d048d7edU},
-    {"bvh", 3, 0x308519112b5d1736U},
+    {"bvh", 3, 0xa5ece44084832406U},
 }};
 
 template <int D>
