@@ -34,7 +34,7 @@ struct CompareArguments {
   std::vector<int> dimensions;
   std::vector<double> moving;
   std::string frames;
-  int threads = 1;
+  std::vector<std::string> threads = {"1"};
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
   std::string json;
@@ -61,9 +61,6 @@ std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const l
 }
 
 void check(const CompareArguments& arguments) {
-  if (arguments.threads != 1)
-    throw Unusable(fmt::format("--threads is {}; expected 1: the algorithms of this version use one thread",
-                               arguments.threads));
   for (const int dimension : arguments.dimensions) check_dimension(dimension);
   for (const double moving : arguments.moving) check_fraction("--moving", moving);
   if (arguments.budget && !(*arguments.budget > 0))
@@ -93,6 +90,12 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   ProgressLine progress;
   lab::CompareOptions options;
   options.algorithms = arguments.algorithms;
+  options.threads.clear();
+  for (const std::string& text : arguments.threads) {
+    const std::size_t threads = read_threads(text);
+    if (std::ranges::find(options.threads, threads) == options.threads.end())
+      options.threads.push_back(threads);
+  }
   options.find = lab::scene_finder(read_options(arguments.input));
   options.plan = plan_of(arguments, options.find);
   warn_of_ignored(arguments, options.find);
@@ -155,7 +158,10 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
       ->delimiter(',');
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
-  verb->add_option("--threads", arguments->threads, "Threads an algorithm may use; in this version 1")
+  verb->add_option("--threads", arguments->threads,
+                   "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
+                   "1,2, each. Our own use them, others are there once, with one thread")
+      ->delimiter(',')
       ->capture_default_str();
   verb->add_option("--seed", arguments->seed,
                    "Seed of a scene's first input; the others count up from it (standard: 1)")

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,7 @@ struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
   std::string algorithm{default_algorithm};
+  std::string threads = "1";
   std::string frame;
   std::string output = "-";
   std::string to;
@@ -71,6 +73,23 @@ void check_swept(const PairsArguments& arguments) {
         "them");
 }
 
+/// The algorithm with its number of threads.
+std::string spec_of(const PairsArguments& arguments) {
+  const lab::Catalogue catalogue;
+  std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
+  if (selected.size() != 1)
+    throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
+  const std::size_t threads = read_threads(arguments.threads);
+  if (threads == 1) return selected[0].spec.text();
+  const std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
+  if (spec == selected[0].spec.text())
+    throw Unusable(
+        fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
+                    "does not say how many",
+                    threads, spec));
+  return spec;
+}
+
 void check(const PairsArguments& arguments) {
   if (arguments.files.size() > 2)
     throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
@@ -81,8 +100,7 @@ void check(const PairsArguments& arguments) {
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
-  if (lab::Catalogue().select(arguments.algorithm).size() != 1)
-    throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
+  spec_of(arguments);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
@@ -115,7 +133,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, 
 /// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
 class Join {
  public:
-  explicit Join(const PairsArguments& arguments) : arguments_(arguments) {
+  explicit Join(const PairsArguments& arguments) : arguments_(arguments), spec_(spec_of(arguments)) {
     const lab::Stopwatch watch;
     if (arguments.is_swept) {
       sweep();
@@ -161,8 +179,8 @@ class Join {
                           lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
     return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
                        lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
-                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3),
-                       arguments_.algorithm, lab::duration(join_ms_ / 1e3));
+                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3), spec_,
+                       lab::duration(join_ms_ / 1e3));
   }
 
  private:
@@ -181,12 +199,13 @@ class Join {
 
   void search(PairSink& pairs) {
     if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, arguments_.algorithm, pairs);
+      lab::join(sets_[0].boxes, sets_[1].boxes, spec_, pairs);
     else
-      lab::join(sets_[0].boxes, arguments_.algorithm, pairs);
+      lab::join(sets_[0].boxes, spec_, pairs);
   }
 
   const PairsArguments& arguments_;
+  std::string spec_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
   lab::Rounding rounding_;
@@ -253,6 +272,9 @@ Verb add_pairs(CLI::App& program) {
   add_input_options(*verb, arguments->input);
   verb->add_option("--algorithm", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
+      ->capture_default_str();
+  verb->add_option("--threads", arguments->threads,
+                   "Threads to search with, 0 for as many as there are; they decide the time alone")
       ->capture_default_str();
   verb->add_option("--frame", arguments->frame,
                    "The frame of a file whose boxes move, counted from 0 (standard: the first)");

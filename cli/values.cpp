@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "broadside/executor.hpp"
+
 #include "cli/unusable.hpp"
 
 namespace broadside::cli {
@@ -40,6 +42,15 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
   std::vector<std::size_t> counts;
   for (const std::string& text : texts) counts.push_back(read_count(option, text));
   return counts;
+}
+
+std::size_t read_threads(const std::string& text) {
+  constexpr std::size_t most = 1024;
+  const std::size_t threads = read_index("--threads", text);
+  if (threads > most) throw Unusable("--threads is " + text + "; expected at most " + std::to_string(most));
+  if (threads != 1 && standard_executor() == nullptr)
+    throw Unusable("--threads is " + text + "; expected 1: this program was built without oneTBB");
+  return threads;
 }
 
 void check_fraction(const std::string& option, double value) {

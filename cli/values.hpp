@@ -17,6 +17,10 @@ std::size_t read_index(const std::string& option, const std::string& text);
 /// Likewise each of a list of counts.
 std::vector<std::size_t> read_counts(const std::string& option, const std::vector<std::string>& texts);
 
+/// The number of threads that `text` is: 0 for as many as there are. Throws Unusable if it is none up to
+/// 1024, or if it is not 1 in a build without threads.
+std::size_t read_threads(const std::string& text);
+
 /// Throw Unusable if the value is no fraction from 0 to 1, or no dimension.
 void check_fraction(const std::string& option, double value);
 void check_dimension(int dimension);

@@ -9,10 +9,16 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
-# A static library needs Highway where it is linked. Below 1.0 a minor version may break what the one before promised.
+# A static library needs Highway where it is linked, and oneTBB if it has threads. Below 1.0 a minor version may break
+# what the one before promised.
+set(find_threads "")
+if(BROADSIDE_HAS_THREADS)
+  set(find_threads "find_dependency(TBB)\n")
+endif()
 file(WRITE ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake
      "include(CMakeFindDependencyMacro)\n"
      "find_dependency(hwy)\n"
+     "${find_threads}"
      "include(\${CMAKE_CURRENT_LIST_DIR}/BroadsideTargets.cmake)\n")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)

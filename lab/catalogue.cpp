@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "broadside/error.hpp"
+#include "broadside/executor.hpp"
 
 #include "lab/peers/peers.hpp"
 
@@ -30,7 +31,39 @@ bool is_group(std::string_view name) {
   return name == "all" || name == "own" || name == "paper" || name == "peers";
 }
 
+/// The spec's value of `threads`, or a null pointer.
+const std::string* given_threads(const Spec& spec) {
+  const auto given = std::ranges::find(spec.values, "threads", &std::pair<std::string, std::string>::first);
+  return given == spec.values.end() ? nullptr : &given->second;
+}
+
 }  // namespace
+
+std::size_t threads_of(const Contender& contender) {
+  const std::string* const given = given_threads(contender.spec);
+  if (given == nullptr || !has_threads(*contender.algorithm)) return 1;
+  const Executor* const executor = standard_executor();
+  if (executor == nullptr) return 1;
+  const Settings settings(contender.spec, contender.algorithm->tunables);
+  const auto threads = static_cast<std::size_t>(settings.integer("threads"));
+  return threads == 0 ? executor->threads() : threads;
+}
+
+std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
+                                    std::span<const std::size_t> threads) {
+  std::vector<Contender> all;
+  for (const Contender& contender : contenders) {
+    if (!has_threads(*contender.algorithm) || given_threads(contender.spec) != nullptr) {
+      all.push_back(contender);
+      continue;
+    }
+    for (const std::size_t count : threads) {
+      all.push_back(contender);
+      if (count != 1) all.back().spec.values.emplace_back("threads", std::to_string(count));
+    }
+  }
+  return all;
+}
 
 Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside::algorithms().end()) {
   for (Algorithm& peer : peers::peers()) algorithms_.push_back(std::move(peer));

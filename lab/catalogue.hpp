@@ -1,6 +1,7 @@
 // The lab's list of algorithms: the library's, the peers', and whatever a user adds.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,15 @@ struct Contender {
   const Algorithm* algorithm;
   Spec spec;
 };
+
+/// How many threads the contender searches with: what its spec says, 1 if nothing; of `threads=0`, how many
+/// there are.
+std::size_t threads_of(const Contender& contender);
+
+/// Each contender with each number of threads in turn, as a spec with that many. One that cannot use several,
+/// or whose spec says how many, stays as it is, once.
+std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
+                                    std::span<const std::size_t> threads);
 
 /// A list of algorithms that can be searched by name, spec and group. Not to be changed while contenders
 /// point into it.

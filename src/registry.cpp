@@ -27,7 +27,14 @@ std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Setti
     throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other +
                       "D boxes");
   }
-  return maker(Settings(spec, algorithm.tunables));
+  const Settings settings(spec, algorithm.tunables);
+  std::unique_ptr<Made> made = maker(settings);
+  if (made != nullptr && has_threads(algorithm)) {
+    Workers workers = made->workers();
+    workers.threads = static_cast<std::size_t>(settings.integer("threads"));
+    made->set_workers(workers);
+  }
+  return made;
 }
 
 }  // namespace
@@ -35,6 +42,12 @@ std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Setti
 std::string_view name(AlgorithmKind kind) noexcept {
   constexpr std::array<std::string_view, 3> names = {"own", "paper", "peer"};
   return names[static_cast<std::size_t>(kind)];
+}
+
+bool has_threads(const Algorithm& algorithm) {
+  return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
+    return tunable.name == "threads" && tunable.type == Tunable::Type::integer;
+  });
 }
 
 std::span<const Algorithm> algorithms() {

@@ -63,6 +63,10 @@ struct Algorithm {
   }
 };
 
+/// Whether it can use several threads: whether it has the tunable `threads`, a whole number, which
+/// make_finder() and make_tracker() make the Workers' of what they make.
+bool has_threads(const Algorithm& algorithm);
+
 /// The library's algorithms: its own, then the paper's, in a fixed order. Thread-safe.
 std::span<const Algorithm> algorithms();
 

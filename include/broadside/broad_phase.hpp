@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside {
@@ -24,8 +25,8 @@ struct Statistics {
 
 /// Finds every overlapping pair in an array of boxes, from nothing, at each call.
 ///
-/// A finder keeps its scratch memory between calls, and nothing else that can be observed. One thread at a
-/// time.
+/// A finder keeps its scratch memory between calls, and nothing else that can be observed. To be called by
+/// one thread at a time; it may itself use several, which shows in nothing but the time.
 template <int D, typename Real = float>
 class PairFinder {
  public:
@@ -35,7 +36,7 @@ class PairFinder {
   virtual ~PairFinder() = default;
 
   /// Writes each pair of overlapping boxes to `pairs` once, as ids = places in `boxes`, and flushes it. The
-  /// order is fixed by the algorithm and the boxes. Absent boxes pair with nothing.
+  /// order is fixed by the algorithm and the boxes, whatever the workers. Absent boxes pair with nothing.
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
   /// max without being absent; and what the sink throws.
@@ -53,6 +54,14 @@ class PairFinder {
   /// What the last find() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
 
+  /// Who does the work: one thread, unless the spec or set_workers() says otherwise. An algorithm without the
+  /// tunable `threads` uses the calling thread alone.
+  const Workers& workers() const noexcept { return workers_; }
+  void set_workers(const Workers& workers) {
+    workers_ = workers;
+    workers_changed();
+  }
+
  protected:
   /// For find_valid: what this search did.
   void count(const Statistics& statistics) { statistics_ = statistics; }
@@ -66,6 +75,12 @@ class PairFinder {
   /// places in `boxes`. No need to flush.
   virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
 
+  /// Where a finder works through another one, it hands workers() on.
+  virtual void workers_changed() {}
+
+  /// Checks the boxes, and returns how many are absent.
+  std::size_t check(std::span<const Box<D, Real>> boxes) const;
+
   /// Appends the present ones of `boxes` to present_ and their places to ids_.
   void take_present(std::span<const Box<D, Real>> boxes);
 
@@ -73,6 +88,7 @@ class PairFinder {
   std::vector<BoxId> ids_;             // and their places in the caller's array
   std::size_t left_count_ = 0;
   std::optional<Statistics> statistics_;
+  Workers workers_;
 };
 
 /// The boxes of one frame, and which of them changed since the frame before.
@@ -122,6 +138,13 @@ class PairTracker {
   /// What the last update() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
 
+  /// As a PairFinder's.
+  const Workers& workers() const noexcept { return workers_; }
+  void set_workers(const Workers& workers) {
+    workers_ = workers;
+    workers_changed();
+  }
+
  protected:
   /// For update_valid: what this update did.
   void count(const std::optional<Statistics>& statistics) { statistics_ = statistics; }
@@ -129,6 +152,9 @@ class PairTracker {
  private:
   /// What an algorithm writes: the events of `change`, each once, in any order.
   virtual void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) = 0;
+
+  /// Where a tracker works through a finder, it hands workers() on.
+  virtual void workers_changed() {}
 
   std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
   std::vector<Box<D, Real>> now_;
@@ -138,6 +164,7 @@ class PairTracker {
   std::vector<Pair> ended_;
   bool dirty_ = true;  // the last update did not end, or there was none
   std::optional<Statistics> statistics_;
+  Workers workers_;
 };
 
 /// Makes any finder a tracker: finds all pairs in each frame and tells what differs from the frame before.
@@ -150,6 +177,7 @@ class DiffTracker final : public PairTracker<D, Real> {
 
  private:
   void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
+  void workers_changed() override { finder_->set_workers(this->workers()); }
 
   std::unique_ptr<PairFinder<D, Real>> finder_;
   std::vector<Pair> pairs_;  // those of the frame before

@@ -6,6 +6,7 @@
 #include "broadside/box.hpp"
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/find_pairs.hpp"
 #include "broadside/instruction_set.hpp"
 #include "broadside/pair.hpp"

@@ -9,6 +9,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/sinks.hpp"
 
@@ -22,6 +23,16 @@ struct BoxTraits<Box<Dimension, Coordinate>> {
   static constexpr int dimension = Dimension;
   using Real = Coordinate;
 };
+
+template <typename Box>
+auto make_finder_of(std::string_view spec, Executor* executor) {
+  using Traits = BoxTraits<Box>;
+  auto finder = make_finder<Traits::dimension, typename Traits::Real>(spec);
+  Workers workers = finder->workers();
+  workers.executor = executor;
+  finder->set_workers(workers);
+  return finder;
+}
 }  // namespace detail
 
 /// An array of boxes: std::vector, std::array, std::span ... of Box<2>, Box<3>, DoubleBox2 or DoubleBox3.
@@ -35,20 +46,22 @@ concept BoxArray = std::ranges::contiguous_range<const T> && std::ranges::sized_
 ///
 /// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
 /// first box with a NaN or with min > max, and InvalidSpec. Thread-safe. A finder kept from make_finder()
-/// saves the memory's allocation when calls are many.
+/// saves the memory's allocation when calls are many. A spec such as "grid:threads=4" has several threads
+/// search: those of `executor` if there is one.
 template <BoxArray Boxes>
-void find_pairs(const Boxes& boxes, PairSink& pairs, std::string_view spec = default_algorithm) {
+void find_pairs(const Boxes& boxes, PairSink& pairs, std::string_view spec = default_algorithm,
+                Executor* executor = nullptr) {
   using Box = std::ranges::range_value_t<Boxes>;
-  using Traits = detail::BoxTraits<Box>;
-  make_finder<Traits::dimension, typename Traits::Real>(spec)->find(std::span<const Box>(boxes), pairs);
+  detail::make_finder_of<Box>(spec, executor)->find(std::span<const Box>(boxes), pairs);
 }
 
 /// The same pairs in a vector.
 template <BoxArray Boxes>
-std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default_algorithm) {
+std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default_algorithm,
+                             Executor* executor = nullptr) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  find_pairs(boxes, collector, spec);
+  find_pairs(boxes, collector, spec, executor);
   return pairs;
 }
 
@@ -57,20 +70,20 @@ std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default
 template <BoxArray Left, BoxArray Right>
 requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>>
 void find_pairs(const Left& left, const Right& right, PairSink& pairs,
-                std::string_view spec = default_algorithm) {
+                std::string_view spec = default_algorithm, Executor* executor = nullptr) {
   using Box = std::ranges::range_value_t<Left>;
-  using Traits = detail::BoxTraits<Box>;
-  make_finder<Traits::dimension, typename Traits::Real>(spec)->find_between(
-      std::span<const Box>(left), std::span<const Box>(right), pairs);
+  detail::make_finder_of<Box>(spec, executor)
+      ->find_between(std::span<const Box>(left), std::span<const Box>(right), pairs);
 }
 
 /// The same pairs in a vector.
 template <BoxArray Left, BoxArray Right>
 requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>> std::vector<Pair>
-find_pairs(const Left& left, const Right& right, std::string_view spec = default_algorithm) {
+find_pairs(const Left& left, const Right& right, std::string_view spec = default_algorithm,
+           Executor* executor = nullptr) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  find_pairs(left, right, collector, spec);
+  find_pairs(left, right, collector, spec, executor);
   return pairs;
 }
 

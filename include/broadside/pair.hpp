@@ -1,11 +1,14 @@
 // Ids of boxes, pairs of ids, and PairSink: where an algorithm writes the pairs it finds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 namespace broadside {
@@ -32,7 +35,9 @@ constexpr std::uint64_t key(Pair pair) noexcept {
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
 ///
-/// PairFinder and PairTracker flush the sink they were given before they return. One thread at a time.
+/// PairFinder and PairTracker flush the sink they were given before they return. One thread at a time: a
+/// search by several threads collects what they find and calls consume() in the thread that called find(),
+/// with the pairs in the order in which one thread would have found them; unless the sink can be cloned.
 class PairSink {
  public:
   /// The most pairs room() can be asked for at once.
@@ -61,8 +66,29 @@ class PairSink {
     if (const std::size_t count = std::exchange(used_, 0); count > 0) consume({buffer_.data(), count});
   }
 
+  /// Hands on what is in the buffer and then `pairs`, which must have first < second, in full chunks and
+  /// without copying them. Throws as flush() does.
+  void put(std::span<const Pair> pairs) {
+    flush();
+    while (!pairs.empty()) {
+      const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), buffer_.size()));
+      consume(chunk);
+      pairs = pairs.subspan(chunk.size());
+    }
+  }
+
   /// Forgets what is in the buffer: after an exception in the middle of a search.
   void discard() noexcept { used_ = 0; }
+
+  /// A new sink of the same kind that has taken no pairs. A sink that makes the same of its pairs in whatever
+  /// order they come, such as a count, overrides this and merge(): then a search by several threads gives
+  /// each its own clone, and keeps no pairs. A null pointer, which is the standard: it cannot be cloned.
+  virtual std::unique_ptr<PairSink> empty_clone() const { return nullptr; }
+
+  /// Takes over what a flushed clone of this sink has made of its pairs. In the thread that called find().
+  virtual void merge([[maybe_unused]] PairSink& clone) {
+    throw std::logic_error("a PairSink has empty_clone() but no merge(); expected both or none");
+  }
 
  protected:
   PairSink() = default;

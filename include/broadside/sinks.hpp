@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,13 +30,16 @@ class PairCounter final : public PairSink {
  public:
   std::uint64_t count() const noexcept { return count_; }
 
+  std::unique_ptr<PairSink> empty_clone() const override { return std::make_unique<PairCounter>(); }
+  void merge(PairSink& clone) override { count_ += static_cast<PairCounter&>(clone).count_; }
+
  private:
   void consume(std::span<const Pair> pairs) override { count_ += pairs.size(); }
 
   std::uint64_t count_ = 0;
 };
 
-/// Calls a function with each chunk of pairs, in the thread that runs the search.
+/// Calls a function with each chunk of pairs, in the thread that called find().
 class PairFunction final : public PairSink {
  public:
   explicit PairFunction(std::function<void(std::span<const Pair>)> function)
@@ -61,6 +65,13 @@ class PairHasher final : public PairSink {
  public:
   std::uint64_t hash() const noexcept { return hash_; }
   std::uint64_t count() const noexcept { return count_; }
+
+  std::unique_ptr<PairSink> empty_clone() const override { return std::make_unique<PairHasher>(); }
+  void merge(PairSink& clone) override {
+    const auto& other = static_cast<const PairHasher&>(clone);
+    hash_ += other.hash_;
+    count_ += other.count_;
+  }
 
  private:
   void consume(std::span<const Pair> pairs) override {

@@ -63,6 +63,10 @@ class World {
   /// Takes a box out. Its pairs end at the next update. Throws InvalidHandle if it is not in the world.
   void remove(Handle handle);
 
+  /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
+  const Workers& workers() const noexcept { return tracker_->workers(); }
+  void set_workers(const Workers& workers) { tracker_->set_workers(workers); }
+
   /// Brings the pairs up to date. Cost: the tracker's, and one pass over the current pairs if any began or
   /// ended.
   Events update();

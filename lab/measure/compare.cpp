@@ -61,7 +61,9 @@ void check_pair_count(std::span<const Box<D>> boxes) {
 class Runner {
  public:
   Runner(const Catalogue& catalogue, const CompareOptions& options)
-      : catalogue_(catalogue), options_(options), contenders_(catalogue.select(options.algorithms)) {}
+      : catalogue_(catalogue),
+        options_(options),
+        contenders_(with_threads(catalogue.select(options.algorithms), options.threads)) {}
 
   Comparison run() {
     for (const CaseRequest& request : options_.plan) resolve(request);

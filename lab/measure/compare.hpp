@@ -16,7 +16,8 @@ namespace broadside::lab {
 
 /// What to compare, and who follows it.
 struct CompareOptions {
-  std::string algorithms = "all";  ///< as Catalogue::select reads it
+  std::string algorithms = "all";          ///< as Catalogue::select reads it
+  std::vector<std::size_t> threads = {1};  ///< that algorithms search with, as with_threads() takes them
   std::vector<CaseRequest> plan = quick_plan();
   std::uint64_t seed = 1;  ///< of a scene's first input; the others count up from it
   FindScene find = [](std::string_view text) { return find_scene(text); };

@@ -24,6 +24,7 @@ Measurement entry_of(const Contender& contender) {
   entry.algorithm = contender.spec.text();
   entry.version = algorithm.version.empty() ? BROADSIDE_VERSION : algorithm.version;
   entry.kind = algorithm.kind;
+  entry.threads = threads_of(contender);
   return entry;
 }
 

@@ -39,6 +39,7 @@ struct Measurement {
   std::string algorithm;  ///< its spec
   std::string version;    ///< of the library behind it
   AlgorithmKind kind = AlgorithmKind::own;
+  std::size_t threads = 1;
 
   Outcome outcome = Outcome::skipped;
   std::string verified_by;             ///< what the pairs were compared with; empty where they were not

@@ -64,7 +64,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["version"] = measurement.version;
   json["kind"] = name(measurement.kind);
   json["mode"] = of.mode == Mode::find ? "find" : "track";
-  json["threads"] = 1;
+  json["threads"] = measurement.threads;
   json["target"] = measurement.kind == AlgorithmKind::own ? Json(instruction_set()) : Json();
   json["pairs"] = or_null(measurement.pairs);
   json["pair_hash"] = measurement.pair_hash ? Json(fmt::format("{:016x}", *measurement.pair_hash)) : Json();

@@ -8,7 +8,8 @@
 // node that holds the greater of the two minima on every axis.
 //
 // The tree is never stored: a node is a stretch of one stack of references, each stretch in the order of the
-// sweep.
+// sweep. Where several threads search, the uppermost nodes are split by one of them, and the stretches that
+// come of it are copied, in the order in which one thread would search them.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 #include "kernels/sweep.hpp"
@@ -27,6 +29,9 @@ namespace broadside::own {
 namespace {
 
 constexpr std::size_t node_samples = 31;
+
+/// Nodes are split by one thread until there are so many for each.
+constexpr std::size_t parts_per_lane = 3;
 
 /// Leaves of this many boxes: a sweep of so few costs about what a further split would.
 template <int D>
@@ -56,51 +61,134 @@ class Quadtree final : public PairFinder<D> {
     int axis_count;
   };
 
+  /// What one thread searches with.
+  struct Lane {
+    std::vector<Reference> stack;
+    std::vector<std::uint8_t>
+        children;  // by reference of the node being split: bit c set if it goes into child c
+    std::size_t kept_count = 0;
+    kernels::RunBuffer<D> run;
+    kernels::RunBuffer<D> kept_run;
+    Statistics statistics;
+  };
+
+  /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
+  /// which come first, and its others.
+  struct Part {
+    std::size_t end;  // among the references of all parts
+    std::size_t kept_count;
+  };
+
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    parallel_.start(this->workers(), boxes.size());
+    lanes_.resize(std::max(lanes_.size(), parallel_.lanes()));
     sample_.take(boxes);
-    sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap());
-    statistics_ = {};
-    stack_.clear();
+    sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
+    Lane& first = lanes_[0];
+    first.statistics = {};
+    first.stack.clear();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
-      stack_.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
-    search(0, stack_.size(), pairs);
-    this->count(statistics_);
+      first.stack.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
+    if (parallel_.lanes() == 1) {
+      search(first, 0, first.stack.size(), pairs);
+      this->count(first.statistics);
+      return;
+    }
+    parts_.clear();
+    part_references_.clear();
+    expand(first, 0, first.stack.size(), boxes.size() / (parts_per_lane * parallel_.lanes()));
+    const auto search_parts = [&](core::Range parts, std::size_t lane, PairSink& sink) {
+      lanes_[lane].statistics = {};
+      for (std::size_t part = parts.begin; part < parts.end; ++part) search_part(lanes_[lane], part, sink);
+      return lanes_[lane].statistics;
+    };
+    this->count(parallel_.search(parts_.size(), pairs, search_parts));
+  }
+
+  /// Makes parts of the node and those below it, in the order in which search() would meet them.
+  void expand(Lane& lane, std::size_t begin, std::size_t end, std::size_t largest) {
+    const std::size_t count = end - begin;
+    if (count < 2) return;
+    Split split;
+    std::array<std::size_t, most_children> sizes;
+    if (count <= std::max(capacity_, largest) || !choose_split(lane, begin, end, split) ||
+        !partition(lane, begin, end, split, sizes)) {
+      copy(lane, begin, end, [](std::size_t) { return true; });
+      parts_.push_back({part_references_.size(), 0});
+      return;
+    }
+    if (lane.kept_count > 0) {
+      copy(lane, begin, end, [&](std::size_t i) { return lane.children[i] == 0; });
+      copy(lane, begin, end, [&](std::size_t i) { return lane.children[i] != 0; });
+      parts_.push_back({part_references_.size(), lane.kept_count});
+    }
+    const std::size_t top = lane.stack.size();
+    push_children(lane, begin, end, split, sizes);
+    std::size_t child = top;
+    for (const std::size_t size : sizes) {
+      expand(lane, child, child + size, largest);
+      child += size;
+    }
+    lane.stack.resize(top);
+  }
+
+  /// Appends those of a node's references whose places in the node are `wanted` to the parts'.
+  template <typename Wanted>
+  void copy(const Lane& lane, std::size_t begin, std::size_t end, Wanted wanted) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (wanted(i - begin)) part_references_.push_back(lane.stack[i]);
+    }
+  }
+
+  void search_part(Lane& lane, std::size_t number, PairSink& pairs) const {
+    const std::size_t begin = number == 0 ? 0 : parts_[number - 1].end;
+    const std::span<const Reference> references =
+        std::span(part_references_).subspan(begin, parts_[number].end - begin);
+    lane.stack.assign(references.begin(), references.end());
+    if (parts_[number].kept_count == 0) {
+      search(lane, 0, references.size(), pairs);
+      return;
+    }
+    lane.children.assign(references.size(), 1);
+    std::fill_n(lane.children.begin(), parts_[number].kept_count, std::uint8_t{0});
+    sweep_kept(lane, 0, references.size(), pairs);
   }
 
   const Box<D>& box(const Reference& reference) const { return sorted_boxes_[reference.place].box; }
 
   /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
   /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
-  void search(std::size_t begin, std::size_t end, PairSink& pairs) {
+  void search(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
     std::array<std::size_t, most_children> sizes;
-    if (count <= capacity_ || !choose_split(begin, end, split) || !partition(begin, end, split, sizes)) {
-      statistics_.references += count;
-      gather(begin, end, run_, [](std::size_t) { return true; });
-      statistics_.tests += kernels::sweep(run_.view(), pairs);
+    if (count <= capacity_ || !choose_split(lane, begin, end, split) ||
+        !partition(lane, begin, end, split, sizes)) {
+      lane.statistics.references += count;
+      gather(lane, begin, end, lane.run, [](std::size_t) { return true; });
+      lane.statistics.tests += kernels::sweep(lane.run.view(), pairs);
       return;
     }
-    if (kept_count_ > 0) sweep_kept(begin, end, pairs);
-    const std::size_t top = stack_.size();
-    push_children(begin, end, split, sizes);
+    if (lane.kept_count > 0) sweep_kept(lane, begin, end, pairs);
+    const std::size_t top = lane.stack.size();
+    push_children(lane, begin, end, split, sizes);
     std::size_t child = top;
     for (const std::size_t size : sizes) {
-      search(child, child + size, pairs);
+      search(lane, child, child + size, pairs);
       child += size;
     }
-    stack_.resize(top);
+    lane.stack.resize(top);
   }
 
   /// Chooses on which axes to split and where. False if no axis would separate the boxes.
-  bool choose_split(std::size_t begin, std::size_t end, Split& split) {
+  bool choose_split(const Lane& lane, std::size_t begin, std::size_t end, Split& split) const {
     split.axis_count = 0;
     const std::size_t count = end - begin;
     std::array<float, node_samples> minima;
     for (int axis = 0; axis < D; ++axis) {
       const auto sample = [&](std::size_t i) -> const Box<D>& {
-        return box(stack_[begin + (2 * i + 1) * count / (2 * node_samples)]);
+        return box(lane.stack[begin + (2 * i + 1) * count / (2 * node_samples)]);
       };
       for (std::size_t i = 0; i < node_samples; ++i) minima[i] = sample(i).min[axis];
       std::ranges::sort(minima);
@@ -118,19 +206,20 @@ class Quadtree final : public PairFinder<D> {
   }
 
   /// The children of a box are those in whose regions it has a part: lower ones if it begins before the
-  /// split, upper ones if it does not end before it. Fills children_ with a mask for each reference, 0 for a
-  /// box kept at the node, and `sizes`. False if a child would be nearly as large as the node.
-  bool partition(std::size_t begin, std::size_t end, const Split& split,
-                 std::array<std::size_t, most_children>& sizes) {
+  /// split, upper ones if it does not end before it. Fills the lane's children with a mask for each
+  /// reference, 0 for a box kept at the node, and `sizes`. False if a child would be nearly as large as the
+  /// node.
+  bool partition(Lane& lane, std::size_t begin, std::size_t end, const Split& split,
+                 std::array<std::size_t, most_children>& sizes) const {
     // For each axis, the children on its lower and on its upper side.
     constexpr std::array<std::uint32_t, 3> lower = {0x55, 0x33, 0x0f};
     constexpr std::array<std::uint32_t, 3> upper = {0xaa, 0xcc, 0xf0};
     const std::uint32_t all = (1U << (1U << split.axis_count)) - 1;
-    children_.resize(std::max(children_.size(), end - begin));
+    lane.children.resize(std::max(lane.children.size(), end - begin));
     sizes.fill(0);
     std::array<std::size_t, 256> masks{};
     for (std::size_t i = begin; i < end; ++i) {
-      const Box<D>& b = box(stack_[i]);
+      const Box<D>& b = box(lane.stack[i]);
       std::uint32_t mask = all;
       for (int at = 0; at < split.axis_count; ++at) {
         const int axis = split.axes[at];
@@ -138,10 +227,10 @@ class Quadtree final : public PairFinder<D> {
         mask &= (b.min[axis] < border ? lower[at] : 0U) | (b.max[axis] >= border ? upper[at] : 0U);
       }
       if (mask == all && covers_middle(b, split)) mask = 0;
-      children_[i - begin] = static_cast<std::uint8_t>(mask);
+      lane.children[i - begin] = static_cast<std::uint8_t>(mask);
       ++masks[mask];
     }
-    kept_count_ = masks[0];
+    lane.kept_count = masks[0];
     std::size_t largest = 0;
     for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
       for (std::uint32_t mask = 1; mask <= all; ++mask) sizes[child] += (mask >> child & 1U) * masks[mask];
@@ -160,47 +249,48 @@ class Quadtree final : public PairFinder<D> {
   }
 
   /// Pushes the references of all children, one child after the other.
-  void push_children(std::size_t begin, std::size_t end, const Split& split,
-                     const std::array<std::size_t, most_children>& sizes) {
+  void push_children(Lane& lane, std::size_t begin, std::size_t end, const Split& split,
+                     const std::array<std::size_t, most_children>& sizes) const {
     std::array<std::size_t, most_children> next;
-    std::size_t top = stack_.size();
+    std::size_t top = lane.stack.size();
     for (std::uint32_t child = 0; child < most_children; ++child) {
       next[child] = top;
       top += sizes[child];
     }
-    stack_.resize(top);
+    lane.stack.resize(top);
     for (std::size_t i = begin; i < end; ++i) {
-      const Reference reference = stack_[i];
-      for (std::uint32_t mask = children_[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
+      const Reference reference = lane.stack[i];
+      for (std::uint32_t mask = lane.children[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
         if ((mask & 1U) == 0) continue;
         std::uint32_t apart = reference.apart;
         for (int at = 0; at < split.axis_count; ++at) {
           const int axis = split.axes[at];
           if ((child >> at & 1U) != 0 && box(reference).min[axis] < split.at[axis]) apart |= 1U << axis;
         }
-        stack_[next[child]++] = {reference.place, apart};
+        lane.stack[next[child]++] = {reference.place, apart};
       }
     }
   }
 
   /// Sweeps the boxes kept at a node among themselves and against the node's others.
-  void sweep_kept(std::size_t begin, std::size_t end, PairSink& pairs) {
-    gather(begin, end, kept_run_, [this](std::size_t i) { return children_[i] == 0; });
-    gather(begin, end, run_, [this](std::size_t i) { return children_[i] != 0; });
-    statistics_.references += kept_run_.size();
-    statistics_.tests += kernels::sweep(kept_run_.view(), pairs);
-    statistics_.tests += kernels::sweep(kept_run_.view(), run_.view(), pairs);
+  void sweep_kept(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
+    gather(lane, begin, end, lane.kept_run, [&lane](std::size_t i) { return lane.children[i] == 0; });
+    gather(lane, begin, end, lane.run, [&lane](std::size_t i) { return lane.children[i] != 0; });
+    lane.statistics.references += lane.kept_run.size();
+    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), pairs);
+    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), lane.run.view(), pairs);
   }
 
   /// Fills `run` with those of the node's references whose places in the node are `wanted`.
   template <typename Wanted>
-  void gather(std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run, Wanted wanted) const {
+  void gather(const Lane& lane, std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run,
+              Wanted wanted) const {
     run.clear();
     run.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       if (!wanted(i - begin)) continue;
-      const core::SortedBox<D>& sorted = sorted_boxes_[stack_[i].place];
-      run.append(sorted.box, sorted.id, stack_[i].apart);
+      const core::SortedBox<D>& sorted = sorted_boxes_[lane.stack[i].place];
+      run.append(sorted.box, sorted.id, lane.stack[i].apart);
     }
   }
 
@@ -209,13 +299,10 @@ class Quadtree final : public PairFinder<D> {
   core::Sample<D> sample_;
   core::SortedBoxes<D> sorted_;
   std::span<const core::SortedBox<D>> sorted_boxes_;
-  std::vector<Reference> stack_;
-  std::vector<std::uint8_t>
-      children_;  // by reference of the node being split: bit c set if it goes into child c
-  std::size_t kept_count_ = 0;
-  kernels::RunBuffer<D> run_;
-  kernels::RunBuffer<D> kept_run_;
-  Statistics statistics_;
+  core::Parallel parallel_;
+  std::vector<Lane> lanes_;
+  std::vector<Part> parts_;
+  std::vector<Reference> part_references_;
 };
 
 template <int D>
@@ -237,7 +324,8 @@ Algorithm quadtree() {
                     .standard = "auto",
                     .type = Tunable::Type::integer,
                     .least = 1,
-                    .most = 1 << 30}},
+                    .most = 1 << 30},
+                   core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
   };

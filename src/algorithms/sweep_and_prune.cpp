@@ -16,6 +16,7 @@
 
 #include "algorithms/descriptions.hpp"
 #include "core/cell_lists.hpp"
+#include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 #include "kernels/sweep.hpp"
@@ -28,6 +29,9 @@ constexpr double reference_cost = 64;
 
 constexpr std::size_t most_stripes = 256;
 
+/// Without stripes, so many boxes are swept by the same thread.
+constexpr std::size_t rows_at_once = 64;
+
 template <int D>
 class SweepAndPrune final : public PairFinder<D> {
  public:
@@ -39,11 +43,13 @@ class SweepAndPrune final : public PairFinder<D> {
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    parallel_.start(this->workers(), boxes.size());
+    runs_.resize(std::max(runs_.size(), parallel_.lanes()));
     sample_.take(boxes);
     std::array<int, D> axes = sample_.axes_by_overlap();
     std::ranges::stable_sort(axes, {}, [this](int axis) { return axis_ >= 0 && axis != axis_; });
     choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
-    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes);
+    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
     if (borders_.empty())
       sweep_all(sorted, pairs);
     else
@@ -73,11 +79,20 @@ class SweepAndPrune final : public PairFinder<D> {
   }
 
   void sweep_all(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
-    run_.clear();
-    run_.reserve(sorted.size());
+    kernels::RunBuffer<D>& buffer = runs_[0];
+    buffer.clear();
+    buffer.reserve(sorted.size());
     for (const core::SortedBox<D>& box : sorted)
-      run_.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
-    this->count({.tests = kernels::sweep(run_.view(), pairs), .references = sorted.size()});
+      buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
+    const kernels::Run<D> run = buffer.view();
+    const auto sweep = [&](core::Range some, std::size_t, PairSink& sink) {
+      const std::size_t begin = some.begin * rows_at_once;
+      const std::size_t end = std::min(some.end * rows_at_once, run.size);
+      return Statistics{.tests = kernels::sweep(kernels::rows_of(run, begin, end), sink)};
+    };
+    Statistics statistics = parallel_.search((run.size + rows_at_once - 1) / rows_at_once, pairs, sweep);
+    statistics.references = run.size;
+    this->count(statistics);
   }
 
   void sweep_stripes(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
@@ -85,29 +100,39 @@ class SweepAndPrune final : public PairFinder<D> {
       return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
     };
     places_.resize(sorted.size());
-    stripes_.reset(borders_.size() + 1);
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      places_[i] = {stripe_of(sorted[i].box.min[1]), stripe_of(sorted[i].box.max[1])};
-      for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe) stripes_.count(stripe);
-    }
-    stripes_.prepare();
-    for (std::uint32_t i = 0; i < sorted.size(); ++i) {
-      for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
-        stripes_.file(stripe, i);
-    }
-    Statistics statistics{.tests = 0, .references = stripes_.size()};
-    for (std::size_t stripe = 0; stripe <= borders_.size(); ++stripe) {
-      const std::span<const std::uint32_t> list = stripes_.list(stripe);
-      run_.clear();
-      run_.reserve(list.size());
-      for (const std::uint32_t i : list) {
-        const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
-        run_.append(sorted[i].box, sorted[i].id,
-                    before | kernels::side_bit(sorted[i].id, this->left_count()));
+    stripes_.reset(borders_.size() + 1, parallel_.range_count());
+    parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        places_[i] = {stripe_of(sorted[i].box.min[1]), stripe_of(sorted[i].box.max[1])};
+        for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
+          stripes_.count(stripe, number);
       }
-      statistics.tests += kernels::sweep(run_.view(), pairs);
-    }
-    this->count(statistics);
+    });
+    stripes_.prepare();
+    parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
+          stripes_.file(stripe, static_cast<std::uint32_t>(i), number);
+      }
+    });
+    const auto sweep = [&](core::Range stripes, std::size_t lane, PairSink& sink) {
+      Statistics statistics;
+      for (std::size_t stripe = stripes.begin; stripe < stripes.end; ++stripe) {
+        const std::span<const std::uint32_t> list = stripes_.list(stripe);
+        kernels::RunBuffer<D>& run = runs_[lane];
+        run.clear();
+        run.reserve(list.size());
+        for (const std::uint32_t i : list) {
+          const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
+          run.append(sorted[i].box, sorted[i].id,
+                     before | kernels::side_bit(sorted[i].id, this->left_count()));
+        }
+        statistics.tests += kernels::sweep(run.view(), sink);
+        statistics.references += list.size();
+      }
+      return statistics;
+    };
+    this->count(parallel_.search(borders_.size() + 1, pairs, sweep));
   }
 
   /// The stripes in which a box begins and ends.
@@ -124,7 +149,8 @@ class SweepAndPrune final : public PairFinder<D> {
   std::vector<float> borders_;  // a stripe's first coordinate, from the second stripe on
   std::vector<Place> places_;
   core::CellLists stripes_;
-  kernels::RunBuffer<D> run_;
+  core::Parallel parallel_;
+  std::vector<kernels::RunBuffer<D>> runs_;  // by lane
 };
 
 template <int D>
@@ -150,7 +176,8 @@ Algorithm sweep_and_prune() {
                     .summary = "how many axes are used: 1, or 2 for stripes",
                     .standard = "auto",
                     .type = Tunable::Type::choice,
-                    .choices = {"1", "2"}}},
+                    .choices = {"1", "2"}},
+                   core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
   };

@@ -1,4 +1,7 @@
 // Lists of boxes by cell, filed by counting: each list is one stretch of one array.
+//
+// Several threads may count and file at once, each for a range of the items: ranges have counts of their own,
+// and in a list the items of one range stand before those of the next.
 #pragma once
 
 #include <cstddef>
@@ -11,37 +14,47 @@ namespace broadside::core {
 /// Use: reset(), count() every reference, prepare(), file() the same references, then read the lists.
 class CellLists {
  public:
-  void reset(std::size_t cells) { ends_.assign(cells, 0); }
+  /// Memory: 8 bytes for each cell and range.
+  void reset(std::size_t cells, std::size_t ranges = 1) {
+    cells_ = cells;
+    ends_.assign(cells * ranges, 0);
+  }
 
-  void count(std::size_t cell) { ++ends_[cell]; }
+  void count(std::size_t cell, std::size_t range = 0) { ++ends_[range * cells_ + cell]; }
 
-  /// How many references to the cell were counted; only before prepare().
+  /// How many references to the cell were counted; only before prepare(), and where there is one range.
   std::size_t counted(std::size_t cell) const { return ends_[cell]; }
 
   /// Makes room for what was counted.
   void prepare() {
     std::size_t total = 0;
-    for (std::size_t& end : ends_) {
-      const std::size_t count = end;
-      end = total;
-      total += count;
+    for (std::size_t cell = 0; cell < cells_; ++cell) {
+      for (std::size_t at = cell; at < ends_.size(); at += cells_) {
+        const std::size_t count = ends_[at];
+        ends_[at] = total;
+        total += count;
+      }
     }
     items_.resize(total);
   }
 
-  /// Appends `item` to the cell's list.
-  void file(std::size_t cell, std::uint32_t item) { items_[ends_[cell]++] = item; }
+  /// Appends `item` to the cell's list, or to the range's part of it.
+  void file(std::size_t cell, std::uint32_t item, std::size_t range = 0) {
+    items_[ends_[range * cells_ + cell]++] = item;
+  }
 
   /// The cell's list; only after everything was filed.
   std::span<const std::uint32_t> list(std::size_t cell) const {
-    const std::size_t begin = cell == 0 ? 0 : ends_[cell - 1];
-    return {items_.data() + begin, ends_[cell] - begin};
+    const std::size_t* const ends = ends_.data() + ends_.size() - cells_;  // the last range's
+    const std::size_t begin = cell == 0 ? 0 : ends[cell - 1];
+    return {items_.data() + begin, ends[cell] - begin};
   }
 
   /// The length of all lists together.
   std::size_t size() const noexcept { return items_.size(); }
 
  private:
+  std::size_t cells_ = 0;
   std::vector<std::size_t>
       ends_;  // counts, then where the next item goes, which is the list's end when all are there
   std::vector<std::uint32_t> items_;

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/filter_sink.hpp"
+
 namespace broadside::core {
 namespace {
 
@@ -51,13 +53,13 @@ float rounded(double value, double origin) {
 /// Keeps of the float finder's pairs those that overlap in double and belong to the region. All boxes of a
 /// region begin before its end on every axis, so only where it begins needs a test.
 template <int D>
-class DoubleFinder<D>::ExactSink final : public PairSink {
+class DoubleFinder<D>::ExactSink final : public FilterSink {
  public:
   /// `left_count` as in a PairFinder; pairs of the float finder are then places among left and among right
   /// boxes.
   ExactSink(const DoubleFinder& owner, std::size_t left_count, const Region& region,
             const std::array<Axis, D>& axes, PairSink& target)
-      : owner_(&owner), left_count_(left_count), target_(&target) {
+      : FilterSink(target), owner_(&owner), left_count_(left_count) {
     for (int axis = 0; axis < D; ++axis) {
       bounded_ = bounded_ || region.begin[axis] > -infinity;
       begin_[axis] = region.begin[axis];
@@ -66,12 +68,26 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
     exact_ = owner.exact_ && !bounded_;
   }
 
+  /// The same onto another target.
+  ExactSink(const ExactSink& other, PairSink& target)
+      : FilterSink(target),
+        owner_(other.owner_),
+        left_count_(other.left_count_),
+        bounded_(other.bounded_),
+        exact_(other.exact_),
+        begin_(other.begin_),
+        rounded_begin_(other.rounded_begin_) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<ExactSink>(*this, target);
+  }
+
  private:
   void consume(std::span<const Pair> pairs) override {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target_->room(count);
-      target_->commit(keep(pairs.first(count), out));
+      Pair* const out = target().room(count);
+      target().commit(keep(pairs.first(count), out));
       pairs = pairs.subspan(count);
     }
   }
@@ -81,6 +97,7 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
     // Without jumps, since what a predictor cannot know are the order of ids and, where many boxes touch,
     // which pairs are certain.
     std::array<Pair, max_room> uncertain;
+    std::array<std::uint32_t, max_room> before;  // how many are kept before it
     std::size_t uncertain_count = 0;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -94,17 +111,29 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
       const std::uint32_t lesser = std::min(first, second);
       const Pair pair = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
       const bool certain = exact_ || is_pair_for_certain(owner_->floats_[a], owner_->floats_[b]);
+      uncertain[uncertain_count] = pair;
+      before[uncertain_count] = static_cast<std::uint32_t>(kept);
+      uncertain_count += static_cast<std::size_t>(!certain);
       out[kept] = pair;
       kept += static_cast<std::size_t>(certain);
-      uncertain[uncertain_count] = pair;
-      uncertain_count += static_cast<std::size_t>(!certain);
     }
-    for (const Pair pair : std::span(uncertain).first(uncertain_count)) {
-      out[kept] = pair;
-      kept += static_cast<std::size_t>(
+    std::size_t accepted = 0;
+    for (std::size_t i = 0; i < uncertain_count; ++i) {
+      const Pair pair = uncertain[i];
+      uncertain[accepted] = pair;
+      before[accepted] = before[i];
+      accepted += static_cast<std::size_t>(
           is_pair(owner_->boxes_[index(pair.first)], owner_->boxes_[index(pair.second)]));
     }
-    return kept;
+    // They go where they were found, so that the order does not depend on where a chunk of pairs ends.
+    std::size_t end = kept;
+    for (std::size_t i = accepted; i > 0; --i) {
+      const std::size_t begin = before[i - 1];
+      std::move_backward(out + begin, out + end, out + end + i);
+      out[begin + i - 1] = uncertain[i - 1];
+      end = begin;
+    }
+    return kept + accepted;
   }
 
   /// Starts to load what is looked up of a box.
@@ -136,11 +165,12 @@ class DoubleFinder<D>::ExactSink final : public PairSink {
   bool exact_;            // whether every pair of the float finder is one
   std::array<double, D> begin_;
   std::array<float, D> rounded_begin_;
-  PairSink* target_;
 };
 
 template <int D>
-DoubleFinder<D>::DoubleFinder(std::unique_ptr<PairFinder<D>> finder) : finder_(std::move(finder)) {}
+DoubleFinder<D>::DoubleFinder(std::unique_ptr<PairFinder<D>> finder) : finder_(std::move(finder)) {
+  this->set_workers(finder_->workers());
+}
 
 template <int D>
 void DoubleFinder<D>::find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) {
@@ -235,35 +265,47 @@ void DoubleFinder<D>::measure(const Places& places, const Region& region, std::a
     per_unit[axis] = per_side / (axes[axis].high - axes[axis].low);
     bucket_count_ *= static_cast<std::size_t>(per_side);
   }
+  parallel_.start(this->workers(), places.size);
   bucket_of_.resize(std::max(bucket_of_.size(), places.size));
-  bucket_ends_.assign(2 * bucket_count_, 0);
+  bucket_ends_.assign(parallel_.range_count() * 2 * bucket_count_, 0);
+  bounds_.resize(parallel_.range_count());
   const auto is_exact = [&](double value, int axis) {
     return axes[axis].origin + rounded(value, axes[axis].origin) == value;
   };
-  bool exact = true;
-  std::array<double, D> low;
-  std::array<double, D> high;
-  low.fill(infinity);
-  high.fill(-infinity);
-  for (std::size_t i = 0; i < places.size; ++i) {
-    const Box<D, double>& box = boxes_[places[i]];
-    std::uint32_t bucket = places[i] < this->left_count() ? 0 : 1;
-    for (int axis = 0; axis < D; ++axis) {
-      low[axis] = std::min(low[axis], box.min[axis] > -infinity ? box.min[axis] : infinity);
-      high[axis] = std::max(high[axis], box.max[axis] < infinity ? box.max[axis] : -infinity);
-      exact = exact && is_exact(box.min[axis], axis) && is_exact(box.max[axis], axis);
-      // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
-      const double at = std::min(last, std::max(0.0, (box.min[axis] - axes[axis].low) * per_unit[axis]));
-      bucket = bucket * static_cast<std::uint32_t>(per_side) + static_cast<std::uint32_t>(at);
+  parallel_.for_numbered_ranges(places.size, [&](std::size_t number, Range range, std::size_t) {
+    std::uint32_t* const counts = &bucket_ends_[number * 2 * bucket_count_];
+    bool exact = true;
+    std::array<double, D> low;
+    std::array<double, D> high;
+    low.fill(infinity);
+    high.fill(-infinity);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const Box<D, double>& box = boxes_[places[i]];
+      std::uint32_t bucket = places[i] < this->left_count() ? 0 : 1;
+      for (int axis = 0; axis < D; ++axis) {
+        low[axis] = std::min(low[axis], box.min[axis] > -infinity ? box.min[axis] : infinity);
+        high[axis] = std::max(high[axis], box.max[axis] < infinity ? box.max[axis] : -infinity);
+        exact = exact && is_exact(box.min[axis], axis) && is_exact(box.max[axis], axis);
+        // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
+        const double at = std::min(last, std::max(0.0, (box.min[axis] - axes[axis].low) * per_unit[axis]));
+        bucket = bucket * static_cast<std::uint32_t>(per_side) + static_cast<std::uint32_t>(at);
+      }
+      bucket_of_[i] = static_cast<std::uint16_t>(bucket);
+      ++counts[bucket];
     }
-    bucket_of_[i] = static_cast<std::uint16_t>(bucket);
-    ++bucket_ends_[bucket];
-  }
-  exact_ = exact;
+    bounds_[number] = {low, high, exact};
+  });
+  exact_ = std::ranges::all_of(bounds_, &Bounds::exact);
   for (int axis = 0; axis < D; ++axis) {
     const double origin = axes[axis].origin;
-    const double least = std::clamp(low[axis], region.begin[axis], region.end[axis]);
-    const double greatest = std::clamp(high[axis], region.begin[axis], region.end[axis]);
+    double low = infinity;
+    double high = -infinity;
+    for (const Bounds& bounds : bounds_) {
+      low = std::min(low, bounds.low[axis]);
+      high = std::max(high, bounds.high[axis]);
+    }
+    const double least = std::clamp(low, region.begin[axis], region.end[axis]);
+    const double greatest = std::clamp(high, region.begin[axis], region.end[axis]);
     const double farthest = std::max(origin - least, greatest - origin);
     axes[axis].coarseness = farthest > 0 ? farthest * rounding / axes[axis].extent : 0;
   }
@@ -291,20 +333,27 @@ template <int D>
 std::size_t DoubleFinder<D>::gather(const Places& places, const std::array<Axis, D>& axes) {
   // Pairs are of boxes near each other, and each is looked up again: where the boxes are more than a cache
   // holds, that would be a miss for each pair if they lay as they came.
+  const std::size_t buckets = 2 * bucket_count_;
   std::uint32_t total = 0;
-  for (std::uint32_t& end : bucket_ends_) total += std::exchange(end, total);
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+    for (std::size_t at = bucket; at < bucket_ends_.size(); at += buckets)
+      total += std::exchange(bucket_ends_[at], total);
+  }
   const std::size_t left = bucket_ends_[bucket_count_];
   ids_.resize(places.size);
   floats_.resize(places.size);
-  for (std::size_t i = 0; i < places.size; ++i) {
-    const std::uint32_t to = bucket_ends_[bucket_of_[i]]++;
-    ids_[to] = places[i];
-    const Box<D, double>& box = boxes_[places[i]];
-    for (int axis = 0; axis < D; ++axis) {
-      floats_[to].min[axis] = rounded(box.min[axis], axes[axis].origin);
-      floats_[to].max[axis] = rounded(box.max[axis], axes[axis].origin);
+  parallel_.for_numbered_ranges(places.size, [&](std::size_t number, Range range, std::size_t) {
+    std::uint32_t* const next = &bucket_ends_[number * buckets];
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const std::uint32_t to = next[bucket_of_[i]]++;
+      ids_[to] = places[i];
+      const Box<D, double>& box = boxes_[places[i]];
+      for (int axis = 0; axis < D; ++axis) {
+        floats_[to].min[axis] = rounded(box.min[axis], axes[axis].origin);
+        floats_[to].max[axis] = rounded(box.max[axis], axes[axis].origin);
+      }
     }
-  }
+  });
   return left;
 }
 

@@ -9,6 +9,8 @@
 
 #include "broadside/broad_phase.hpp"
 
+#include "core/parallel.hpp"
+
 namespace broadside::core {
 
 /// Finds pairs of boxes of doubles exactly, through any finder of floats.
@@ -53,6 +55,7 @@ class DoubleFinder final : public PairFinder<D, double> {
   class ExactSink;
 
   void find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) override;
+  void workers_changed() override { finder_->set_workers(this->workers()); }
 
   /// Reports the region's pairs. Its boxes are those whose places are [begin, end) of the stack, ascending.
   void search(std::size_t begin, std::size_t end, const Region& region, PairSink& pairs);
@@ -73,7 +76,15 @@ class DoubleFinder final : public PairFinder<D, double> {
   /// Sets ids_ and floats_, bucket by bucket. Returns how many boxes are of the left set.
   std::size_t gather(const Places& places, const std::array<Axis, D>& axes);
 
+  /// What a pass over some boxes tells of all coordinates.
+  struct Bounds {
+    std::array<double, D> low;
+    std::array<double, D> high;
+    bool exact;  // whether floats tell all coordinates apart that differ
+  };
+
   std::unique_ptr<PairFinder<D>> finder_;
+  Parallel parallel_;
   std::span<const Box<D, double>> boxes_;
   std::vector<std::uint32_t> stack_;  // empty until the boxes are split
   std::vector<double> minima_;
@@ -81,9 +92,10 @@ class DoubleFinder final : public PairFinder<D, double> {
   std::vector<std::uint32_t> ids_;  // places of the boxes being searched as floats,
   std::vector<Box<D>> floats_;      // and these
   std::vector<std::uint16_t> bucket_of_;
-  std::vector<std::uint32_t> bucket_ends_;
-  std::size_t bucket_count_ = 1;  // for each of the two sets
-  bool exact_ = false;            // whether floats tell all coordinates apart that differ
+  std::vector<Bounds> bounds_;              // by range
+  std::vector<std::uint32_t> bucket_ends_;  // by range and bucket
+  std::size_t bucket_count_ = 1;            // for each of the two sets
+  bool exact_ = false;                      // whether floats tell all coordinates apart that differ
   Statistics statistics_;
   bool counted_ = false;
 };

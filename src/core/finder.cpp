@@ -1,27 +1,35 @@
 // PairFinder: what every finder does before its algorithm sees the boxes.
 #include <algorithm>
+#include <atomic>
+#include <memory>
 #include <string>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 
+#include "core/filter_sink.hpp"
 #include "core/input_check.hpp"
+#include "core/parallel.hpp"
 
 namespace broadside {
 namespace {
 
 /// Passes pairs on under other ids, and of those between two sets only the ones that do cross. The ids rise
 /// with the places they stand for within a set, so that pairs of one set stay ordered.
-class RenamingSink final : public PairSink {
+class RenamingSink final : public core::FilterSink {
  public:
   RenamingSink(std::span<const BoxId> ids, std::size_t left_count, PairSink& target)
-      : ids_(ids), left_count_(left_count), target_(&target) {}
+      : FilterSink(target), ids_(ids), left_count_(left_count) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<RenamingSink>(ids_, left_count_, target);
+  }
 
  private:
   void consume(std::span<const Pair> pairs) override {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target_->room(count);
+      Pair* const out = target().room(count);
       std::size_t written = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t first = index(pairs[i].first);
@@ -30,27 +38,30 @@ class RenamingSink final : public PairSink {
         written +=
             static_cast<std::size_t>(left_count_ == 0 || (first < left_count_ && second >= left_count_));
       }
-      target_->commit(written);
+      target().commit(written);
       pairs = pairs.subspan(count);
     }
   }
 
   std::span<const BoxId> ids_;
   std::size_t left_count_;
-  PairSink* target_;
 };
 
 /// Passes on pairs between the boxes before place `left_count` and the others, as places in those two sets.
-class CrossingSink final : public PairSink {
+class CrossingSink final : public core::FilterSink {
  public:
   CrossingSink(std::size_t left_count, PairSink& target)
-      : left_count_(static_cast<std::uint32_t>(left_count)), target_(&target) {}
+      : FilterSink(target), left_count_(static_cast<std::uint32_t>(left_count)) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<CrossingSink>(left_count_, target);
+  }
 
  private:
   void consume(std::span<const Pair> pairs) override {
     while (!pairs.empty()) {
       const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target_->room(count);
+      Pair* const out = target().room(count);
       std::size_t written = 0;
       for (const Pair pair : pairs.first(count)) {
         const std::uint32_t first = index(pair.first);
@@ -58,20 +69,20 @@ class CrossingSink final : public PairSink {
         out[written] = {BoxId{first}, BoxId{second - left_count_}};
         written += static_cast<std::size_t>(first < left_count_ && second >= left_count_);
       }
-      target_->commit(written);
+      target().commit(written);
       pairs = pairs.subspan(count);
     }
   }
 
   std::uint32_t left_count_;
-  PairSink* target_;
 };
 
-/// Checks one of two sets and returns how many boxes are absent; a box at fault is named as one of `side`.
-template <int D, typename Real>
-std::size_t check_side(std::span<const Box<D, Real>> boxes, const char* side) {
+/// Checks one of two sets by `check` and returns how many boxes are absent; a box at fault is named as one of
+/// `side`.
+template <typename Check>
+std::size_t check_side(const char* side, Check check) {
   try {
-    return core::check_boxes(boxes);
+    return check();
   } catch (const InvalidInput& error) {
     throw InvalidInput(error.index(), std::string(side) + " " + error.what());
   }
@@ -94,7 +105,7 @@ void deliver(PairSink& pairs, Search search) {
 template <int D, typename Real>
 void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
   core::check_count(boxes.size());
-  const std::size_t absent = core::check_boxes(boxes);
+  const std::size_t absent = check(boxes);
   statistics_.reset();
   left_count_ = 0;
   deliver(pairs, [&] {
@@ -115,8 +126,8 @@ template <int D, typename Real>
 void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
                                        std::span<const Box<D, Real>> right, PairSink& pairs) {
   core::check_count(left.size() + right.size());
-  check_side(left, "left");
-  check_side(right, "right");
+  check_side("left", [&] { return check(left); });
+  check_side("right", [&] { return check(right); });
   statistics_.reset();
   present_.clear();
   ids_.clear();
@@ -137,7 +148,8 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std:
   const std::span<const Box<D, Real>> left = boxes.first(left_count);
   const std::span<const Box<D, Real>> right = boxes.subspan(left_count);
   core::check_count(boxes.size());
-  if (check_side(left, "left") + check_side(right, "right") > 0) {
+  if (check_side("left", [&] { return check(left); }) + check_side("right", [&] { return check(right); }) >
+      0) {
     find_between(left, right, pairs);
     return;
   }
@@ -149,6 +161,18 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std:
     find_valid(boxes, crossing);
     crossing.flush();
   });
+}
+
+template <int D, typename Real>
+std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) const {
+  core::Parallel parallel;
+  parallel.start(workers_, boxes.size());
+  std::atomic<std::size_t> absent = 0;
+  // A range that throws names its first box at fault, and of ranges the first one's counts.
+  parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin), std::memory_order_relaxed);
+  });
+  return absent;
 }
 
 template <int D, typename Real>

@@ -1,7 +1,9 @@
 // Boxes' places sorted by a float, by a radix sort: O(n) whatever the values.
 #include "core/radix_sort.hpp"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace broadside::core {
 namespace {
@@ -38,6 +40,35 @@ std::span<const KeyedPlace> RadixSort::sort() {
     places_.swap(other_);
   }
   return places_;
+}
+
+std::span<const KeyedPlace> RadixSort::sort(Parallel& parallel) {
+  if (parallel.lanes() == 1) return sort();
+  for (int at = 0; at < digits; ++at) sort_by_ranges(parallel, at);
+  return places_;
+}
+
+void RadixSort::sort_by_ranges(Parallel& parallel, int at) {
+  const std::size_t ranges = parallel.range_count();
+  counts_.resize(ranges * buckets);
+  parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
+    std::array<std::uint32_t, buckets> counts{};  // no other lane's cache line
+    for (std::size_t i = range.begin; i < range.end; ++i) ++counts[digit(places_[i].key, at)];
+    std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * buckets));
+  });
+  std::uint32_t total = 0;
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+    const std::uint32_t before = total;
+    for (std::size_t number = 0; number < ranges; ++number)
+      total += std::exchange(counts_[number * buckets + bucket], total);
+    if (total - before == places_.size()) return;  // a digit that all keys share
+  }
+  parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
+    std::uint32_t* const next = &counts_[number * buckets];
+    for (std::size_t i = range.begin; i < range.end; ++i)
+      other_[next[digit(places_[i].key, at)]++] = places_[i];
+  });
+  places_.swap(other_);
 }
 
 }  // namespace broadside::core

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.hpp"
+
 namespace broadside::core {
 
 /// A number that orders as `value` does, for any float but NaN; -0.0 and 0.0 have the same.
@@ -31,9 +33,15 @@ class RadixSort {
   /// Sorts what was filled in. The result is valid until the next call of places().
   std::span<const KeyedPlace> sort();
 
+  /// The same by several lanes.
+  std::span<const KeyedPlace> sort(Parallel& parallel);
+
  private:
+  void sort_by_ranges(Parallel& parallel, int digit);
+
   std::vector<KeyedPlace> places_;
   std::vector<KeyedPlace> other_;
+  std::vector<std::uint32_t> counts_;  // by range and bucket
 };
 
 }  // namespace broadside::core

@@ -5,21 +5,27 @@ namespace broadside::core {
 
 template <int D>
 std::span<const SortedBox<D>> SortedBoxes<D>::sort(std::span<const Box<D>> boxes,
-                                                   const std::array<int, D>& axes) {
+                                                   const std::array<int, D>& axes, Parallel& parallel) {
   const std::span<KeyedPlace> places = radix_.places(boxes.size());
   const int swept = axes[0];
-  for (std::uint32_t i = 0; i < places.size(); ++i) places[i] = {sort_key(boxes[i].min[swept]), i};
+  parallel.for_ranges(boxes.size(), [&](Range range, std::size_t) {
+    for (std::size_t i = range.begin; i < range.end; ++i)
+      places[i] = {sort_key(boxes[i].min[swept]), static_cast<std::uint32_t>(i)};
+  });
+  const std::span<const KeyedPlace> order = radix_.sort(parallel);
   sorted_.resize(boxes.size());
-  SortedBox<D>* out = sorted_.data();
-  for (const KeyedPlace& place : radix_.sort()) {
-    const Box<D>& box = boxes[place.place];
-    for (int axis = 0; axis < D; ++axis) {
-      out->box.min[axis] = box.min[axes[axis]];
-      out->box.max[axis] = box.max[axes[axis]];
+  parallel.for_ranges(boxes.size(), [&](Range range, std::size_t) {
+    SortedBox<D>* out = sorted_.data() + range.begin;
+    for (const KeyedPlace& place : order.subspan(range.begin, range.end - range.begin)) {
+      const Box<D>& box = boxes[place.place];
+      for (int axis = 0; axis < D; ++axis) {
+        out->box.min[axis] = box.min[axes[axis]];
+        out->box.max[axis] = box.max[axes[axis]];
+      }
+      out->id = BoxId{place.place};
+      ++out;
     }
-    out->id = BoxId{place.place};
-    ++out;
-  }
+  });
   return sorted_;
 }
 

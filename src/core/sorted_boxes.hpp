@@ -8,6 +8,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 
 namespace broadside::core {
@@ -25,7 +26,12 @@ class SortedBoxes {
  public:
   /// The boxes with axis a being `axes[a]` of the caller's, ascending by min[0], ties in the caller's order.
   /// Valid until the next call.
-  std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes);
+  std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes,
+                                     Parallel& parallel);
+  std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes) {
+    Parallel alone;
+    return sort(boxes, axes, alone);
+  }
 
  private:
   RadixSort radix_;

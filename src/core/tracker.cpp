@@ -88,6 +88,7 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
 template <int D, typename Real>
 DiffTracker<D, Real>::DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder) : finder_(std::move(finder)) {
   if (!finder_) throw std::invalid_argument("DiffTracker was given a null finder; expected a finder");
+  this->set_workers(finder_->workers());
 }
 
 template <int D, typename Real>

@@ -35,7 +35,27 @@ struct Run {
   /// By how much at most a box of a run that is swept may begin before one that stands before it: 0 where
   /// the run is sorted by min[0], a bucket's width where it is only sorted by buckets.
   float slack = 0;
+
+  /// Of a run with itself, only the first so many boxes are swept or compared, each with all after it. A
+  /// multiple of read_ahead, or no fewer than there are.
+  std::size_t rows = std::numeric_limits<std::size_t>::max();
 };
+
+/// The run from box `begin` on, of which only those before `end` are swept or compared with it. Both are
+/// multiples of read_ahead, but where `end` is the run's end; then the pairs of all parts, in turn, are those
+/// of the whole.
+template <int D>
+Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
+  for (int axis = 0; axis < D; ++axis) {
+    run.min[axis] += begin;
+    run.max[axis] += begin;
+  }
+  run.id += begin;
+  run.apart += begin;
+  run.size -= begin;
+  run.rows = end - begin;
+  return run;
+}
 
 /// What to set of `apart` for a box of a search between two sets, of which the first `left_count` boxes are
 /// the left one: boxes of one set have it in common. Nothing if `left_count` is 0.

@@ -8,6 +8,8 @@
 #define HWY_TARGET_INCLUDE "kernels/sweep.cpp"
 #include "kernels/sweep.hpp"
 
+#include <algorithm>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -223,7 +225,9 @@ template <int D>
 std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
   Writer pairs(sink);
   std::uint64_t tests = 0;
-  for (std::size_t begin = 0; begin + 1 < run.size; begin += together) {
+  // After the last box there is nothing.
+  const std::size_t rows = run.size == 0 ? 0 : std::min(run.rows, run.size - 1);
+  for (std::size_t begin = 0; begin < rows; begin += together) {
     std::size_t distance = 1;
     if (sweep_group(run, begin, distance, tests, pairs) == 0) continue;
     for (std::size_t i = begin; i < begin + together; ++i)
@@ -265,8 +269,9 @@ HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size
 template <int D>
 std::uint64_t compare_run(const Run<D>& run, PairSink& sink) {
   Writer pairs(sink);
-  for (std::size_t i = 0; i < run.size; ++i) compare_from(Query<D>(run, i), run, i + 1, pairs);
-  return std::uint64_t{run.size} * (run.size - 1) / 2;
+  const std::uint64_t rows = std::min(run.rows, run.size);
+  for (std::size_t i = 0; i < rows; ++i) compare_from(Query<D>(run, i), run, i + 1, pairs);
+  return rows * run.size - rows * (rows + 1) / 2;
 }
 
 template <int D>

@@ -25,6 +25,7 @@ const std::vector<Rule>& rules() {
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
+      {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
       {"src/kernels/",
        standard + R"(|"broadside/(box|pair|instruction_set)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},

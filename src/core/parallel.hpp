@@ -1,0 +1,102 @@
+// Parallel: a search's work shared among threads, so that neither the pairs nor their order show how many.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/executor.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/spec.hpp"
+
+namespace broadside::core {
+
+/// The tunable `threads`, which every algorithm has that uses several; make_finder() hands it to the finder.
+Tunable threads_tunable();
+
+/// Half-open, of whatever is counted.
+struct Range {
+  std::size_t begin;
+  std::size_t end;
+};
+
+/// Shares work among lanes. A lane is one task of the executor, which takes piece after piece; it runs in one
+/// thread, so scratch memory by lane needs no lock. With one lane everything runs in the calling thread, as
+/// if this class were not there.
+///
+/// Pieces must depend on the boxes alone, never on the number of lanes. Keeps its memory. One thread at a
+/// time.
+class Parallel {
+ public:
+  Parallel();
+  ~Parallel();
+  Parallel(const Parallel&) = delete;
+  Parallel& operator=(const Parallel&) = delete;
+
+  /// Sets the number of lanes for a search whose work is that of looking at so many boxes.
+  void start(const Workers& workers, std::size_t boxes);
+
+  std::size_t lanes() const noexcept { return lanes_; }
+
+  /// Calls body(range, lane) for ranges that together are [0, count), several at the same time. Throws what a
+  /// body throws, of several the first in order.
+  template <typename Body>
+  void for_ranges(std::size_t count, const Body& body) {
+    if (lanes_ == 1)
+      body(Range{0, count}, std::size_t{0});
+    else
+      share_ranges(count, [&body](std::size_t, Range range, std::size_t lane) { body(range, lane); });
+  }
+
+  /// How many ranges for_numbered_ranges() makes.
+  std::size_t range_count() const noexcept { return lanes_ == 1 ? 1 : ranges_per_lane * lanes_; }
+
+  /// The range of a number below range_count(): the same at every call between two of start().
+  Range range(std::size_t number, std::size_t count) const noexcept;
+
+  /// Calls body(number, range, lane) for each range of a number.
+  template <typename Body>
+  void for_numbered_ranges(std::size_t count, const Body& body) {
+    if (lanes_ == 1)
+      body(std::size_t{0}, Range{0, count}, std::size_t{0});
+    else
+      share_ranges(count, std::cref(body));
+  }
+
+  /// Searches [0, parts) for pairs: search(range, lane, sink) writes those of a few consecutive parts, and
+  /// returns what it did. `pairs` gets them part by part in order, in this thread, while others still search;
+  /// unless it can be cloned, then each lane fills a clone. Returns the sum of what was done.
+  ///
+  /// Beyond what `pairs` takes, memory for a bounded number of pairs, and for those of the part that each
+  /// lane is at. Throws what a search or the sink throws, of several the first in order.
+  template <typename Search>
+  Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
+    if (lanes_ == 1) return search(Range{0, parts}, std::size_t{0}, pairs);
+    return share_search(parts, pairs, std::cref(search));
+  }
+
+ private:
+  /// Fine enough that no lane waits long for the last one, coarse enough that taking one costs nothing.
+  static constexpr std::size_t ranges_per_lane = 4;
+  static constexpr std::size_t tasks_per_lane = 32;
+
+  using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
+  using Search = std::function<Statistics(Range, std::size_t, PairSink&)>;
+
+  class Errors;
+  class Delivery;
+
+  void share_ranges(std::size_t count, const RangeBody& body);
+  Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
+
+  /// Runs body(lane) on every lane and returns when all have ended. `body` must not throw.
+  void run_lanes(const std::function<void(std::size_t)>& body);
+
+  Executor* executor_ = nullptr;
+  std::size_t lanes_ = 1;
+  std::vector<std::unique_ptr<std::vector<Pair>>> buffers_;  // that are not in use
+};
+
+}  // namespace broadside::core

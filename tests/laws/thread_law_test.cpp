@@ -1,0 +1,269 @@
+// The law of threads: the same pairs in the same order, whoever does the work and however many.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "dice.hpp"
+#include "executors.hpp"
+#include "hard_inputs.hpp"
+#include "lab/verify.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+template <int D>
+std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_t seed = 1) {
+  Dice dice(seed);
+  std::vector<Box<D>> boxes(count);
+  for (Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = dice.between(0, world);
+      box.max[axis] = box.min[axis] + dice.between(0, 3);
+    }
+  }
+  return boxes;
+}
+
+/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
+template <int D, typename Real>
+std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+                        std::size_t left_count = 0) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  if (left_count == 0)
+    finder.find(boxes, collector);
+  else
+    finder.find_between(boxes, left_count, collector);
+  return pairs;
+}
+
+/// Workers that share even a few boxes.
+Workers workers(std::size_t threads, Executor* executor = nullptr) {
+  return {.threads = threads, .executor = executor, .boxes_per_thread = 1};
+}
+
+/// Who may do the work.
+struct Crew {
+  std::string name;
+  Workers workers;
+};
+
+class ThreadLaw : public Law {
+ protected:
+  /// Every number of threads and every executor that the law is tested with.
+  std::vector<Crew> crews() {
+    return {{"2 threads", workers(2)},
+            {"4 threads", workers(4)},
+            {"7 threads", workers(7)},
+            {"5 threads in reverse", workers(5, &reverse_)},
+            {"all threads of their own", workers(0, &threads_)},
+            {"3 threads and the caller's", workers(3, &team_)}};
+  }
+
+  ReverseExecutor reverse_;
+  ThreadExecutor threads_;
+  TeamExecutor team_;
+};
+
+TEST_P(ThreadLaw, FindsTheSamePairsInTheSameOrder) {
+  in_dimension([&]<int D>() {
+    const auto alone = make_finder<D>(algorithm(), spec());
+    const auto shared = make_finder<D>(algorithm(), spec());
+    std::vector<Input<D>> inputs = hard_inputs<D>(algorithm(), reduced(1000));
+    inputs.push_back({"scattered", scattered_boxes<D>(reduced(20'000, 1), D == 2 ? 300 : 50)});
+    for (const Input<D>& input : inputs) {
+      const std::vector<Pair> expected = found(*alone, input.boxes);
+      for (const Crew& crew : crews()) {
+        shared->set_workers(crew.workers);
+        EXPECT_EQ(found(*shared, input.boxes), expected) << input.name << ", " << crew.name;
+        EXPECT_EQ(shared->statistics()->tests, alone->statistics()->tests) << input.name;
+        EXPECT_EQ(shared->statistics()->references, alone->statistics()->references) << input.name;
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, FindsTheSamePairsBetweenSetsInTheSameOrder) {
+  in_dimension([&]<int D>() {
+    const auto alone = make_finder<D>(algorithm(), spec());
+    const auto shared = make_finder<D>(algorithm(), spec());
+    std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
+    for (const bool with_absent : {false, true}) {
+      if (with_absent) boxes[700] = absent_box<D>();
+      for (const std::size_t left_count : {1, 800, 2999}) {
+        const std::vector<Pair> expected = found(*alone, boxes, left_count);
+        for (const Crew& crew : crews()) {
+          shared->set_workers(crew.workers);
+          EXPECT_EQ(found(*shared, boxes, left_count), expected) << left_count << ", " << crew.name;
+        }
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, FindsTheSamePairsOfDoublesInTheSameOrder) {
+  in_dimension([&]<int D>() {
+    const auto alone = make_finder<D, double>(algorithm(), spec());
+    const auto shared = make_finder<D, double>(algorithm(), spec());
+    Dice dice(5);
+    for (const double shift : {0.0, 1e9}) {
+      std::vector<Box<D, double>> boxes(2000);
+      for (Box<D, double>& box : boxes) {
+        for (int axis = 0; axis < D; ++axis) {
+          box.min[axis] = shift + (dice.one_in(3) ? 1e7 : 0) + dice.between(0, 30);
+          box.max[axis] = box.min[axis] + dice.between(0, 2);
+        }
+      }
+      boxes[3] = absent_box<D, double>();
+      for (const std::size_t left_count : {0, 900}) {
+        const std::vector<Pair> expected = found(*alone, boxes, left_count);
+        EXPECT_FALSE(expected.empty());
+        for (const Crew& crew : crews()) {
+          shared->set_workers(crew.workers);
+          EXPECT_EQ(found(*shared, boxes, left_count), expected) << left_count << ", " << crew.name;
+        }
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, CountsAndHashesWithoutAnOrder) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 60 : 20);
+    PairCounter count;
+    PairHasher hash;
+    finder->find(boxes, count);
+    finder->find(boxes, hash);
+    ASSERT_GT(count.count(), 1000u);
+    for (const Crew& crew : crews()) {
+      finder->set_workers(crew.workers);
+      PairCounter shared_count;
+      PairHasher shared_hash;
+      for (int round = 1; round <= 2; ++round) {  // a sink adds up what it gets
+        finder->find(boxes, shared_count);
+        finder->find(boxes, shared_hash);
+        EXPECT_EQ(shared_count.count(), round * count.count()) << crew.name;
+        EXPECT_EQ(shared_hash.count(), round * hash.count()) << crew.name;
+        EXPECT_EQ(shared_hash.hash(), round * hash.hash()) << crew.name;
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, CallsASinkInTheCallersThreadAlone) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
+    for (const Crew& crew : crews()) {
+      finder->set_workers(crew.workers);
+      std::size_t calls = 0;
+      PairFunction function([&calls, caller = std::this_thread::get_id()](std::span<const Pair>) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        ++calls;
+      });
+      finder->find(boxes, function);
+      EXPECT_GT(calls, 0u) << crew.name;
+    }
+  });
+}
+
+TEST_P(ThreadLaw, NamesTheFirstWrongBox) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
+    for (const std::size_t wrong : {2900, 1700, 31}) {
+      boxes[wrong].max[0] = boxes[wrong].min[0] - 1;
+      for (const Crew& crew : crews()) {
+        finder->set_workers(crew.workers);
+        try {
+          found(*finder, boxes);
+          ADD_FAILURE() << "nothing was thrown by " << crew.name;
+        } catch (const InvalidInput& error) {
+          EXPECT_EQ(error.index(), wrong) << crew.name;
+        }
+      }
+    }
+  });
+}
+
+struct SinkIsFull final : std::runtime_error {
+  SinkIsFull() : std::runtime_error("the sink is full") {}
+};
+
+TEST_P(ThreadLaw, LetsThroughWhatASinkThrowsAndCanBeUsedAfter) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 30);
+    const std::vector<Pair> expected = found(*finder, boxes);
+    for (const Crew& crew : crews()) {
+      finder->set_workers(crew.workers);
+      for (const int chunks : {0, 1, 4}) {
+        PairFunction function([left = chunks](std::span<const Pair>) mutable {
+          if (left-- == 0) throw SinkIsFull();
+        });
+        EXPECT_THROW(finder->find(boxes, function), SinkIsFull) << crew.name;
+        EXPECT_EQ(found(*finder, boxes), expected) << crew.name;
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, LetsThroughWhatAnExecutorThrowsAndATrackerDeliversThatFrameAfter) {
+  in_dimension([&]<int D>() {
+    ClosedExecutor closed;
+    const auto tracker = make_tracker<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(300, 10);
+    std::vector<Pair> begun;
+    PairCollector begun_pairs(begun);
+    PairCounter ended;
+    tracker->set_workers(workers(2, &closed));
+    EXPECT_THROW(tracker->update({boxes, {}}, begun_pairs, ended), ExecutorIsClosed);
+    EXPECT_TRUE(begun.empty());
+    tracker->set_workers(workers(2));
+    tracker->update({boxes, {}}, begun_pairs, ended);
+    EXPECT_EQ(begun, lab::reference_pairs<D>(boxes));
+    EXPECT_EQ(ended.count(), 0u);
+  });
+}
+
+TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
+  in_dimension([&]<int D>() {
+    Spec threaded = spec();
+    threaded.values.emplace_back("threads", "2");
+    EXPECT_EQ(make_finder<D>(algorithm(), threaded)->workers().threads, 2u);
+    EXPECT_EQ((make_finder<D, double>(algorithm(), threaded)->workers().threads), 2u);
+    EXPECT_EQ(make_tracker<D>(algorithm(), threaded)->workers().threads, 2u);
+    World<D> world(threaded.text());
+    EXPECT_EQ(world.workers().threads, 2u);
+    ReverseExecutor executor;
+    find_pairs(scattered_boxes<D>(60, 10), threaded.text(), &executor);
+    EXPECT_EQ(executor.runs, 0u);
+    find_pairs(scattered_boxes<D>(10'000, 300), threaded.text(), &executor);
+    EXPECT_GT(executor.runs, 0u);
+  });
+}
+
+/// The algorithms that can use several threads: all of our own.
+std::vector<LawCase> threaded_cases() {
+  std::vector<LawCase> cases = law_cases();
+  std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, ThreadLaw, testing::ValuesIn(threaded_cases()), case_name);
+
+TEST(ThreadLawCases, AreSome) { EXPECT_FALSE(threaded_cases().empty()); }
+
+}  // namespace
+}  // namespace broadside::laws
