@@ -17,6 +17,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/grid_layout.hpp"
 #include "algorithms/grid_sweep.hpp"
+#include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "kernels/run.hpp"
 
@@ -30,17 +31,22 @@ class Grid final : public PairFinder<D> {
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    parallel_.start(this->workers(), boxes.size());
+    sweeps_.resize(std::max(sweeps_.size(), parallel_.lanes()));
     sample_.take(boxes);
     layout_.choose(sample_, boxes.size(), cell_);
     count_boxes(boxes);
     file(boxes);
-    Statistics statistics;
-    for (std::size_t slab = 0; slab < layout_.slabs(); ++slab) {
-      const Statistics of_slab = sweep_.sweep(layout_, swept_range(), {filed_, begin_}, slab, pairs);
-      statistics.tests += of_slab.tests;
-      statistics.references += of_slab.references;
-    }
-    this->count(statistics);
+    const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
+      Statistics statistics;
+      for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
+        const Statistics of_slab = sweeps_[lane].sweep(layout_, swept_range(), {filed_, begin_}, slab, sink);
+        statistics.tests += of_slab.tests;
+        statistics.references += of_slab.references;
+      }
+      return statistics;
+    };
+    this->count(parallel_.search(layout_.slabs(), pairs, sweep));
   }
 
   /// As far as the sample reaches on the swept axis, and a little more: a sample misses the ends.
@@ -69,27 +75,39 @@ class Grid final : public PairFinder<D> {
     }
   }
 
-  /// Sets begin_ to where each cell's boxes will begin.
+  /// Sets begin_ to where each cell's boxes will begin, and next_ to where those of each range will.
   void count_boxes(std::span<const Box<D>> boxes) {
-    begin_.assign(layout_.cells() + 1, 0);
-    for (const Box<D>& box : boxes)
-      for_each_place(box, [&](std::size_t cell, std::uint32_t) { ++begin_[cell]; });
+    const std::size_t cells = layout_.cells();
+    next_.assign(parallel_.range_count() * cells, 0);
+    parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      std::uint64_t* const count = next_.data() + number * cells;
+      for (std::size_t i = range.begin; i < range.end; ++i)
+        for_each_place(boxes[i], [count](std::size_t cell, std::uint32_t) { ++count[cell]; });
+    });
+    begin_.resize(cells + 1);
     std::uint64_t begin = 0;
-    for (std::uint64_t& of_cell : begin_) begin += std::exchange(of_cell, begin);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      begin_[cell] = begin;
+      for (std::size_t at = cell; at < next_.size(); at += cells) begin += std::exchange(next_[at], begin);
+    }
+    begin_[cells] = begin;
   }
 
   /// Copies the boxes to their cells.
   void file(std::span<const Box<D>> boxes) {
     filed_.resize(begin_.back());
-    next_.assign(begin_.begin(), begin_.end());
-    std::uint32_t place = 0;
-    for (const Box<D>& box : boxes) {
-      const BoxId id{place++};
-      const std::uint32_t side = kernels::side_bit(id, this->left_count());
-      for_each_place(box, [&](std::size_t cell, std::uint32_t apart) {
-        filed_[next_[cell]++] = {box, id, side | apart};
-      });
-    }
+    parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      std::uint64_t* const next = next_.data() + number * layout_.cells();
+      Filed<D>* const filed = filed_.data();
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const Box<D>& box = boxes[i];
+        const auto id = static_cast<BoxId>(i);
+        const std::uint32_t side = kernels::side_bit(id, this->left_count());
+        for_each_place(box, [&](std::size_t cell, std::uint32_t apart) {
+          filed[next[cell]++] = {box, id, side | apart};
+        });
+      }
+    });
   }
 
   std::optional<double> cell_;
@@ -99,7 +117,8 @@ class Grid final : public PairFinder<D> {
   std::vector<std::uint64_t> begin_;
   std::vector<std::uint64_t> next_;
   std::vector<Filed<D>> filed_;
-  GridSweep<D> sweep_;
+  core::Parallel parallel_;
+  std::vector<GridSweep<D>> sweeps_;  // by lane
 };
 
 template <int D>
@@ -120,7 +139,8 @@ Algorithm grid() {
             .summary =
                 "size of a cell, in the boxes' unit; made larger where there would be over 4 cells a box",
             .standard = "auto",
-            .least = std::numeric_limits<float>::min()}},
+            .least = std::numeric_limits<float>::min()},
+           core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
   };
