@@ -52,7 +52,7 @@ bool has_threads(const Algorithm& algorithm) {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),   own::bvh(),
+      own::automatic(),   own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),   own::bvh(),
       paper::brute_force(), paper::grid(), paper::sweep_and_prune(), paper::quadtree(),
   };
   return list;

@@ -18,7 +18,7 @@
 namespace broadside {
 
 /// The spec that find_pairs() and World use unless told otherwise.
-inline constexpr std::string_view default_algorithm = "grid";
+inline constexpr std::string_view default_algorithm = "auto";
 
 /// Where an algorithm comes from.
 enum class AlgorithmKind { own, paper, peer };

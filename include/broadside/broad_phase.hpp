@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broadside/box.hpp"
@@ -62,9 +63,17 @@ class PairFinder {
     workers_changed();
   }
 
+  /// Where the algorithm is one that chooses: what it chose for the last find(), and why, in a sentence.
+  /// Empty for others.
+  virtual std::string explanation() const { return {}; }
+
  protected:
   /// For find_valid: what this search did.
   void count(const Statistics& statistics) { statistics_ = statistics; }
+
+  /// For find_valid: lets another finder do this search, with the same workers. Its statistics are then this
+  /// finder's.
+  void search_with(PairFinder& other, std::span<const Box<D, Real>> boxes, PairSink& pairs);
 
   /// For find_valid: 0 if every overlapping pair is asked for. Else the boxes before this place are the left
   /// set and the others the right one, and pairs within a set need not be written: they will be dropped.

@@ -5,6 +5,7 @@
 
 namespace broadside::own {
 
+Algorithm automatic();  // src/auto.cpp, above the others
 Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();

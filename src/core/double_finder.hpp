@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
@@ -25,6 +26,8 @@ template <int D>
 class DoubleFinder final : public PairFinder<D, double> {
  public:
   explicit DoubleFinder(std::unique_ptr<PairFinder<D>> finder);
+
+  std::string explanation() const override { return finder_->explanation(); }
 
  private:
   /// The points with begin <= x < end on every axis; +inf lies in what ends at +inf.

@@ -176,6 +176,16 @@ std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) cons
 }
 
 template <int D, typename Real>
+void PairFinder<D, Real>::search_with(PairFinder& other, std::span<const Box<D, Real>> boxes,
+                                      PairSink& pairs) {
+  other.left_count_ = left_count_;
+  other.set_workers(workers_);
+  other.statistics_.reset();
+  other.find_valid(boxes, pairs);
+  statistics_ = other.statistics_;
+}
+
+template <int D, typename Real>
 void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
   present_.reserve(present_.size() + boxes.size());
   ids_.reserve(ids_.size() + boxes.size());

@@ -52,10 +52,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes) {
     maxima_.clear();
     extents_.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      // Multiples of the golden ratio, modulo 1, fall everywhere and never in step with a pattern in the
-      // array.
-      const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
-      const Box<D>& box = boxes[count == boxes.size() ? i : fraction * std::uint64_t{boxes.size()} >> 32];
+      const Box<D>& box = boxes[count == boxes.size() ? i : sampled_place(i, boxes.size())];
       const float min = box.min[axis];
       const float max = box.max[axis];
       sample.minima.push_back(min);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,14 @@ struct AxisSample {
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
 };
+
+/// The place of the i-th of a few boxes sampled from `boxes`: spread over the array, without a period that a
+/// regular scene could share.
+inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
+  // Multiples of the golden ratio, modulo 1, fall everywhere and never in step with a pattern in the array.
+  const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
+  return static_cast<std::size_t>(fraction * std::uint64_t{boxes} >> 32);
+}
 
 /// A sample of at most some hundred boxes: the same for the same boxes, spread over the array without a
 /// period that a regular scene could share. Cost O(1) for large arrays.

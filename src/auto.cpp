@@ -1,0 +1,167 @@
+// auto: looks at a sample of the boxes, and lets the algorithm search that suits them.
+//
+// The rules are from measurements over every scene and size of the long comparison; see docs/benchmarking.md.
+// They ask for what boxes are like, never for a clock: the same boxes are always searched the same way.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/broad_phase.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "core/sample.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// Up to here comparing all costs less than any order.
+template <int D>
+constexpr std::size_t few_boxes = D == 2 ? 160 : 224;
+
+/// Up to here a grid's cells cost more to lay out than they save over a tree.
+constexpr std::size_t boxes_for_cells = 6000;
+
+/// Up to so many tests a box, a sweep along one axis needs no help.
+constexpr double tests_of_a_good_axis = 4;
+
+/// From so many overlaps a box on, most of what a cell tests is a pair, and filing boxes in several cells
+/// only repeats it.
+template <int D>
+constexpr double many_overlaps = D == 2 ? 6 : 200;
+
+/// From so many times as many boxes near each other on all axes as the single axes would let expect, cells
+/// that suit the clusters would be too many.
+template <int D>
+constexpr double clustered = D == 2 ? 2.2 : 3;
+
+/// Boxes of a sample are near if they begin within this part of its range, on every axis.
+constexpr double near = 1.0 / 16;
+
+constexpr std::size_t most_compared = 96;
+
+/// What is chosen, and what for.
+enum class Choice { few, one_axis, tree, dense, clusters, cells };
+
+constexpr std::array<std::string_view, 6> chosen_algorithm = {
+    "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid"};
+
+template <int D>
+class Auto final : public PairFinder<D> {
+ public:
+  std::string explanation() const override {
+    const auto rounded = [](double number) {
+      const std::string text = std::to_string(number);
+      return text.substr(0, text.find('.') + 2);
+    };
+    std::string text(chosen_algorithm[static_cast<std::size_t>(choice_)]);
+    text += ", since ";
+    const std::string boxes = std::to_string(count_) + " boxes";
+    switch (choice_) {
+      case Choice::few:
+        return text + boxes + " are so few that comparing all of them costs less than any order";
+      case Choice::one_axis:
+        return text + "a sweep along one axis leaves only " + rounded(tests_) + " tests a box";
+      case Choice::tree:
+        return text + boxes + " are too few for cells to pay";
+      case Choice::dense:
+        return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
+      case Choice::clusters:
+        return text + "boxes stand in clusters: " + rounded(clustering_) +
+               " times as many are near each other as evenly spread ones would be";
+      case Choice::cells:
+        return text + boxes + " spread as evenly as these suit cells";
+    }
+    return text;
+  }
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    count_ = boxes.size();
+    choice_ = choose(boxes);
+    auto& finder = finders_[static_cast<std::size_t>(choice_)];
+    if (!finder) {
+      const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
+      finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
+    }
+    this->search_with(*finder, boxes, pairs);
+  }
+
+  Choice choose(std::span<const Box<D>> boxes) {
+    if (boxes.size() <= few_boxes<D>) return Choice::few;
+    sample_.take(boxes);
+    const auto count = static_cast<double>(boxes.size());
+    const int best = sample_.axes_by_overlap()[0];
+    tests_ = count * sample_[best].overlap / 2;
+    if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
+    if (boxes.size() <= boxes_for_cells) return Choice::tree;
+    overlaps_ = count / 2;
+    for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
+    if (overlaps_ >= many_overlaps<D>) return Choice::dense;
+    clustering_ = clustering(boxes);
+    return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
+  }
+
+  /// How many times as many pairs of boxes are near on all axes as the single axes would let expect: 1 where
+  /// boxes are spread evenly.
+  double clustering(std::span<const Box<D>> boxes) const {
+    const std::size_t count = std::min(boxes.size(), most_compared);
+    std::array<std::array<float, most_compared>, D> minima;
+    std::array<float, D> reach;
+    for (int axis = 0; axis < D; ++axis) {
+      reach[axis] = static_cast<float>(near * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
+      for (std::size_t i = 0; i < count; ++i)
+        minima[axis][i] = boxes[core::sampled_place(i, boxes.size())].min[axis];
+    }
+    std::array<std::uint32_t, D> on_axis{};
+    std::uint32_t on_all = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        std::uint32_t all = 1;
+        for (int axis = 0; axis < D; ++axis) {
+          const float difference = minima[axis][i] - minima[axis][j];
+          const std::uint32_t is_near = static_cast<std::uint32_t>(difference <= reach[axis]) &
+                                        static_cast<std::uint32_t>(-difference <= reach[axis]);
+          on_axis[axis] += is_near;
+          all &= is_near;
+        }
+        on_all += all;
+      }
+    }
+    const double pairs = static_cast<double>(count * (count - 1)) / 2;
+    double expected = pairs;
+    for (int axis = 0; axis < D; ++axis) expected *= on_axis[axis] / pairs;
+    // A few by chance say nothing.
+    return on_all / std::max(expected, 4.0);
+  }
+
+  core::Sample<D> sample_;
+  std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
+  Choice choice_ = Choice::few;
+  std::size_t count_ = 0;
+  double tests_ = 0;
+  double overlaps_ = 0;
+  double clustering_ = 0;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings&) {
+  return std::make_unique<Auto<D>>();
+}
+
+}  // namespace
+
+Algorithm automatic() {
+  return {
+      .name = "auto",
+      .summary = "looks at a sample of the boxes and chooses among the others",
+      .source = "Broadside's measurements",
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+  };
+}
+
+}  // namespace broadside::own
