@@ -102,6 +102,7 @@ class FindCase {
              entry.pairs = pairs_.size();
              entry.pair_hash = hash_of(pairs_);
              entry.statistics = contestant.finder->statistics();
+             entry.explanation = contestant.finder->explanation();
              if (milliseconds > contest_.effort.single_sample_seconds * 1e3) {
                entry.samples_ms.push_back(milliseconds);
                contestant.done = true;

@@ -50,6 +50,7 @@ struct Measurement {
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
   std::optional<Statistics> statistics;
+  std::string explanation{};                ///< of an algorithm that chooses: what it chose, and why
   std::optional<std::uint64_t> own_bytes;   ///< what the algorithm holds between calls
   std::optional<std::uint64_t> peak_bytes;  ///< the most it holds at one moment, in or between calls
 };

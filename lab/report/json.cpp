@@ -84,6 +84,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["floor_ms"] = result.floor_ms.empty() ? Json() : Json(median(result.floor_ms));
   json["tests"] = statistics ? Json(statistics->tests) : Json();
   json["references"] = statistics ? Json(statistics->references) : Json();
+  json["explanation"] = or_null(measurement.explanation);
   json["own_bytes"] = or_null(measurement.own_bytes);
   json["peak_bytes"] = or_null(measurement.peak_bytes);
   return json;

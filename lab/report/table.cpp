@@ -118,6 +118,41 @@ std::string lead_text(const CaseResult& result) {
                      fastest_of_kind(result, AlgorithmKind::peer)->algorithm);
 }
 
+/// What algorithms that choose have chosen, a line each.
+std::string explanations_of(const CaseResult& result) {
+  std::string text;
+  for (const Measurement& measurement : result.measurements) {
+    if (!measurement.explanation.empty())
+      text += fmt::format("  {}: {}\n", measurement.algorithm, measurement.explanation);
+  }
+  return text;
+}
+
+/// How far auto is from the best of our own algorithms, over all cases, as a line; empty where it is not in
+/// the comparison with another one.
+std::string auto_text(const Comparison& comparison) {
+  std::vector<double> ratios;
+  std::string worst;
+  for (const CaseResult& result : comparison.cases) {
+    const auto is_auto = [](const Measurement& m) { return m.algorithm == "auto" && is_timed(m); };
+    const auto chosen = std::ranges::find_if(result.measurements, is_auto);
+    double best = INFINITY;
+    for (const Measurement& measurement : result.measurements) {
+      if (measurement.kind == AlgorithmKind::own && !is_auto(measurement) && is_timed(measurement))
+        best = std::min(best, time_of(measurement));
+    }
+    if (chosen == result.measurements.end() || !std::isfinite(best)) continue;
+    const double ratio = time_of(*chosen) / best;
+    if (ratios.empty() || ratio > std::ranges::max(ratios)) worst = name_of(result.of);
+    ratios.push_back(ratio);
+  }
+  if (ratios.empty()) return "";
+  return fmt::format(
+      "auto takes {} times as long as the best of our others, geometric mean of {}; at most {} times ({})\n",
+      ratio_text(geometric_mean(ratios)), counted(ratios.size(), "case", "cases"),
+      ratio_text(std::ranges::max(ratios)), worst);
+}
+
 /// The leads of all cases as a line; empty where no case has one.
 std::string leads_text(const Comparison& comparison) {
   std::vector<double> leads;
@@ -224,7 +259,7 @@ std::string table_of(const CaseResult& result) {
          "boxes sorted and gathered, pairs written"},
         "1.00");
   }
-  return heading(result) + columns.text("  ") + lead_text(result);
+  return heading(result) + columns.text("  ") + explanations_of(result) + lead_text(result);
 }
 
 std::string summary_of(const Comparison& comparison) {
@@ -248,7 +283,7 @@ std::string summary_of(const Comparison& comparison) {
       columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
                    standing.ratios.empty() ? "-" : ratio_text(standing.mean()), ""});
     }
-    text += columns.text("  ") + leads_text(comparison) + "\n";
+    text += columns.text("  ") + auto_text(comparison) + leads_text(comparison) + "\n";
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);

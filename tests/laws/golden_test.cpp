@@ -43,7 +43,9 @@ struct GoldenOrder {
   std::uint64_t hash;
 };
 
-constexpr std::array<GoldenOrder, 10> golden_orders = {{
+constexpr std::array<GoldenOrder, 12> golden_orders = {{
+    {"auto", 2, 0x84e8fe29d048d7edU},
+    {"auto", 3, 0xa5ece44084832406U},
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
     {"grid", 2, 0x00ef862ee0c5d3fdU},
