@@ -13,6 +13,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "core/parallel.hpp"
 #include "core/sample.hpp"
 
 namespace broadside::own {
@@ -92,12 +93,12 @@ class Auto final : public PairFinder<D> {
 
   Choice choose(std::span<const Box<D>> boxes) {
     if (boxes.size() <= few_boxes<D>) return Choice::few;
-    sample_.take(boxes);
+    if (boxes.size() <= boxes_for_cells) return Choice::tree;
+    sample_.take(boxes, most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
     tests_ = count * sample_[best].overlap / 2;
     if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
-    if (boxes.size() <= boxes_for_cells) return Choice::tree;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= many_overlaps<D>) return Choice::dense;
@@ -159,6 +160,7 @@ Algorithm automatic() {
       .name = "auto",
       .summary = "looks at a sample of the boxes and chooses among the others",
       .source = "Broadside's measurements",
+      .tunables = {core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
   };

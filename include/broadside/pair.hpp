@@ -92,8 +92,15 @@ class PairSink {
 
  protected:
   PairSink() = default;
-  PairSink(const PairSink&) = default;
-  PairSink& operator=(const PairSink&) = default;
+  /// A copy has the same pairs still to hand on.
+  PairSink(const PairSink& other) : used_(other.used_) {
+    std::copy_n(other.buffer_.begin(), used_, buffer_.begin());
+  }
+  PairSink& operator=(const PairSink& other) {
+    used_ = other.used_;
+    std::copy_n(other.buffer_.begin(), used_, buffer_.begin());
+    return *this;
+  }
 
  private:
   virtual void consume(std::span<const Pair> pairs) = 0;

@@ -9,11 +9,12 @@
 namespace broadside::core {
 namespace {
 
-constexpr std::size_t most_samples = 256;
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// A few boxes are sampled densely; of many, so few that sampling is a small part of the work.
-std::size_t sample_count(std::size_t boxes) { return std::min({boxes, 64 + boxes / 16, most_samples}); }
+std::size_t sample_count(std::size_t boxes, std::size_t most) {
+  return std::min({boxes, 64 + boxes / 16, most});
+}
 
 /// The part of the pairs among `minima.size()` intervals that overlap; both ends sorted, each for itself.
 double overlapping_part(std::span<const float> minima, std::span<const float> maxima) {
@@ -44,8 +45,8 @@ void set_bounds(AxisSample& sample, std::span<const float> maxima) {
 }  // namespace
 
 template <int D>
-void Sample<D>::take(std::span<const Box<D>> boxes) {
-  const std::size_t count = sample_count(boxes.size());
+void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
+  const std::size_t count = sample_count(boxes.size(), most);
   for (int axis = 0; axis < D; ++axis) {
     AxisSample& sample = axes_[axis];
     sample.minima.clear();

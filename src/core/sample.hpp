@@ -38,7 +38,8 @@ inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
 template <int D>
 class Sample {
  public:
-  void take(std::span<const Box<D>> boxes);
+  /// Looks at `most` of the boxes, or fewer where there are few.
+  void take(std::span<const Box<D>> boxes, std::size_t most = 256);
 
   const AxisSample& operator[](int axis) const noexcept { return axes_[axis]; }
 

@@ -87,7 +87,6 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{"compare", "--threads", "two"}, {"--threads is 'two'", "expected a whole number from 0"}},
       {{"pairs", "boxes.csv", "--threads", "2", "--algorithm", "paper_grid"},
        {"--threads is 2", "paper_grid"}},
-      {{"compare", "--algorithms", "peers"}, {"group 'peers' is empty"}},
       {{"compare", "--seed", "-1"}, {"--seed", "'-1'", "expected a whole number"}},
       {{"compare", "--scenes", "boxes.csv", "--json", "boxes.csv"}, {"--json is boxes.csv", "another file"}},
       {{"compare", "--budget", "0"}, {"--budget is 0", "expected a number of seconds above 0"}},

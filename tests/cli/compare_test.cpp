@@ -52,7 +52,7 @@ TEST(CompareVerb, WritesJsonWithAMeasurementForEachLineOfTheTable) {
   const Json json = Json::parse(text_of(folder.file("out.json")));
   EXPECT_EQ(json["schema"], "broadside.results/1");
   EXPECT_EQ(json["command"][1], "compare");
-  EXPECT_EQ(json["measurements"].size(), 8u * 4);
+  EXPECT_EQ(json["measurements"].size(), 8u * 6);
   for (const Json& measurement : json["measurements"]) {
     EXPECT_EQ(measurement["verified"], true);
     EXPECT_EQ(measurement["mode"], "find");

@@ -38,7 +38,7 @@ TEST(PairsVerb, WritesThePairsAsCsvAndSaysWhatItDid) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.output, "first,second\n0,3\n1,3\n");
   EXPECT_THAT(ended.errors, AllOf(HasSubstr("boxes.csv (4 boxes) in 2D: 2 pairs, exact in double; read in "),
-                                  HasSubstr(", joined by grid in ")));
+                                  HasSubstr(", joined by auto in ")));
 }
 
 TEST(PairsVerb, OnlyCountsWhereThatIsAsked) {
