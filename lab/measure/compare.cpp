@@ -20,7 +20,8 @@ namespace {
 /// On how many seeds a case is run in rotation: a small input that is repeated teaches the branch predictor
 /// what no user's boxes would.
 std::size_t seeds_for(std::size_t boxes, Mode mode) {
-  const std::size_t seeds = boxes <= 2'000 ? 16 : boxes <= 20'000 ? 8 : boxes < 500'000 ? 3 : 1;
+  if (mode == Mode::find && boxes <= 2'000) return 100;
+  const std::size_t seeds = boxes <= 2'000 ? 16 : boxes <= 20'000 ? 8 : boxes < 500'000 ? 5 : 1;
   // Frames differ among themselves.
   return mode == Mode::find ? seeds : std::max<std::size_t>(seeds / 4, 1);
 }
