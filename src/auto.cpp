@@ -21,7 +21,7 @@ namespace {
 
 /// Up to here comparing all costs less than any order.
 template <int D>
-constexpr std::size_t few_boxes = D == 2 ? 160 : 224;
+constexpr std::size_t few_boxes = D == 2 ? 320 : 400;
 
 /// Up to here a grid's cells cost more to lay out than they save over a tree.
 constexpr std::size_t boxes_for_cells = 6000;
@@ -65,7 +65,7 @@ class Auto final : public PairFinder<D> {
       case Choice::few:
         return text + boxes + " are so few that comparing all of them costs less than any order";
       case Choice::one_axis:
-        return text + "a sweep along one axis leaves only " + rounded(tests_) + " tests a box";
+        return text + "a sweep along one axis leaves few tests a box: " + rounded(tests_) + " in a sample";
       case Choice::tree:
         return text + boxes + " are too few for cells to pay";
       case Choice::dense:

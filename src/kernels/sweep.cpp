@@ -167,7 +167,8 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
 /// Boxes of a run that follow each other, one a lane.
 template <int D>
 struct Group {
-  HWY_INLINE Group() {}
+  // Not defaulted: it must be compiled for the instruction set of the vectors' constructors.
+  HWY_INLINE Group() {}  // NOLINT(modernize-use-equals-default)
 
   HWY_INLINE void load(const Run<D>& run, std::size_t at) {
     id = ids(run, at);
