@@ -81,7 +81,7 @@ std::string spec_of(const PairsArguments& arguments) {
     throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
   const std::size_t threads = read_threads(arguments.threads);
   if (threads == 1) return selected[0].spec.text();
-  const std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
+  std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
   if (spec == selected[0].spec.text())
     throw Unusable(
         fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
