@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,13 @@ namespace broadside::lab {
 void Watch::at(std::string_view what) const {
   if (stop && stop()) throw Stopped();
   if (progress) progress(what);
+}
+
+std::vector<std::size_t> turns(std::size_t seats, std::size_t round) {
+  std::vector<std::size_t> order(seats);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(round));
+  return order;
 }
 
 Measurement entry_of(const Contender& contender) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "lab/catalogue.hpp"
 #include "lab/measure/allocation.hpp"
@@ -52,6 +53,10 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
+
+/// In which order `seats` contestants take their turn in a round: drawn anew for each, and the same in each
+/// run. Who follows whom matters: what one leaves in the caches is cheap for the next.
+std::vector<std::size_t> turns(std::size_t seats, std::size_t round);
 
 /// A measurement with the contender's name in it and nothing measured.
 Measurement entry_of(const Contender& contender);

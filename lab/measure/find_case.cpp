@@ -116,8 +116,7 @@ class FindCase {
   void play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
     const std::size_t seats = contestants_.size() + (has_floor_ ? 1 : 0);
-    for (std::size_t turn = 0; turn < seats; ++turn) {
-      const std::size_t seat = (turn + round) % seats;
+    for (const std::size_t seat : turns(seats, round)) {
       if (seat < contestants_.size())
         sample(contestants_[seat], input, round);
       else

@@ -157,8 +157,8 @@ class TrackCase {
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
       const Frame<D> now{boxes, frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
-      for (std::size_t turn = 0; turn < contestants_.size(); ++turn) {
-        Contestant<D>& contestant = contestants_[(turn + frame) % contestants_.size()];
+      for (const std::size_t seat : turns(contestants_.size(), frame)) {
+        Contestant<D>& contestant = contestants_[seat];
         if (contestant.done) continue;
         contest_.watch.at(fmt::format("{}, frame {}", contestant.entry->algorithm, frame));
         const std::string fault =
