@@ -30,12 +30,15 @@ class BufferSink final : public PairSink {
   }
 };
 
-/// The filters between an algorithm and its caller's sink, the algorithm's end first.
+/// The filters between an algorithm and its caller's sink, the algorithm's end first. What they hold of an
+/// earlier search is handed on: its pairs come before those of this one.
 std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   std::vector<const FilterSink*> filters;
   for (auto* filter = dynamic_cast<FilterSink*>(&pairs); filter != nullptr;
-       filter = dynamic_cast<FilterSink*>(&filter->target()))
+       filter = dynamic_cast<FilterSink*>(&filter->target())) {
+    filter->flush();
     filters.push_back(filter);
+  }
   return filters;
 }
 
