@@ -138,7 +138,8 @@ std::string auto_text(const Comparison& comparison) {
     const auto chosen = std::ranges::find_if(result.measurements, is_auto);
     double best = INFINITY;
     for (const Measurement& measurement : result.measurements) {
-      if (measurement.kind == AlgorithmKind::own && !is_auto(measurement) && is_timed(measurement))
+      if (measurement.kind == AlgorithmKind::own && !is_auto(measurement) && is_timed(measurement) &&
+          chosen != result.measurements.end() && measurement.threads == chosen->threads)
         best = std::min(best, time_of(measurement));
     }
     if (chosen == result.measurements.end() || !std::isfinite(best)) continue;

@@ -200,6 +200,16 @@ Json parsed(const std::vector<Measurement>& measurements) {
   return Json::parse(json_of(comparison, std::vector<std::string>{"broadside", "compare"}));
 }
 
+TEST(Summary, SaysHowFarAutoIsFromTheBestOfOurOthers) {
+  Comparison comparison;
+  CaseResult threaded = still_case({timed("auto", {3}), timed("grid", {2}), timed("grid:threads=2", {1})});
+  threaded.measurements[2].threads = 2;
+  comparison.cases = {still_case({timed("auto", {2}), timed("grid", {2}), timed("bvh", {4})}), threaded};
+  EXPECT_THAT(summary_of(comparison),
+              HasSubstr("auto takes 1.22 times as long as the best of our others, geometric mean of 2 cases; "
+                        "at most 1.50 times"));
+}
+
 TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
   const Json json = parsed({timed("grid", {1, 2, 3})});
   EXPECT_EQ(json["schema"], "broadside.results/1");
