@@ -52,6 +52,11 @@ tests-%: build/%/build.ninja
 	cmake --build --preset $*
 	ctest --preset $* --parallel $(jobs)
 
+# What uses threads; the rest has none to sanitize, and would take half an hour.
+tests-tsan: build/tsan/build.ninja
+	cmake --build --preset tsan --target laws_tests unit_tests
+	ctest --preset tsan --parallel $(jobs) --tests-regex 'Thread|Parallel|Executor'
+
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
 
