@@ -53,7 +53,6 @@ class GridLayout {
 
   /// The least coordinate that lies in the cell after `cell`; NaN after the last one, so that nothing reaches
   /// it.
-  float border(int axis, std::size_t cell) const { return borders_[axis][cell]; }
   float row_border(std::size_t row) const { return borders_[gridded - 1][row]; }
   float column_border(std::size_t column) const { return borders_[0][column]; }
 

@@ -16,82 +16,22 @@
 #include <hwy/highway.h>
 
 #include "kernels/compress.hpp"
+#include "kernels/pair_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, fan_out>;
 using Numbers = hn::Rebind<std::uint32_t, Floats>;
 using FloatVector = hn::Vec<Floats>;
 using NumberVector = hn::Vec<Numbers>;
 using Hits = hn::Mask<Numbers>;
+using Writer = PairWriter<Numbers>;
+static_assert(fan_out == Writer::at_once);
 
 /// The elements of a vector, sixteen of which are one or several.
 constexpr std::size_t lanes = hn::MaxLanes(Floats());
-
-/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
-class Writer {
- public:
-  explicit Writer(PairSink& sink) : sink_(&sink) { take(); }
-
-  ~Writer() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
-
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  /// Writes the pairs of `query` with those of `ids` that are hits.
-  HWY_INLINE void write(NumberVector query, NumberVector ids, Hits hits) {
-    const Numbers tag;
-    const std::size_t count = hn::CountTrue(tag, hits);
-    const NumberVector partners = compress(tag, ids, hits);
-    const NumberVector first = hn::Min(partners, query);
-    const NumberVector second = hn::Max(partners, query);
-#if HWY_TARGET == HWY_SCALAR
-    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
-#else
-    if constexpr (lanes >= 8) {
-      // Interleaving half a vector takes half the shuffles, and hits are seldom more.
-      const hn::Half<Numbers> half;
-      store(hn::LowerHalf(half, first), hn::LowerHalf(half, second), out_);
-      if (HWY_UNLIKELY(count > lanes / 2))
-        store(hn::UpperHalf(half, first), hn::UpperHalf(half, second), out_ + lanes / 2);
-    } else {
-      hn::StoreInterleaved2(first, second, tag, reinterpret_cast<std::uint32_t*>(out_));
-    }
-#endif
-    out_ += count;
-    if (HWY_UNLIKELY(out_ > last_)) {
-      sink_->commit(static_cast<std::size_t>(out_ - begin_));
-      begin_ = out_;  // if the sink throws, this much is committed already
-      take();
-    }
-  }
-
- private:
-#if HWY_TARGET != HWY_SCALAR
-  using HalfVector = hn::Vec<hn::Half<Numbers>>;
-
-  /// Stores half a vector of pairs.
-  static HWY_INLINE void store(HalfVector first, HalfVector second, Pair* out) {
-    const hn::RepartitionToWide<Numbers> wide;
-    const auto high = hn::ShiftLeft<32>(hn::PromoteTo(wide, second));
-    hn::StoreU(hn::Or(hn::PromoteTo(wide, first), high), wide, reinterpret_cast<std::uint64_t*>(out));
-  }
-#endif
-
-  void take() {
-    begin_ = out_ = sink_->room(PairSink::max_room);
-    last_ = begin_ + PairSink::max_room - fan_out;
-  }
-
-  PairSink* sink_;
-  Pair* begin_ = nullptr;
-  Pair* out_ = nullptr;
-  Pair* last_ = nullptr;  // beyond it a whole vector of pairs may not fit
-};
 
 /// One box or the bounds of one node, in every lane.
 template <int D>
@@ -201,7 +141,8 @@ class Join {
       const NumberVector id = all_lanes(index(tree_.id[begin + i]));
       for (std::size_t at = (i + 1) / lanes * lanes; at < fan_out; at += lanes) {
         const Hits later = hn::Gt(numbers_from(at), all_lanes(i));
-        pairs_.write(id, ids(begin + at), hn::And(query.touching(tree_.levels[0], begin + at), later));
+        pairs_.room();
+        pairs_.write_of(id, ids(begin + at), hn::And(query.touching(tree_.levels[0], begin + at), later));
       }
     }
     tests_ += fan_out * (fan_out - 1) / 2;
@@ -214,8 +155,8 @@ class Join {
       const std::size_t other = queries_[i] / fan_out * fan_out;
       const Query<D> query(tree_.levels[0], place);
       const NumberVector id = all_lanes(index(tree_.id[place]));
-      for (std::size_t at = other; at < other + fan_out; at += lanes)
-        pairs_.write(id, ids(at), query.touching(tree_.levels[0], at));
+      for (std::size_t at = other; at < other + fan_out; at += lanes) pairs_.room();
+      pairs_.write_of(id, ids(at), query.touching(tree_.levels[0], at));
     }
     tests_ += count * fan_out;
   }

@@ -13,93 +13,22 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "kernels/compress.hpp"
+#include "kernels/pair_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, 16>;
+using Floats = hn::CappedTag<float, read_ahead>;
 using Ids = hn::Rebind<std::uint32_t, Floats>;
 using FloatVector = hn::Vec<Floats>;
 using IdVector = hn::Vec<Ids>;
 using Hits = hn::Mask<Ids>;
+using Writer = PairWriter<Ids>;
 
 /// Boxes of a run that are swept together: as many on every instruction set, since it fixes the order.
 constexpr std::size_t together = read_ahead;
-
-/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
-class Writer {
- public:
-  explicit Writer(PairSink& sink) : sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}
-
-  ~Writer() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
-
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  /// How many times `together` pairs may be written before room() is called again: at least once.
-  HWY_INLINE std::size_t room() {
-    if (HWY_UNLIKELY(left() < 1)) {
-      Pair* const end = out_;
-      Pair* const begin = begin_;
-      begin_ = out_ = end;  // if the sink throws, this much is committed already
-      begin_ = out_ = next_room(*sink_, static_cast<std::size_t>(end - begin));
-    }
-    return left();
-  }
-
-  /// Writes the pairs of `a` and `b`, lane by lane, that are hits. Takes the room of a vector.
-  HWY_INLINE void write(IdVector a, IdVector b, Hits hits) {
-    const Ids tag;
-    store(compress(tag, a, hits), compress(tag, b, hits), hn::CountTrue(tag, hits));
-  }
-
-  /// Writes the pairs of `query`, which is the same in every lane, with those of `ids` that are hits.
-  HWY_INLINE void write_of(IdVector query, IdVector ids, Hits hits) {
-    const Ids tag;
-    store(query, compress(tag, ids, hits), hn::CountTrue(tag, hits));
-  }
-
- private:
-  static HWY_NOINLINE Pair* next_room(PairSink& sink, std::size_t written) {
-    sink.commit(written);
-    return sink.room(PairSink::max_room);
-  }
-
-  std::size_t left() const {
-    return (PairSink::max_room - static_cast<std::size_t>(out_ - begin_)) / together;
-  }
-
-  HWY_INLINE void store(IdVector a, IdVector b, std::size_t count) {
-    const IdVector first = hn::Min(a, b);
-    const IdVector second = hn::Max(a, b);
-#if HWY_TARGET == HWY_SCALAR
-    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
-#else
-    // A pair is its first id in the low half of 64 bits and its second one in the high half.
-    const hn::Half<Ids> half;
-    const hn::RepartitionToWide<Ids> wide;
-    auto* const to = reinterpret_cast<std::uint64_t*>(out_);
-    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
-                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
-               wide, to);
-    // Of many lanes few are hits.
-    if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide))) {
-      hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
-                        hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
-                 wide, to + hn::Lanes(wide));
-    }
-#endif
-    out_ += count;
-  }
-
-  PairSink* sink_;
-  Pair* begin_;
-  Pair* out_;
-};
+static_assert(together == Writer::at_once);
 
 /// One box of a run, in every lane.
 template <int D>

@@ -1,0 +1,106 @@
+// Writing pairs that are hits, for files that Highway compiles for each instruction set.
+//
+// Included once an instruction set, hence no #pragma once.
+#if defined(BROADSIDE_KERNELS_PAIR_WRITER) == defined(HWY_TARGET_TOGGLE)
+#ifdef BROADSIDE_KERNELS_PAIR_WRITER
+#undef BROADSIDE_KERNELS_PAIR_WRITER
+#else
+#define BROADSIDE_KERNELS_PAIR_WRITER
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include "broadside/pair.hpp"
+
+#include "kernels/compress.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
+/// `Ids` is the tag of vectors of ids.
+template <typename Ids>
+class PairWriter {
+  using IdVector = hn::Vec<Ids>;
+  using Hits = hn::Mask<Ids>;
+
+ public:
+  /// For so many pairs there must be room wherever a vector of them is written.
+  static constexpr std::size_t at_once = 16;
+
+  explicit PairWriter(PairSink& sink) : sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}
+
+  ~PairWriter() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
+
+  PairWriter(const PairWriter&) = delete;
+  PairWriter& operator=(const PairWriter&) = delete;
+
+  /// How many times `at_once` pairs may be written before room() is called again: at least once.
+  HWY_INLINE std::size_t room() {
+    if (HWY_UNLIKELY(left() < 1)) {
+      Pair* const end = out_;
+      Pair* const begin = begin_;
+      begin_ = out_ = end;  // if the sink throws, this much is committed already
+      begin_ = out_ = next_room(*sink_, static_cast<std::size_t>(end - begin));
+    }
+    return left();
+  }
+
+  /// Writes the pairs of `a` and `b`, lane by lane, that are hits. Takes the room of a vector.
+  HWY_INLINE void write(IdVector a, IdVector b, Hits hits) {
+    const Ids tag;
+    store(compress(tag, a, hits), compress(tag, b, hits), hn::CountTrue(tag, hits));
+  }
+
+  /// Writes the pairs of `query`, which is the same in every lane, with those of `ids` that are hits.
+  HWY_INLINE void write_of(IdVector query, IdVector ids, Hits hits) {
+    const Ids tag;
+    store(query, compress(tag, ids, hits), hn::CountTrue(tag, hits));
+  }
+
+ private:
+  static HWY_NOINLINE Pair* next_room(PairSink& sink, std::size_t written) {
+    sink.commit(written);
+    return sink.room(PairSink::max_room);
+  }
+
+  std::size_t left() const {
+    return (PairSink::max_room - static_cast<std::size_t>(out_ - begin_)) / at_once;
+  }
+
+  HWY_INLINE void store(IdVector a, IdVector b, std::size_t count) {
+    const IdVector first = hn::Min(a, b);
+    const IdVector second = hn::Max(a, b);
+#if HWY_TARGET == HWY_SCALAR
+    *out_ = {BoxId{hn::GetLane(first)}, BoxId{hn::GetLane(second)}};
+#else
+    // A pair is its first id in the low half of 64 bits and its second one in the high half.
+    const hn::Half<Ids> half;
+    const hn::RepartitionToWide<Ids> wide;
+    auto* const to = reinterpret_cast<std::uint64_t*>(out_);
+    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
+                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
+               wide, to);
+    // Of many lanes few are hits.
+    if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide))) {
+      hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
+                        hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
+                 wide, to + hn::Lanes(wide));
+    }
+#endif
+    out_ += count;
+  }
+
+  PairSink* sink_;
+  Pair* begin_;
+  Pair* out_;
+};
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
