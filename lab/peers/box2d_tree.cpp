@@ -92,23 +92,15 @@ class Box2dTracker final : public PairTracker<2> {
       if (is_present(change.now[index(id)])) put(id, change);
     }
 
-    const auto overlap_in = [](std::span<const Box2> boxes, Pair pair) {
-      const Box2& a = boxes[index(pair.first)];
-      const Box2& b = boxes[index(pair.second)];
-      return is_present(a) && is_present(b) && overlap(a, b);
-    };
     auto kept = contacts_.begin();
     for (const Pair pair : contacts_) {
       const auto either = [pair](std::span<const std::uint8_t> flags) {
         return (flags[index(pair.first)] | flags[index(pair.second)]) != 0;
       };
       if (either(change.flags)) {
-        const bool before = overlap_in(change.before, pair);
-        const bool now = overlap_in(change.now, pair);
-        if (before && !now) ended.add(pair.first, pair.second);
+        change.report(pair.first, pair.second, begun, ended);
         // The broad phase tells the contacts of what it moved anew.
         if (either(moved_)) continue;
-        if (now && !before) begun.add(pair.first, pair.second);
       }
       *kept++ = pair;
     }
@@ -118,8 +110,7 @@ class Box2dTracker final : public PairTracker<2> {
     broad_phase_->UpdatePairs(&contacts);
     for (std::size_t i = known; i < contacts_.size(); ++i) {
       const Pair pair = contacts_[i];
-      if (overlap_in(change.now, pair) && !overlap_in(change.before, pair))
-        begun.add(pair.first, pair.second);
+      change.report(pair.first, pair.second, begun, ended);
     }
   }
 

@@ -36,23 +36,18 @@ class PeerTracker : public PairTracker<D> {
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };
-    const auto overlap_in = [](std::span<const Box<D>> boxes, Pair pair) {
-      const Box<D>& a = boxes[index(pair.first)];
-      const Box<D>& b = boxes[index(pair.second)];
-      return is_present(a) && is_present(b) && overlap(a, b);
-    };
     auto kept = pairs_.begin();
     for (const Pair pair : pairs_) {
       if (rested(pair))
         *kept++ = pair;
-      else if (!overlap_in(change.now, pair))
-        ended.add(pair.first, pair.second);
+      else
+        change.report(pair.first, pair.second, begun, ended);
     }
     pairs_.erase(kept, pairs_.end());
     for (const Pair pair : found_) {
       if (rested(pair)) continue;
       pairs_.push_back(pair);
-      if (!overlap_in(change.before, pair)) begun.add(pair.first, pair.second);
+      change.report(pair.first, pair.second, begun, ended);
     }
   }
 

@@ -53,18 +53,12 @@ void ProxyTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pai
   }
   collect(*proxies_, change.now, found_);
   // As in DiffTracker: what a pair was in the other frame can be seen from its boxes.
-  const auto differs = [&change](Pair pair, std::span<const Box<D>> boxes) {
-    const std::uint32_t a = index(pair.first);
-    const std::uint32_t b = index(pair.second);
-    if ((change.flags[a] | change.flags[b]) == 0) return false;
-    return !is_present(boxes[a]) || !is_present(boxes[b]) || !overlap(boxes[a], boxes[b]);
+  const auto report = [&](Pair pair) {
+    if ((change.flags[index(pair.first)] | change.flags[index(pair.second)]) != 0)
+      change.report(pair.first, pair.second, begun, ended);
   };
-  for (const Pair pair : found_) {
-    if (differs(pair, change.before)) begun.add(pair.first, pair.second);
-  }
-  for (const Pair pair : pairs_) {
-    if (differs(pair, change.now)) ended.add(pair.first, pair.second);
-  }
+  for (const Pair pair : found_) report(pair);
+  for (const Pair pair : pairs_) report(pair);
   std::swap(pairs_, found_);
 }
 

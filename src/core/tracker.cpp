@@ -1,5 +1,6 @@
-// PairTracker: what every tracker does around its algorithm; and DiffTracker.
+// PairTracker: what every tracker does around its algorithm.
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -9,29 +10,63 @@
 #include "broadside/sinks.hpp"
 
 #include "core/input_check.hpp"
+#include "core/sort_pairs.hpp"
 
 namespace broadside {
 namespace {
 
-void deliver(std::vector<Pair>& events, PairSink& sink) {
-  std::sort(events.begin(), events.end());
-  for (const Pair pair : events) sink.add(pair.first, pair.second);
-  sink.flush();
-}
+/// About what an IgnoredPairs holds for each pair: a node and its place in the table.
+constexpr std::size_t ignored_pair_bytes = 40;
 
 }  // namespace
 
 template <int D, typename Real>
 void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
-  const std::span<const Box<D, Real>> boxes = frame.boxes;
-  const std::size_t known = before_.size();
-  const std::size_t size = std::max(boxes.size(), known);
+  check(frame);
+  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
+  take(frame, rebuild);
+  take_ignored(frame, rebuild);
 
-  // Everything that can be wrong with the frame, before anything changes. A box beyond the ones known is new
-  // and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
-  // order of the list.
+  begun_.clear();
+  ended_.clear();
+  statistics_.reset();
+  const Change<D, Real> change{before_, now_, changed_, flags_, rebuild, filters_before_, filters_now_};
+  {
+    PairCollector begun_pairs(begun_);
+    PairCollector ended_pairs(ended_);
+    update_valid(change, begun_pairs, ended_pairs);
+    begun_pairs.flush();
+    ended_pairs.flush();
+  }
+  drop_ignored(change);
+  core::sort_unique(begun_, sorting_);
+  core::sort_unique(ended_, sorting_);
+  try {
+    begun.put(begun_);
+    ended.put(ended_);
+  } catch (...) {
+    begun.discard();
+    ended.discard();
+    throw;
+  }
+  keep(frame);
+  dirty_ = false;
+}
+
+/// Throws if anything is wrong with the frame, before anything changes. A box beyond the ones known is new
+/// and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
+/// order of the list.
+template <int D, typename Real>
+std::size_t PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
+  const std::size_t size = std::max(boxes.size(), before_.size());
   core::check_count(boxes.size());
-  std::size_t first = dirty_ ? 0 : std::min(known, boxes.size());
+  if (!frame.filters.empty() && frame.filters.size() != boxes.size()) {
+    throw InvalidInput(frame.filters.size(), std::to_string(frame.filters.size()) +
+                                                 " filters for a frame of " + std::to_string(boxes.size()) +
+                                                 " boxes; expected one for each box, or none");
+  }
+  std::size_t first = dirty_ ? 0 : std::min(before_.size(), boxes.size());
   for (const BoxId id : frame.changed) {
     if (index(id) >= size) {
       throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
@@ -40,92 +75,120 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
     }
     if (index(id) < first && !is_present(boxes[index(id)]) && !is_absent(boxes[index(id)])) first = index(id);
   }
-  core::check_boxes(boxes, first);
+  return core::check_boxes(boxes, first);
+}
 
-  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
+/// Sets now_, changed_ and flags_, and makes everything as long as the longer frame.
+template <int D, typename Real>
+void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
+  const std::size_t known = before_.size();
+  const std::size_t size = std::max(boxes.size(), known);
   before_.resize(size, absent_box<D, Real>());
   now_.resize(size, absent_box<D, Real>());
+  if (!frame.filters.empty() || !filters_before_.empty()) {
+    filters_before_.resize(size);
+    filters_now_.resize(size);
+  }
+  // Flags are all 0 between two updates, but where the last one failed.
+  if (rebuild) flags_.assign(size, 0);
+  flags_.resize(size, 0);
   changed_.clear();
-  flags_.assign(size, 0);
   const auto take = [&](std::size_t i) {
     if (flags_[i] != 0) return;
     flags_[i] = 1;
     changed_.push_back(BoxId(i));
     now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
+    if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
   };
-  if (rebuild) {
+  if (rebuild || frame.filters.empty() != filters_before_.empty()) {
     for (std::size_t i = 0; i < size; ++i) take(i);
   } else {
     for (const BoxId id : frame.changed) take(index(id));
     for (std::size_t i = std::min(known, boxes.size()); i < size; ++i) take(i);
   }
+}
 
-  begun_.clear();
-  ended_.clear();
-  PairCollector begun_pairs(begun_);
-  PairCollector ended_pairs(ended_);
-  statistics_.reset();
-  update_valid({before_, now_, changed_, flags_, rebuild}, begun_pairs, ended_pairs);
-  begun_pairs.flush();
-  ended_pairs.flush();
-  try {
-    deliver(begun_, begun);
-    deliver(ended_, ended);
-  } catch (...) {
-    begun.discard();
-    ended.discard();
-    throw;
+/// Sets toggled_.
+template <int D, typename Real>
+void PairTracker<D, Real>::take_ignored(const Frame<D, Real>& frame, bool rebuild) {
+  const auto is_ignored = [&frame](Pair pair) {
+    return frame.ignored != nullptr && frame.ignored->contains(pair);
+  };
+  toggled_.clear();
+  const auto take = [&](Pair pair) {
+    if (is_ignored(pair) != ignored_.contains(pair)) toggled_.push_back(pair);
+  };
+  if (rebuild || (frame.ignored == nullptr && !ignored_.empty())) {
+    ignored_.for_each(take);
+    if (frame.ignored != nullptr) frame.ignored->for_each(take);
+  } else {
+    for (const Pair pair : frame.ignored_changed) take(pair);
   }
+  core::sort_unique(toggled_, sorting_);
+}
 
-  before_.resize(boxes.size());
-  now_.resize(boxes.size());
+/// Takes from the events those of pairs that are ignored, and adds those of pairs that became it or were it.
+template <int D, typename Real>
+void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
+  if (toggled_.empty() && ignored_.empty()) return;
+  const auto is_dropped = [this](Pair pair) {
+    return ignored_.contains(pair) || std::ranges::binary_search(toggled_, pair);
+  };
+  std::erase_if(begun_, is_dropped);
+  std::erase_if(ended_, is_dropped);
+  for (const Pair pair : toggled_) {
+    if (index(pair.second) >= change.now.size()) continue;
+    if (ignored_.contains(pair)) {
+      if (change.holds(pair.first, pair.second)) begun_.push_back(pair);
+    } else {
+      if (change.held(pair.first, pair.second)) ended_.push_back(pair);
+    }
+  }
+}
+
+/// Makes this frame the one before.
+template <int D, typename Real>
+void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
+  const std::size_t size = frame.boxes.size();
   for (const BoxId id : changed_) {
-    if (index(id) < boxes.size()) before_[index(id)] = now_[index(id)];
+    before_[index(id)] = now_[index(id)];
+    flags_[index(id)] = 0;
   }
-  dirty_ = false;
+  if (!filters_now_.empty()) {
+    for (const BoxId id : changed_) filters_before_[index(id)] = filters_now_[index(id)];
+    filters_before_.resize(frame.filters.size());
+    filters_now_.resize(frame.filters.size());
+  }
+  before_.resize(size);
+  now_.resize(size);
+  flags_.resize(size);
+  for (const Pair pair : toggled_) {
+    if (!ignored_.insert(pair)) ignored_.erase(pair);
+  }
 }
 
 template <int D, typename Real>
-DiffTracker<D, Real>::DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder) : finder_(std::move(finder)) {
-  if (!finder_) throw std::invalid_argument("DiffTracker was given a null finder; expected a finder");
-  this->set_workers(finder_->workers());
+std::size_t PairTracker<D, Real>::bytes() const noexcept {
+  return (before_.capacity() + now_.capacity()) * sizeof(Box<D, Real>) +
+         (filters_before_.capacity() + filters_now_.capacity()) * sizeof(Filter) +
+         changed_.capacity() * sizeof(BoxId) + flags_.capacity() +
+         (begun_.capacity() + ended_.capacity() + sorting_.capacity() + toggled_.capacity()) * sizeof(Pair) +
+         ignored_.size() * ignored_pair_bytes + algorithm_bytes();
 }
 
 template <int D, typename Real>
-void DiffTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  const auto find = [this](std::span<const Box<D, Real>> boxes, std::vector<Pair>& pairs) {
-    pairs.clear();
-    PairCollector collector(pairs);
-    finder_->find(boxes, collector);
-  };
-  // Events need no search in the stored pairs: a pair of this frame began unless its boxes overlapped before,
-  // and one of the frame before ended unless they overlap now; and neither can be said of two boxes that
-  // rested.
-  const auto differs = [&change](Pair pair, std::span<const Box<D, Real>> boxes) {
-    const std::uint32_t a = index(pair.first);
-    const std::uint32_t b = index(pair.second);
-    if ((change.flags[a] | change.flags[b]) == 0) return false;
-    return !is_present(boxes[a]) || !is_present(boxes[b]) || !overlap(boxes[a], boxes[b]);
-  };
-  if (change.rebuild) find(change.before, pairs_);
-  find(change.now, found_);
-  for (const Pair pair : found_) {
-    if (differs(pair, change.before)) begun.add(pair.first, pair.second);
-  }
-  for (const Pair pair : pairs_) {
-    if (differs(pair, change.now)) ended.add(pair.first, pair.second);
-  }
-  std::swap(pairs_, found_);
-  this->count(finder_->statistics());
+void PairTracker<D, Real>::update_with(PairTracker& other, const Change<D, Real>& change, PairSink& begun,
+                                       PairSink& ended) {
+  other.set_workers(workers_);
+  other.statistics_.reset();
+  other.update_valid(change, begun, ended);
+  statistics_ = other.statistics_;
 }
 
 template class PairTracker<2, float>;
 template class PairTracker<2, double>;
 template class PairTracker<3, float>;
 template class PairTracker<3, double>;
-template class DiffTracker<2, float>;
-template class DiffTracker<2, double>;
-template class DiffTracker<3, float>;
-template class DiffTracker<3, double>;
 
 }  // namespace broadside

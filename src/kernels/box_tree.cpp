@@ -155,8 +155,10 @@ class Join {
       const std::size_t other = queries_[i] / fan_out * fan_out;
       const Query<D> query(tree_.levels[0], place);
       const NumberVector id = all_lanes(index(tree_.id[place]));
-      for (std::size_t at = other; at < other + fan_out; at += lanes) pairs_.room();
-      pairs_.write_of(id, ids(at), query.touching(tree_.levels[0], at));
+      for (std::size_t at = other; at < other + fan_out; at += lanes) {
+        pairs_.room();
+        pairs_.write_of(id, ids(at), query.touching(tree_.levels[0], at));
+      }
     }
     tests_ += count * fan_out;
   }

@@ -1,0 +1,14 @@
+// Pairs sorted by their ids.
+#pragma once
+
+#include <vector>
+
+#include "broadside/pair.hpp"
+
+namespace broadside::core {
+
+/// Sorts `pairs` and drops those that are there twice. `scratch` is memory to be kept between calls. O(n)
+/// where there are many: a radix sort over the bits in which they differ.
+void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
+
+}  // namespace broadside::core
