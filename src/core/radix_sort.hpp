@@ -36,6 +36,12 @@ class RadixSort {
   /// The same by several lanes.
   std::span<const KeyedPlace> sort(Parallel& parallel);
 
+  /// The bytes held.
+  std::size_t bytes() const noexcept {
+    return (places_.capacity() + other_.capacity()) * sizeof(KeyedPlace) +
+           counts_.capacity() * sizeof(std::uint32_t);
+  }
+
  private:
   void sort_by_ranges(Parallel& parallel, int digit);
 
