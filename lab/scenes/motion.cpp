@@ -126,41 +126,65 @@ std::vector<Mover<D>> draw_movers(std::span<const Box<D>> boxes, const SceneRequ
 }  // namespace
 
 template <int D>
-History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
+struct MovingBoxes<D>::State {
+  SceneRequest request;
+  bool whole_steps;
+  std::size_t boxes;
+  Random random;
+  std::vector<Mover<D>> movers;
+  std::vector<Box<D>> last;
+};
+
+template <int D>
+MovingBoxes<D>::MovingBoxes(std::span<const Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
   check_range("moving", request.moving, 1);
   check_range("teleport", request.teleport, 1);
   check_range("drift", request.drift, std::numeric_limits<double>::max());
-
   // Not the stream that the boxes came from: their places must not say where they go.
-  Random random(request.seed ^ 0x6d6f74696f6e0000U);
-  std::vector<Mover<D>> movers = draw_movers<D>(boxes, request, whole_steps, random);
-  std::vector<Box<D>> last;
-  last.reserve(movers.size());
-  for (const Mover<D>& mover : movers) last.push_back(mover.first);
+  state_ = std::make_unique<State>(
+      State{request, whole_steps, boxes.size(), Random(request.seed ^ 0x6d6f74696f6e0000U), {}, {}});
+  state_->movers = draw_movers<D>(boxes, request, whole_steps, state_->random);
+  state_->last.reserve(state_->movers.size());
+  for (const Mover<D>& mover : state_->movers) state_->last.push_back(mover.first);
+}
 
+template <int D>
+MovingBoxes<D>::~MovingBoxes() = default;
+
+template <int D>
+Step<D> MovingBoxes<D>::next() {
+  State& state = *state_;
+  Step<D> step{state.boxes, {}, {}};
+  step.changed.reserve(state.movers.size());
+  step.boxes.reserve(state.movers.size());
+  for (std::size_t i = 0; i < state.movers.size(); ++i) {
+    const bool jumps = state.random.chance(state.request.teleport);
+    for (Way& way : state.movers[i].ways) {
+      if (jumps)
+        way.jump(state.random, state.whole_steps);
+      else
+        way.advance();
+    }
+    const Box<D> box = state.movers[i].box();
+    if (box == state.last[i]) continue;
+    state.last[i] = box;
+    step.changed.push_back(state.movers[i].id);
+    step.boxes.push_back(box);
+  }
+  return step;
+}
+
+template <int D>
+History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
+  MovingBoxes<D> moving(boxes, request, whole_steps);
   History<D> history{std::move(boxes), {}};
   history.steps.reserve(request.frames);
-  for (std::size_t frame = 0; frame < request.frames; ++frame) {
-    Step<D> step{history.boxes.size(), {}, {}};
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-      const bool jumps = random.chance(request.teleport);
-      for (Way& way : movers[i].ways) {
-        if (jumps)
-          way.jump(random, whole_steps);
-        else
-          way.advance();
-      }
-      const Box<D> box = movers[i].box();
-      if (box == last[i]) continue;
-      last[i] = box;
-      step.changed.push_back(movers[i].id);
-      step.boxes.push_back(box);
-    }
-    history.steps.push_back(std::move(step));
-  }
+  for (std::size_t frame = 0; frame < request.frames; ++frame) history.steps.push_back(moving.next());
   return history;
 }
 
+template class MovingBoxes<2>;
+template class MovingBoxes<3>;
 template History<2> set_moving(std::vector<Box<2>>, const SceneRequest&, bool);
 template History<3> set_moving(std::vector<Box<3>>, const SceneRequest&, bool);
 

@@ -1,23 +1,44 @@
 // Motion: still boxes set moving, and random histories that do everything a history may do.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 
-/// The history of `boxes` over request.frames steps, in which a fraction request.moving of them, drawn once,
-/// are movers. Each goes in a direction of its own, request.drift times its mean extent a frame (the mean of
-/// all boxes where it is a point), and turns back at the bounds of `boxes`, so that none ever leaves them;
-/// in each frame the fraction request.teleport of the movers, drawn anew, jumps anywhere within the bounds
-/// instead. Sizes stay as they are but for rounding. Boxes with an infinite extent, and absent ones, do not
-/// move.
+/// Boxes set moving, one step at a time: for motion that is too long to be kept.
+///
+/// A fraction request.moving of the boxes, drawn once, are movers. Each goes in a direction of its own,
+/// request.drift times its mean extent a frame (the mean of all boxes where it is a point), and turns back at
+/// the bounds of `boxes`, so that none ever leaves them; in each frame the fraction request.teleport of the
+/// movers, drawn anew, jumps anywhere within the bounds instead. Sizes stay as they are but for rounding.
+/// Boxes with an infinite extent, and absent ones, do not move.
 ///
 /// With `whole_steps`, a mover goes a whole number a frame on each axis, at least 1 on one, so that integers
-/// remain integers. Throws InvalidSpec if a fraction is not from 0 to 1, or the drift is negative or not
-/// finite. Cost O(frames x movers) in time and memory.
+/// remain integers. Memory O(movers), a step costs O(movers).
+template <int D>
+class MovingBoxes {
+ public:
+  /// Throws InvalidSpec if a fraction is not from 0 to 1, or the drift is negative or not finite.
+  MovingBoxes(std::span<const Box<D>> boxes, const SceneRequest& request, bool whole_steps);
+  ~MovingBoxes();
+  MovingBoxes(const MovingBoxes&) = delete;
+  MovingBoxes& operator=(const MovingBoxes&) = delete;
+
+  /// The step to the next frame: the movers that are elsewhere than before.
+  Step<D> next();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The first request.frames steps of MovingBoxes, kept. Cost O(frames x movers) in time and memory.
 template <int D>
 History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps);
 

@@ -1,0 +1,79 @@
+// Motion, claim by claim: motion PART... [options], each part a table. `motion --help` lists them.
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/motion/parts.hpp"
+
+namespace broadside::bench {
+namespace {
+
+struct Part {
+  std::string name;
+  std::string what;
+  void (*run)(const Wishes&);
+};
+
+const std::vector<Part>& parts() {
+  static const std::vector<Part> list = {
+      {"peers", "auto against peers that follow motion: 1, 10, 50, 100 % of 100,000 boxes", against_peers},
+      {"ways", "auto over the better of rebuilding and following, 0.1 to 100 % moving", against_ways},
+      {"one", "one mover among 1,000,000 boxes", one_mover},
+  };
+  return list;
+}
+
+int run(int count, char** arguments) {
+  CLI::App program("Prints a table for each claim about motion.");
+  std::vector<std::string> wanted;
+  Wishes wishes;
+  std::string listing;
+  std::vector<std::string> names;
+  for (const Part& part : parts()) {
+    listing += fmt::format("\n  {:<10} {}", part.name, part.what);
+    names.push_back(part.name);
+  }
+  program.footer("Parts, of which all are run unless some are named:" + listing);
+  program.add_option("parts", wanted, "Parts to run")->check(CLI::IsMember(names));
+  program.add_option("--algorithms", wishes.algorithms,
+                     "Instead of a part's own; all others are compared with the first");
+  program.add_option("--scenes", wishes.scenes, "Scenes instead of uniform")->delimiter(',');
+  program.add_option("--dimension", wishes.dimensions, "2, 3 or 2,3")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 3));
+  program.add_option("-n", wishes.boxes, "Boxes, instead of a part's own number");
+  program.add_option("--moving", wishes.moving, "Fractions that move")->delimiter(',');
+  program.add_option("--drift", wishes.drift, "What a mover goes in a frame, in boxes")
+      ->capture_default_str();
+  program.add_option("--frames", wishes.frames, "Frames after the first");
+  program.add_option("--rounds", wishes.rounds,
+                     "How often the motion is followed anew; of each frame the least time counts");
+  program.add_option("--turn", wishes.in_a_row, "Frames in a row before it is the next one's turn")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  program.add_option("--budget", wishes.budget_seconds, "Seconds for all frames of an algorithm")
+      ->capture_default_str();
+  program.add_option("--seed", wishes.seed, "Of the boxes and their motion")->capture_default_str();
+  CLI11_PARSE(program, count, arguments);
+  for (const Part& part : parts()) {
+    if (wanted.empty() || std::ranges::find(wanted, part.name) != wanted.end()) part.run(wishes);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** arguments) {
+  try {
+    return broadside::bench::run(count, arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "motion: {}\n", error.what());
+    return 1;
+  }
+}

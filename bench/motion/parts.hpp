@@ -1,0 +1,54 @@
+// The parts of the motion benchmark: each prints a table about one claim.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/motion/race.hpp"
+
+namespace broadside::bench {
+
+/// What the command line asks for; 0, or a list that is empty, stands for a part's own standard.
+struct Wishes {
+  std::string algorithms{};  ///< as Catalogue::select reads it
+  std::vector<std::string> scenes{};
+  std::vector<int> dimensions = {2, 3};
+  std::size_t boxes = 0;
+  std::vector<double> moving{};
+  double drift = 0.2;
+  std::uint64_t seed = 1;
+  std::size_t frames = 0;
+  std::size_t rounds = 0;
+  std::size_t in_a_row = Turns{}.in_a_row;
+  double budget_seconds = Turns{}.budget_seconds;
+
+  Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;
+  std::string algorithms_or(const std::string& standard) const {
+    return algorithms.empty() ? standard : algorithms;
+  }
+  std::size_t boxes_or(std::size_t standard) const { return boxes > 0 ? boxes : standard; }
+};
+
+/// The motion of a scene, its boxes made (or recorded) once for all rounds.
+template <int D>
+StartMotion<D> motion_of(const std::string& scene, const lab::SceneRequest& request);
+
+/// `auto` against the peers that follow motion, at 1, 10, 50 and 100 % moving.
+void against_peers(const Wishes& wishes);
+
+/// `auto` over the better of rebuilding and following, at ten fractions from 0.1 to 100 % moving.
+void against_ways(const Wishes& wishes);
+
+/// One mover among a million boxes.
+void one_mover(const Wishes& wishes);
+
+/// Prints what ran: the scene, its boxes, the machine.
+void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);
+
+/// Prints a line for each runner: times, a mover's share, and how many times the first one's.
+void print_table(const Outcome& outcome);
+
+}  // namespace broadside::bench

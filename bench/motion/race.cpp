@@ -1,0 +1,175 @@
+// Trackers over the same motion, in turns, their events compared.
+#include "bench/motion/race.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/contest.hpp"
+#include "lab/measure/estimate.hpp"
+#include "lab/measure/expected_events.hpp"
+#include "lab/measure/reference.hpp"
+#include "lab/numbers.hpp"
+
+namespace broadside::bench {
+namespace {
+
+constexpr std::size_t fewest_frames = 5;
+
+/// What a frame's events were by the first tracker that told them.
+struct Told {
+  std::uint64_t hash;
+  std::string by;
+};
+
+template <int D>
+struct Seat {
+  const lab::Contender* contender;
+  Runner* runner;
+  std::unique_ptr<PairTracker<D>> tracker{};  // of this round
+  std::vector<Box<D>> boxes{};                // its own, as an engine's are
+  double spent_ms = 0;
+  bool done = false;
+};
+
+template <int D>
+class Race {
+ public:
+  Race(std::span<const lab::Contender> contenders, const Turns& turns) : turns_(turns) {
+    for (const lab::Contender& contender : contenders) outcome_.runners.push_back({contender.spec.text()});
+    for (std::size_t i = 0; i < contenders.size(); ++i)
+      seats_.push_back({&contenders[i], &outcome_.runners[i]});
+  }
+
+  Outcome run(const StartMotion<D>& start) {
+    for (std::size_t round = 0; round < turns_.rounds; ++round) {
+      Motion<D> motion = start();
+      if (round == 0) let_in(motion.boxes);
+      follow(motion, round);
+    }
+    for (Seat<D>& seat : seats_) {
+      if (seat.tracker) seat.runner->explanation = seat.tracker->explanation();
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  void let_in(std::span<const Box<D>> boxes) {
+    lab::Extremes extremes;
+    extremes.take<D>(boxes);
+    for (Seat<D>& seat : seats_) {
+      std::string& why = seat.runner->left_out;
+      why = lab::unfit(*seat.contender, D, extremes);
+      // Some take quadratic time to put boxes in one by one.
+      const auto seconds_for = [&](std::size_t count) {
+        std::vector<Box<D>> some;
+        for (const std::size_t i : lab::sample_of(boxes.size(), count)) some.push_back(boxes[i]);
+        make(seat);
+        return update(seat, {some, {}}) / 1e3;
+      };
+      if (why.empty()) {
+        if (const auto estimate = lab::estimate_above(turns_.budget_seconds, boxes.size(), seconds_for))
+          why = "first frame " + lab::text(*estimate);
+      }
+      seat.done = !why.empty();
+    }
+  }
+
+  void follow(Motion<D>& motion, std::size_t round) {
+    for (const std::size_t place : lab::turns(seats_.size(), round)) {
+      Seat<D>& seat = seats_[place];
+      if (seat.done) continue;
+      make(seat);
+      seat.boxes = motion.boxes;
+      const double milliseconds = update(seat, {seat.boxes, {}});
+      compare(seat, 0);
+      double& least = seat.runner->build_ms;
+      least = least > 0 ? std::min(least, milliseconds) : milliseconds;
+    }
+    for (std::size_t frame = 0; frame < turns_.frames; frame += turns_.in_a_row) {
+      std::vector<lab::Step<D>> steps;
+      for (std::size_t i = frame; i < std::min(turns_.frames, frame + turns_.in_a_row); ++i)
+        steps.push_back(motion.next());
+      if (round == 0) {
+        for (const lab::Step<D>& step : steps) outcome_.movers.push_back(step.changed.size());
+      }
+      for (const std::size_t place : lab::turns(seats_.size(), round * turns_.frames + frame)) {
+        for (std::size_t i = 0; i < steps.size(); ++i) take(seats_[place], steps[i], frame + i);
+      }
+    }
+  }
+
+  void take(Seat<D>& seat, const lab::Step<D>& step, std::size_t frame) {
+    if (seat.done) return;
+    lab::apply(step, seat.boxes);
+    const double milliseconds = update(seat, {seat.boxes, step.changed});
+    compare(seat, frame + 1);
+    seat.spent_ms += milliseconds;
+    std::vector<double>& frames = seat.runner->frames_ms;
+    if (frame < frames.size())
+      frames[frame] = std::min(frames[frame], milliseconds);
+    else
+      frames.push_back(milliseconds);
+    seat.done = frames.size() >= std::min(fewest_frames, turns_.frames) &&
+                seat.spent_ms > turns_.budget_seconds * 1e3;
+  }
+
+  static void make(Seat<D>& seat) {
+    seat.tracker.reset();
+    seat.tracker = make_tracker<D>(*seat.contender->algorithm, seat.contender->spec);
+  }
+
+  double update(Seat<D>& seat, const Frame<D>& frame) {
+    events_.begun.clear();
+    events_.ended.clear();
+    PairCollector begun(events_.begun);
+    PairCollector ended(events_.ended);
+    const lab::Stopwatch watch;
+    seat.tracker->update(frame, begun, ended);
+    return watch.milliseconds();
+  }
+
+  void compare(const Seat<D>& seat, std::size_t frame) {
+    lab::EventHasher hasher;
+    hasher.add(events_);
+    if (frame == told_.size()) {
+      told_.push_back({hasher.hash(), seat.runner->algorithm});
+      if (frame > 0) outcome_.events += events_.begun.size() + events_.ended.size();
+    }
+    if (told_[frame].hash == hasher.hash()) return;
+    throw std::runtime_error(fmt::format(
+        "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
+        seat.runner->algorithm, lab::counted(events_.begun.size(), "pair as begun", "pairs as begun"),
+        events_.ended.size(), told_[frame].by));
+  }
+
+  const Turns& turns_;
+  Outcome outcome_;
+  std::vector<Seat<D>> seats_;
+  std::vector<Told> told_;  // by frame, the first one too
+  lab::Events events_;      // of the last update; its memory serves all
+};
+
+}  // namespace
+
+double Outcome::mean_movers() const {
+  if (movers.empty()) return 0;
+  return static_cast<double>(std::accumulate(movers.begin(), movers.end(), std::size_t{0})) /
+         static_cast<double>(movers.size());
+}
+
+template <int D>
+Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns) {
+  return Race<D>(contenders, turns).run(start);
+}
+
+template Outcome race(std::span<const lab::Contender>, const StartMotion<2>&, const Turns&);
+template Outcome race(std::span<const lab::Contender>, const StartMotion<3>&, const Turns&);
+
+}  // namespace broadside::bench

@@ -1,0 +1,60 @@
+// Trackers over the same motion, in turns, their events compared.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/catalogue.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::bench {
+
+/// Boxes, and their steps one after the other.
+template <int D>
+struct Motion {
+  std::vector<Box<D>> boxes;
+  std::function<lab::Step<D>()> next;
+};
+
+/// Starts the same motion from its beginning.
+template <int D>
+using StartMotion = std::function<Motion<D>()>;
+
+/// How trackers take turns.
+struct Turns {
+  std::size_t frames = 20;     ///< after the first
+  std::size_t rounds = 3;      ///< how often the motion is followed anew; the least time of a frame counts
+  std::size_t in_a_row = 5;    ///< frames that a tracker takes before it is the next one's turn
+  double budget_seconds = 20;  ///< for a tracker's frames; from then on it takes five frames in all
+};
+
+/// A tracker in a race.
+struct Runner {
+  std::string algorithm;            ///< its spec
+  std::string left_out{};           ///< why it was not let in; empty if it was
+  double build_ms = 0;              ///< the first frame, in which everything is new
+  std::vector<double> frames_ms{};  ///< each frame after it
+  std::string explanation{};        ///< of what it chose for the last frame, where it chooses
+
+  bool ran() const { return !frames_ms.empty(); }
+};
+
+/// What a race came to.
+struct Outcome {
+  std::vector<Runner> runners;        ///< in the order of the contenders
+  std::vector<std::size_t> movers{};  ///< boxes that changed in each frame
+  std::uint64_t events = 0;           ///< begun and ended in all frames but the first
+
+  double mean_movers() const;
+};
+
+/// Lets the contenders follow the motion. Between two frames nothing of theirs is timed: what is timed is an
+/// update() with its events. Throws std::runtime_error if two disagree on the events of a frame.
+template <int D>
+Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns);
+
+}  // namespace broadside::bench
