@@ -34,18 +34,19 @@ constexpr bool accepts(const Filter& a, const Filter& b) noexcept {
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
 }
 
-/// A set of pairs that never count, whatever their boxes and filters: bodies that a joint connects.
+/// A set of pairs that never count, whatever their boxes and filters: bodies that a joint connects. Each may
+/// be named with its boxes in either order.
 ///
 /// Costs: O(1) each, and some 40 bytes a pair. One thread at a time; several may read.
 class IgnoredPairs {
  public:
-  /// Whether the pair was not ignored before.
-  bool insert(Pair pair) { return keys_.insert(key(pair)).second; }
+  /// Whether the pair was not ignored before. A box and itself are no pair, and nothing is inserted.
+  bool insert(Pair pair) { return pair.first != pair.second && keys_.insert(ordered_key(pair)).second; }
 
   /// Whether the pair was ignored before.
-  bool erase(Pair pair) { return keys_.erase(key(pair)) != 0; }
+  bool erase(Pair pair) { return keys_.erase(ordered_key(pair)) != 0; }
 
-  bool contains(Pair pair) const { return keys_.contains(key(pair)); }
+  bool contains(Pair pair) const { return keys_.contains(ordered_key(pair)); }
   bool empty() const noexcept { return keys_.empty(); }
   std::size_t size() const noexcept { return keys_.size(); }
   void clear() noexcept { keys_.clear(); }
@@ -58,6 +59,10 @@ class IgnoredPairs {
   }
 
  private:
+  static std::uint64_t ordered_key(Pair pair) noexcept {
+    return key(pair.first < pair.second ? pair : Pair{pair.second, pair.first});
+  }
+
   std::unordered_set<std::uint64_t> keys_;
 };
 

@@ -37,7 +37,8 @@ struct Frame {
   /// The pairs that do not count, or null for none.
   const IgnoredPairs* ignored = nullptr;
 
-  /// Those that were put into `ignored` or taken from it since the frame before, as `changed` lists boxes.
+  /// Those that were put into `ignored` or taken from it since the frame before, as `changed` lists boxes. Not
+  /// needed where the frame before had no set.
   std::span<const Pair> ignored_changed{};
 };
 
@@ -148,6 +149,7 @@ class PairTracker {
   std::vector<Filter> filters_before_;  // both empty until there are filters
   std::vector<Filter> filters_now_;
   IgnoredPairs ignored_;       // those of the last whole update
+  bool had_ignored_ = false;   // whether it was given a set
   std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted
   std::vector<BoxId> changed_;
   std::vector<std::uint8_t> flags_;

@@ -84,9 +84,10 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t known = before_.size();
   const std::size_t size = std::max(boxes.size(), known);
+  const bool had_filters = !filters_before_.empty();
   before_.resize(size, absent_box<D, Real>());
   now_.resize(size, absent_box<D, Real>());
-  if (!frame.filters.empty() || !filters_before_.empty()) {
+  if (!frame.filters.empty() || had_filters) {
     filters_before_.resize(size);
     filters_now_.resize(size);
   }
@@ -101,7 +102,7 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
     now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
     if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
   };
-  if (rebuild || frame.filters.empty() != filters_before_.empty()) {
+  if (rebuild || frame.filters.empty() == had_filters) {
     for (std::size_t i = 0; i < size; ++i) take(i);
   } else {
     for (const BoxId id : frame.changed) take(index(id));
@@ -117,9 +118,10 @@ void PairTracker<D, Real>::take_ignored(const Frame<D, Real>& frame, bool rebuil
   };
   toggled_.clear();
   const auto take = [&](Pair pair) {
+    if (pair.second < pair.first) std::swap(pair.first, pair.second);
     if (is_ignored(pair) != ignored_.contains(pair)) toggled_.push_back(pair);
   };
-  if (rebuild || (frame.ignored == nullptr && !ignored_.empty())) {
+  if (rebuild || (frame.ignored != nullptr) != had_ignored_) {
     ignored_.for_each(take);
     if (frame.ignored != nullptr) frame.ignored->for_each(take);
   } else {
@@ -166,6 +168,7 @@ void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
   for (const Pair pair : toggled_) {
     if (!ignored_.insert(pair)) ignored_.erase(pair);
   }
+  had_ignored_ = frame.ignored != nullptr;
 }
 
 template <int D, typename Real>

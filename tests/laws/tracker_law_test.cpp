@@ -6,6 +6,7 @@
 #include "histories.hpp"
 #include "law_case.hpp"
 #include "smallest_failure.hpp"
+#include "whole_frames.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -16,6 +17,16 @@ TEST_P(TrackerLaw, GivesEachEventOnce) {
   in_dimension([&]<int D>() {
     for (const NamedHistory<D>& named : hard_histories<D>(algorithm()))
       EXPECT_TRUE(tracks_the_pairs<D>(algorithm(), spec(), named.history)) << named.name;
+  });
+}
+
+TEST_P(TrackerLaw, GivesEachEventOnceWithFiltersAndIgnoredPairs) {
+  in_dimension([&]<int D>() {
+    std::uint64_t seed = 0;
+    for (const NamedHistory<D>& named : hard_histories<D>(algorithm())) {
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(named.history, ++seed)))
+          << named.name;
+    }
   });
 }
 

@@ -1,0 +1,60 @@
+// Frames with all that a tracker can be given: boxes, filters, ignored pairs, sinks that fail; and what it
+// must answer, by definition.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair_tracker.hpp"
+
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::laws {
+
+inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+
+/// A frame whole, not what changed in it: so any frame can be left out and the rest still is a history.
+template <int D, typename Real = float>
+struct WholeFrame {
+  std::vector<Box<D, Real>> boxes;
+  std::vector<Filter> filters{};               ///< one for each box, or none
+  std::optional<std::vector<Pair>> ignored{};  ///< sorted; nothing: a null pointer
+  std::vector<BoxId> listed{};        ///< places said to change besides those that do, within the boxes
+  std::size_t begun_room = no_limit;  ///< how many pairs the sinks take before they throw
+  std::size_t ended_room = no_limit;
+};
+
+/// The pairs that hold in a frame, sorted: by definition and nothing else.
+template <int D, typename Real>
+std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame);
+
+/// Hands the frames to the tracker, one after the other, and says what differs first from the events that
+/// lead from each whole update's pairs to the next one's; empty if nothing does. Throws what the tracker
+/// throws, but for what sinks threw.
+template <int D, typename Real>
+std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames);
+
+/// The history's frames.
+template <int D>
+std::vector<WholeFrame<D>> whole_frames(const lab::History<D>& history);
+
+/// The history's frames with filters and ignored pairs that come, change and go, with and without changes of
+/// boxes, and sinks of which some fail.
+template <int D>
+std::vector<WholeFrame<D>> with_filters(const lab::History<D>& history, std::uint64_t seed);
+
+/// Success if a tracker made from `spec` gives exactly the events of `frames`; otherwise what differs first,
+/// for few frames and boxes.
+template <int D>
+testing::AssertionResult tracks_the_frames(const Algorithm& algorithm, const Spec& spec,
+                                           std::vector<WholeFrame<D>> frames);
+
+}  // namespace broadside::laws

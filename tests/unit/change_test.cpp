@@ -1,0 +1,281 @@
+// Frames with filters and ignored pairs as a tracker's algorithm sees them, and what a tracker makes of what
+// it writes.
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/sinks.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using Ids = std::vector<BoxId>;
+using Pairs = std::vector<Pair>;
+
+Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
+
+Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
+
+struct Events {
+  Pairs begun;
+  Pairs ended;
+
+  friend bool operator==(const Events&, const Events&) = default;
+};
+
+Events update(PairTracker<2>& tracker, const Frame<2>& frame) {
+  Events events;
+  PairCollector begun(events.begun);
+  PairCollector ended(events.ended);
+  tracker.update(frame, begun, ended);
+  return events;
+}
+
+/// Calls a function with the change that an algorithm gets to see.
+class StubTracker final : public PairTracker<2> {
+ public:
+  using Update = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
+
+  explicit StubTracker(Update update) : update_(std::move(update)) {}
+
+ private:
+  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    update_(change, begun, ended);
+  }
+
+  Update update_;
+};
+
+/// Compares all boxes, and checks that what it is shown holds together: places that changed have a flag and
+/// others have none, and whatever did not change is the same in both frames.
+class CheckingTracker final : public PairTracker<2> {
+ public:
+  std::size_t changed() const { return changed_; }
+  bool rebuilt() const { return rebuilt_; }
+
+ private:
+  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    const std::size_t size = change.now.size();
+    EXPECT_EQ(change.before.size(), size);
+    EXPECT_EQ(change.flags.size(), size);
+    EXPECT_EQ(change.filters_before.size(), change.filters_now.size());
+    EXPECT_TRUE(change.filters_now.empty() || change.filters_now.size() == size);
+    std::vector<std::uint8_t> flags(size, 0);
+    for (const BoxId id : change.changed) {
+      EXPECT_EQ(flags.at(index(id)), 0) << "a place is listed twice";
+      flags[index(id)] = 1;
+    }
+    EXPECT_TRUE(std::equal(flags.begin(), flags.end(), change.flags.begin()));
+    for (std::size_t i = 0; i < size; ++i) {
+      if (flags[i] != 0) continue;
+      EXPECT_EQ(change.before[i], change.now[i]);
+      EXPECT_TRUE(change.filters_now.empty() || change.filters_before[i] == change.filters_now[i]);
+    }
+    changed_ = change.changed.size();
+    rebuilt_ = change.rebuild;
+    for (std::uint32_t a = 0; a < size; ++a) {
+      for (std::uint32_t b = a + 1; b < size; ++b) {
+        change.report(BoxId{a}, BoxId{b}, begun, ended);
+        change.report(BoxId{b}, BoxId{a}, begun, ended);
+      }
+    }
+  }
+
+  std::size_t changed_ = 0;
+  bool rebuilt_ = false;
+};
+
+/// Takes nothing.
+class FailingSink final : public PairSink {
+ private:
+  void consume(std::span<const Pair>) override { throw std::runtime_error("full"); }
+};
+
+TEST(Filters, AcceptByBitsUnlessGroupsDecide) {
+  const Filter standard;
+  EXPECT_TRUE(accepts(standard, standard));
+  const Filter a{.category = 2, .mask = 4};
+  const Filter b{.category = 4, .mask = 2};
+  const Filter c{.category = 4, .mask = 1};
+  EXPECT_TRUE(accepts(a, b));
+  EXPECT_FALSE(accepts(a, c)) << "each must want the other";
+  EXPECT_FALSE(accepts(c, a));
+  const auto of_group = [](Filter filter, std::int32_t group) {
+    filter.group = group;
+    return filter;
+  };
+  EXPECT_TRUE(accepts(of_group(a, 3), of_group(c, 3)));
+  EXPECT_FALSE(accepts(of_group(a, -3), of_group(b, -3)));
+  EXPECT_TRUE(accepts(of_group(a, -3), of_group(b, 3)));
+  EXPECT_FALSE(accepts(of_group(a, 3), of_group(c, 4)));
+}
+
+TEST(Filters, StaticBoxesNeverMeetWhateverTheirGroup) {
+  const Filter still{.group = 1, .is_static = true};
+  const Filter moving{.group = 1};
+  EXPECT_FALSE(accepts(still, still));
+  EXPECT_TRUE(accepts(still, moving));
+  EXPECT_TRUE(accepts(moving, still));
+}
+
+TEST(IgnoredPairs, TakePairsInEitherOrderAndNoBoxWithItself) {
+  IgnoredPairs ignored;
+  EXPECT_TRUE(ignored.insert(pair(5, 2)));
+  EXPECT_FALSE(ignored.insert(pair(2, 5)));
+  EXPECT_TRUE(ignored.contains(pair(2, 5)));
+  EXPECT_TRUE(ignored.contains(pair(5, 2)));
+  EXPECT_FALSE(ignored.insert(pair(3, 3)));
+  EXPECT_FALSE(ignored.contains(pair(3, 3)));
+  EXPECT_EQ(ignored.size(), 1u);
+  ignored.for_each([](Pair seen) { EXPECT_EQ(seen, pair(2, 5)); });
+  EXPECT_TRUE(ignored.erase(pair(5, 2)));
+  EXPECT_TRUE(ignored.empty());
+}
+
+TEST(Change, ReportsAPairToTheSinkItBelongsTo) {
+  // Begins, ends, rests, never is; and by filters alone: begins and ends.
+  StubTracker tracker([](const Change<2>& change, PairSink& begun, PairSink& ended) {
+    for (std::uint32_t i = 0; i < change.now.size(); i += 2)
+      change.report(BoxId{i + 1}, BoxId{i}, begun, ended);
+  });
+  const Filter none{.mask = 0};
+  const std::vector<Box2> before = {at(0), at(9), at(0), at(0), at(0), at(1),
+                                    at(0), at(3), at(0), at(0), at(0), at(0)};
+  const std::vector<Box2> now = {at(0), at(1), at(0), at(3), at(0), at(0),
+                                 at(0), at(4), at(0), at(0), at(0), at(0)};
+  std::vector<Filter> filters_before(12);
+  std::vector<Filter> filters_now(12);
+  filters_before[9] = none;
+  filters_now[10] = none;
+  Ids all;
+  for (std::uint32_t i = 0; i < 12; ++i) all.push_back(BoxId{i});
+  update(tracker, {before, {}, filters_before});
+  EXPECT_EQ(update(tracker, {now, all, filters_now}),
+            (Events{.begun = {pair(0, 1), pair(8, 9)}, .ended = {pair(2, 3), pair(10, 11)}}));
+}
+
+TEST(Change, ShowsWhatItsListsSayInEveryFrame) {
+  CheckingTracker tracker;
+  std::vector<Box2> boxes = {at(0), at(0.5f), at(1), at(9)};
+  const Pairs all_three = {pair(0, 1), pair(0, 2), pair(1, 2)};
+  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{all_three, {}}));
+  EXPECT_EQ(tracker.changed(), 4u);
+  EXPECT_TRUE(tracker.rebuilt());
+
+  EXPECT_EQ(update(tracker, {boxes, {}}), Events());
+  EXPECT_EQ(tracker.changed(), 0u) << "a frame in which nothing changed shows nothing";
+  EXPECT_FALSE(tracker.rebuilt());
+
+  boxes[1] = at(20);
+  boxes.push_back(at(9));
+  const Ids second = {BoxId{1}, BoxId{1}};
+  EXPECT_EQ(update(tracker, {boxes, second}), (Events{{pair(3, 4)}, {pair(0, 1), pair(1, 2)}}));
+  EXPECT_EQ(tracker.changed(), 2u);
+
+  boxes.resize(2);
+  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{{}, {pair(0, 2), pair(3, 4)}}));
+  EXPECT_EQ(tracker.changed(), 3u);
+
+  boxes.resize(5, at(20));
+  FailingSink failing;
+  EXPECT_THROW(tracker.update({boxes, {}}, failing, failing), std::runtime_error);
+  EXPECT_EQ(tracker.changed(), 3u);
+  boxes.pop_back();
+  EXPECT_EQ(update(tracker, {boxes, {}}).begun, (Pairs{pair(1, 2), pair(1, 3), pair(2, 3)}));
+  EXPECT_TRUE(tracker.rebuilt());
+  EXPECT_EQ(update(tracker, {boxes, {}}), Events());
+  EXPECT_EQ(tracker.changed(), 0u) << "the flags of a failed frame are gone";
+}
+
+TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
+  CheckingTracker tracker;
+  const std::vector<Box2> boxes = {at(0), at(0), at(0)};
+  std::vector<Filter> filters(3);
+  filters[1].mask = 0;
+  const Pairs all = {pair(0, 1), pair(0, 2), pair(1, 2)};
+  const Pairs without_one = {pair(0, 1), pair(1, 2)};
+  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{all, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, filters}), (Events{{}, without_one}));
+  EXPECT_EQ(tracker.changed(), 3u);
+  EXPECT_FALSE(tracker.rebuilt());
+  EXPECT_EQ(update(tracker, {boxes, {}, filters}), Events());
+  EXPECT_EQ(tracker.changed(), 0u);
+  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{without_one, {}}));
+  EXPECT_EQ(tracker.changed(), 3u);
+  filters.pop_back();
+  EXPECT_EQ(message_of<InvalidInput>([&] {
+              update(tracker, {boxes, {}, filters});
+            }),
+            "2 filters for a frame of 3 boxes; expected one for each box, or none");
+}
+
+TEST(Change, TakesAFilterOfABoxThatIsListedAndOfNoOther) {
+  CheckingTracker tracker;
+  const std::vector<Box2> boxes = {at(0), at(0), at(0)};
+  std::vector<Filter> filters(3);
+  update(tracker, {boxes, {}, filters});
+  filters[1].mask = 0;
+  filters[2].mask = 0;
+  const Ids changed = {BoxId{2}};
+  EXPECT_EQ(update(tracker, {boxes, changed, filters}), (Events{{}, {pair(0, 2), pair(1, 2)}}));
+  EXPECT_EQ(tracker.changed(), 1u);
+}
+
+TEST(Change, EndsPairsThatAreIgnoredAndBeginsThemAgain) {
+  CheckingTracker tracker;
+  std::vector<Box2> boxes = {at(0), at(0), at(0)};
+  IgnoredPairs ignored;
+  ignored.insert(pair(0, 1));
+  const Pairs first = {pair(0, 1)};
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (Events{{pair(0, 2), pair(1, 2)}, {}}));
+  ignored.clear();
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), Events())
+      << "a change that is not listed is not seen";
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, first}), (Events{first, {}}));
+  ignored.insert(pair(0, 1));
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), Events());
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (Events{{}, first})) << "a set that is new is whole";
+  EXPECT_EQ(tracker.changed(), 0u);
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), (Events{first, {}}));
+
+  // Ignored in the frame in which they would have begun, or end; and of boxes that are not there yet.
+  boxes[1] = at(5);
+  const Ids changed = {BoxId{1}};
+  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (Events{{}, {pair(0, 1), pair(1, 2)}}));
+  boxes[1] = at(0);
+  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (Events{{pair(1, 2)}, {}}));
+  ignored.insert(pair(7, 3));
+  const Pairs later = {pair(7, 3), pair(3, 7)};
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, later}), Events());
+  boxes.resize(8, at(50));
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}).begun.size(), 9u);
+}
+
+TEST(Change, DeliversWhatFailedFramesChangedInFiltersAndIgnoredPairs) {
+  CheckingTracker tracker;
+  const std::vector<Box2> boxes = {at(0), at(0), at(0), at(0)};
+  std::vector<Filter> filters(4);
+  update(tracker, {boxes, {}, filters});
+  IgnoredPairs ignored;
+  ignored.insert(pair(0, 1));
+  filters[3].mask = 0;
+  FailingSink failing;
+  const Ids changed = {BoxId{3}};
+  EXPECT_THROW(tracker.update({boxes, changed, filters, &ignored}, failing, failing), std::runtime_error);
+  EXPECT_EQ(update(tracker, {boxes, {}, filters, &ignored}),
+            (Events{{}, {pair(0, 1), pair(0, 3), pair(1, 3), pair(2, 3)}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, filters, &ignored}), Events());
+}
+
+}  // namespace
+}  // namespace broadside
