@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,19 +53,27 @@ void print_heading(const std::string& what, int dimension, std::size_t boxes, co
              machine.cores, build.compiler, build.revision);
 }
 
+namespace {
+
+double mean_of(const std::vector<double>& times) {
+  return std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
+}
+
+}  // namespace
+
 void print_table(const Outcome& outcome) {
-  lab::Columns columns("<>>>>>><");
-  columns.add({"algorithm", "us a frame", "p99", "worst", "ns a mover", "ratio", "build us", ""});
+  lab::Columns columns("<>>>>>>><");
+  columns.add({"algorithm", "us a frame", "mean", "p99", "worst", "ns a mover", "ratio", "build us", ""});
   const double movers = std::max(outcome.mean_movers(), 1.0);
   double first = 0;
   for (const Runner& runner : outcome.runners) {
     if (!runner.ran()) {
-      columns.add({runner.algorithm, "-", "-", "-", "-", "-", "-", runner.left_out});
+      columns.add({runner.algorithm, "-", "-", "-", "-", "-", "-", "-", runner.left_out});
       continue;
     }
     const double median = lab::median(runner.frames_ms);
     if (first == 0) first = median;
-    columns.add({runner.algorithm, lab::rounded(median * 1e3),
+    columns.add({runner.algorithm, lab::rounded(median * 1e3), lab::rounded(mean_of(runner.frames_ms) * 1e3),
                  lab::rounded(lab::percentile(runner.frames_ms, 0.99) * 1e3),
                  lab::rounded(std::ranges::max(runner.frames_ms) * 1e3), lab::rounded(median * 1e6 / movers),
                  fmt::format("{:.2f}", median / first), lab::rounded(runner.build_ms * 1e3),

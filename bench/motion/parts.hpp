@@ -45,6 +45,18 @@ void against_ways(const Wishes& wishes);
 /// One mover among a million boxes.
 void one_mover(const Wishes& wishes);
 
+/// A thousand frames with a tenth moving: the worst over the median.
+void spikes(const Wishes& wishes);
+
+/// The frame in which every box jumps, over what a rebuild takes for it.
+void jumps(const Wishes& wishes);
+
+/// 2,000 movers among 1,000,000 boxes that rest, over the same movers among the 10,000 around them.
+void rest(const Wishes& wishes);
+
+/// Recorded scenes: `auto` against the broad phase of the engine that was recorded.
+void recorded(const Wishes& wishes);
+
 /// Prints what ran: the scene, its boxes, the machine.
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -167,6 +168,20 @@ double Outcome::mean_movers() const {
 template <int D>
 Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns) {
   return Race<D>(contenders, turns).run(start);
+}
+
+void merge(Outcome& outcome, Outcome round) {
+  if (outcome.runners.empty()) {
+    outcome = std::move(round);
+    return;
+  }
+  for (std::size_t i = 0; i < outcome.runners.size(); ++i) {
+    Runner& runner = outcome.runners[i];
+    const Runner& again = round.runners[i];
+    runner.build_ms = std::min(runner.build_ms, again.build_ms);
+    for (std::size_t frame = 0; frame < std::min(runner.frames_ms.size(), again.frames_ms.size()); ++frame)
+      runner.frames_ms[frame] = std::min(runner.frames_ms[frame], again.frames_ms[frame]);
+  }
 }
 
 template Outcome race(std::span<const lab::Contender>, const StartMotion<2>&, const Turns&);

@@ -57,4 +57,7 @@ struct Outcome {
 template <int D>
 Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns);
 
+/// Adds a round of the same motion to what others came to: of each frame the least time remains.
+void merge(Outcome& outcome, Outcome round);
+
 }  // namespace broadside::bench

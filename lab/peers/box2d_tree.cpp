@@ -19,8 +19,9 @@
 namespace broadside::lab::peers {
 namespace {
 
-/// The power of two that makes a typical box about a metre long, as the tree's margins of 0.1 m ask for, as
-/// far as no coordinate overflows. What it rounds (denormals) keeps its order, so that no pair is lost.
+/// The power of two that makes a typical box half a metre to a metre long, as the tree's margins of 0.1 m ask
+/// for, as far as no coordinate overflows: recorded scenes keep the size that they were made in. What it
+/// rounds (denormals) keeps its order, so that no pair is lost.
 float scale_of(std::span<const Box2> boxes) {
   float greatest = 0;
   for (const Box2& box : boxes) {
@@ -29,7 +30,7 @@ float scale_of(std::span<const Box2> boxes) {
     }
   }
   constexpr int greatest_exponent = 100;  // products of two lengths overflow, and only make a worse tree
-  const int wanted = -std::ilogb(typical_extent(boxes));
+  const int wanted = -1 - std::ilogb(typical_extent(boxes));
   const int most = greatest > 0 ? greatest_exponent - std::ilogb(greatest) : greatest_exponent;
   return std::ldexp(1.0f, std::clamp(std::min(wanted, most), -greatest_exponent, greatest_exponent));
 }
