@@ -13,6 +13,7 @@
 #include "lab/verify.hpp"
 #include "law_case.hpp"
 #include "strained_specs.hpp"
+#include "whole_frames.hpp"
 
 namespace broadside::laws {
 
@@ -91,9 +92,16 @@ class Property : public Law {
   bool trackers_hold(const rc::Gen<Box<D>>& box) const {
     return rc::check(name(GetParam()) + " gives each event once", [&] {
       const auto frames = *rc::gen::container<std::vector<GeneratedFrame<D>>>(frame(box)).as("frames");
-      const auto divergence =
-          lab::check_tracker<D>(*make_tracker<D>(algorithm(), spec()), history_of(frames), algorithm().name);
-      if (divergence) RC_FAIL(divergence->text);
+      const auto seed = *rc::gen::arbitrary<std::uint8_t>().as("the filters' seed");
+      const Spec strained = *rc::gen::elementOf(specs());
+      for (const Spec& tried : {spec(), strained}) {
+        const auto divergence =
+            lab::check_tracker<D>(*make_tracker<D>(algorithm(), tried), history_of(frames), tried.text());
+        if (divergence) RC_FAIL(divergence->text);
+        const auto filtered = with_filters(whole_frames(history_of(frames)), seed);
+        const std::string text = laws::divergence<D, float>(*make_tracker<D>(algorithm(), tried), filtered);
+        if (!text.empty()) RC_FAIL(tried.text() + ", with filters: " + text);
+      }
     });
   }
 };

@@ -1,11 +1,17 @@
 // The law of trackers: after any history, exactly the events, each once.
+#include <algorithm>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "broadside/sinks.hpp"
+
+#include "harder_histories.hpp"
 #include "histories.hpp"
 #include "law_case.hpp"
 #include "smallest_failure.hpp"
+#include "strained_specs.hpp"
 #include "whole_frames.hpp"
 
 namespace broadside::laws {
@@ -24,8 +30,74 @@ TEST_P(TrackerLaw, GivesEachEventOnceWithFiltersAndIgnoredPairs) {
   in_dimension([&]<int D>() {
     std::uint64_t seed = 0;
     for (const NamedHistory<D>& named : hard_histories<D>(algorithm())) {
-      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(named.history, ++seed)))
+      EXPECT_TRUE(
+          tracks_the_frames<D>(algorithm(), spec(), with_filters(whole_frames(named.history), ++seed)))
           << named.name;
+    }
+  });
+}
+
+TEST_P(TrackerLaw, GivesEachEventOnceInHarderHistories) {
+  in_dimension([&]<int D>() {
+    std::uint64_t seed = 100;
+    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), named.frames)) << named.name;
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(named.frames, ++seed)))
+          << named.name << ", with filters";
+    }
+  });
+}
+
+TEST_P(TrackerLaw, GivesEachEventOnceWithEveryTunableStrained) {
+  if (algorithm().kind != AlgorithmKind::own) GTEST_SKIP() << algorithm().name << " is not our own";
+  in_dimension([&]<int D>() {
+    const std::vector<NamedFrames<D>> histories = harder_histories<D>(algorithm());
+    std::uint64_t seed = 200;
+    for (const Spec& strained : strained_specs(GetParam())) {
+      for (const NamedFrames<D>& named : histories) {
+        // A third of them for each value, and others for the next.
+        if (++seed % 3 != 0) continue;
+        EXPECT_TRUE(tracks_the_frames<D>(algorithm(), strained,
+                                         seed % 2 == 0 ? named.frames : with_filters(named.frames, seed)))
+            << named.name;
+      }
+    }
+  });
+}
+
+TEST_P(TrackerLaw, GivesEachEventOnceOfThousandsOfBoxes) {
+  if (algorithm().kind != AlgorithmKind::own) GTEST_SKIP() << algorithm().name << " is not our own";
+  in_dimension([&]<int D>() {
+    for (const std::size_t count : {1500, 5000}) {
+      const std::vector<WholeFrame<D>> frames = large_history<D>(reduced(count));
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), frames));
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(frames, count)));
+    }
+  });
+}
+
+TEST_P(TrackerLaw, DoesNotGrowWhileHistoriesRepeatThemselves) {
+  if (algorithm().kind == AlgorithmKind::peer) GTEST_SKIP() << algorithm().name << " does not say its bytes";
+  in_dimension([&]<int D>() {
+    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+      const auto tracker = make_tracker<D>(algorithm(), spec());
+      std::vector<BoxId> all(named.frames.front().boxes.size());
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = BoxId(i);
+      const auto play = [&] {
+        PairCounter counter;
+        for (const WholeFrame<D>& frame : named.frames) {
+          all.resize(std::max(all.size(), frame.boxes.size()));
+          for (std::size_t i = 0; i < all.size(); ++i) all[i] = BoxId(i);
+          const auto count = std::min(all.size(), frame.boxes.size());
+          tracker->update({frame.boxes, std::span(all).first(count)}, counter, counter);
+        }
+        return tracker->bytes();
+      };
+      play();
+      const std::size_t second = play();
+      std::size_t last = 0;
+      for (int time = 0; time < 6; ++time) last = play();
+      EXPECT_LE(last, second + second / 4) << named.name;
     }
   });
 }

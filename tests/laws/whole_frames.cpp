@@ -165,10 +165,10 @@ std::vector<WholeFrame<D>> whole_frames(const lab::History<D>& history) {
 }
 
 template <int D>
-std::vector<WholeFrame<D>> with_filters(const lab::History<D>& history, std::uint64_t seed) {
+std::vector<WholeFrame<D>> with_filters(std::vector<WholeFrame<D>> frames, std::uint64_t seed) {
   Dice dice(seed);
-  std::vector<WholeFrame<D>> frames = whole_frames(history);
-  const std::size_t places = std::max<std::size_t>(2, lab::places_of(history));
+  std::size_t places = 2;
+  for (const WholeFrame<D>& frame : frames) places = std::max(places, frame.boxes.size());
   std::vector<Filter> filters(places);
   for (Filter& filter : filters) filter = any_filter(dice);
   Ignored ignored;
@@ -277,8 +277,8 @@ template std::string divergence(PairTracker<2, double>&, std::span<const WholeFr
 template std::string divergence(PairTracker<3, double>&, std::span<const WholeFrame<3, double>>);
 template std::vector<WholeFrame<2>> whole_frames(const lab::History<2>&);
 template std::vector<WholeFrame<3>> whole_frames(const lab::History<3>&);
-template std::vector<WholeFrame<2>> with_filters(const lab::History<2>&, std::uint64_t);
-template std::vector<WholeFrame<3>> with_filters(const lab::History<3>&, std::uint64_t);
+template std::vector<WholeFrame<2>> with_filters(std::vector<WholeFrame<2>>, std::uint64_t);
+template std::vector<WholeFrame<3>> with_filters(std::vector<WholeFrame<3>>, std::uint64_t);
 template testing::AssertionResult tracks_the_frames(const Algorithm&, const Spec&,
                                                     std::vector<WholeFrame<2>>);
 template testing::AssertionResult tracks_the_frames(const Algorithm&, const Spec&,

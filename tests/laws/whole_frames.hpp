@@ -46,10 +46,10 @@ std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame
 template <int D>
 std::vector<WholeFrame<D>> whole_frames(const lab::History<D>& history);
 
-/// The history's frames with filters and ignored pairs that come, change and go, with and without changes of
+/// The same frames with filters and ignored pairs that come, change and go, with and without changes of
 /// boxes, and sinks of which some fail.
 template <int D>
-std::vector<WholeFrame<D>> with_filters(const lab::History<D>& history, std::uint64_t seed);
+std::vector<WholeFrame<D>> with_filters(std::vector<WholeFrame<D>> frames, std::uint64_t seed);
 
 /// Success if a tracker made from `spec` gives exactly the events of `frames`; otherwise what differs first,
 /// for few frames and boxes.

@@ -1,0 +1,284 @@
+// Histories made against what trackers keep from frame to frame.
+#include "harder_histories.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "dice.hpp"
+#include "hard_inputs.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+template <int D>
+using Boxes = std::vector<Box<D>>;
+
+/// A box of extents up to `size` whose minima lie in [0, world).
+template <int D>
+Box<D> box_in(Dice& dice, float world, float size) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = dice.between(0, world);
+    box.max[axis] = box.min[axis] + dice.between(0, size);
+  }
+  return box;
+}
+
+/// A box about a point, with the same extent on every axis.
+template <int D>
+Box<D> box_about(const std::array<float, D>& centre, float half_extent) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = centre[axis] - half_extent;
+    box.max[axis] = centre[axis] + half_extent;
+  }
+  return box;
+}
+
+template <int D>
+WholeFrame<D> frame_of(const Boxes<D>& boxes) {
+  WholeFrame<D> frame;
+  frame.boxes = boxes;
+  return frame;
+}
+
+template <int D>
+void move(Box<D>& box, int axis, float by) {
+  box.min[axis] += by;
+  box.max[axis] += by;
+}
+
+template <int D>
+class Histories {
+ public:
+  explicit Histories(std::size_t count)
+      : count_(count), world_(std::pow(static_cast<float>(count), 1.0F / D)), uniform_(count) {
+    Dice dice(count);
+    for (Box<D>& box : uniform_) box = any(dice);
+  }
+
+  /// Each frame's boxes are made by `next(frame, boxes)` from those of the frame before.
+  template <typename Next>
+  void add(const char* name, Boxes<D> boxes, int frames, Next next) {
+    std::vector<WholeFrame<D>> all = {frame_of<D>(boxes)};
+    for (int frame = 1; frame <= frames; ++frame) {
+      next(frame, boxes);
+      all.push_back(frame_of<D>(boxes));
+    }
+    named_.push_back({name, std::move(all)});
+  }
+
+  void add_moderate() {
+    Dice dice(1);
+    add("everything teleports", uniform_, 10, [&](int, Boxes<D>& boxes) {
+      for (Box<D>& box : boxes) box = any(dice);
+    });
+    add("everything drifts one way", uniform_, 60, [&](int, Boxes<D>& boxes) {
+      for (Box<D>& box : boxes) move(box, 0, 0.37F);
+    });
+    add("everything drifts one way by a cell, on a lattice", lattice(), 40, [&](int frame, Boxes<D>& boxes) {
+      for (Box<D>& box : boxes) move(box, frame % D, 1);
+    });
+    Boxes<D> other = uniform_;
+    for (Box<D>& box : other) box = any(dice);
+    add("two states by turns", uniform_, 30,
+        [&](int frame, Boxes<D>& boxes) { boxes = frame % 2 == 0 ? uniform_ : other; });
+    add("a tenth goes and comes in other places", uniform_, 40, [&](int, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[dice.below(count_)] = absent_box<D>();
+      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[dice.below(count_)] = any(dice);
+    });
+    add("one of all moves", uniform_, 60,
+        [&](int frame, Boxes<D>& boxes) { move(boxes[7], frame % D, frame % 20 < 10 ? 0.4F : -0.4F); });
+    add("grows to all and shrinks to none", {}, 40, [&](int frame, Boxes<D>& boxes) {
+      boxes = uniform_;
+      boxes.resize(count_ * static_cast<std::size_t>(frame <= 20 ? frame : 40 - frame) / 20);
+    });
+    add("one in a hundred and all by turns", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_; i += frame % 3 == 0 ? 1 : 100) move(boxes[i], frame % D, 0.3F);
+    });
+    add("a large box wanders among small ones", uniform_, 40, [&](int frame, Boxes<D>& boxes) {
+      boxes[0] = box_about<D>(centre(boxes[static_cast<std::size_t>(frame)]), world_ / 3);
+    });
+    add("a large box is made small and large again", uniform_, 20, [&](int frame, Boxes<D>& boxes) {
+      boxes[3] = box_about<D>(centre(uniform_[3]), frame % 2 == 0 ? world_ : 0.1F);
+    });
+    add("all gather at a point and part", uniform_, 24, [&](int frame, Boxes<D>& boxes) {
+      const float nearness =
+          frame <= 12 ? static_cast<float>(frame) / 12 : static_cast<float>(24 - frame) / 12;
+      for (std::size_t i = 0; i < count_; ++i) {
+        boxes[i] = uniform_[i];
+        for (int axis = 0; axis < D; ++axis)
+          move(boxes[i], axis, (world_ / 2 - uniform_[i].min[axis]) * nearness);
+      }
+    });
+    add("all swap places", uniform_, 20,
+        [&](int, Boxes<D>& boxes) { std::ranges::rotate(boxes, boxes.begin() + 1); });
+    add("half of them go, and come back", uniform_, 12, [&](int frame, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_; i += 2) boxes[i] = frame % 2 == 0 ? uniform_[i] : absent_box<D>();
+    });
+  }
+
+  void add_extreme() {
+    Dice dice(2);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr float largest = std::numeric_limits<float>::max();
+    add("boxes fall for ever", lattice(), 135, [&](int frame, Boxes<D>& boxes) {
+      for (const std::size_t i : {1, 2, 3}) {
+        // Beyond 2^24 its extent is lost, and at last its place is as low as a float can be.
+        const float down = -std::min(std::ldexp(static_cast<float>(i), std::min(frame, 126)), largest);
+        boxes[i].min[D - 1] = down;
+        boxes[i].max[D - 1] = down + 1;
+      }
+      if (frame == 130) boxes[1] = boxes[9];
+    });
+    add("extents of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_; i += frame % 4 == 0 ? 1 : 10)
+        boxes[i] =
+            box_about<D>(centre(any(dice)), std::pow(10.0F, dice.between(-30, dice.one_in(8) ? 30 : 1)));
+    });
+    add("coordinates of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
+      const float power = frame < 15 ? static_cast<float>(2 * frame) : static_cast<float>(60 - 4 * frame);
+      for (std::size_t i = 0; i < count_; i += 3) {
+        boxes[i] = uniform_[i];
+        for (int axis = 0; axis < D; ++axis) {
+          boxes[i].min[axis] *= std::pow(10.0F, power);
+          boxes[i].max[axis] *= std::pow(10.0F, power);
+        }
+      }
+    });
+    add("all shrink to points and grow again", uniform_, 40, [&](int frame, Boxes<D>& boxes) {
+      const float size = frame <= 20 ? std::pow(0.1F, static_cast<float>(2 * frame))
+                                     : std::pow(0.1F, static_cast<float>(80 - 2 * frame));
+      for (std::size_t i = 0; i < count_; ++i) {
+        for (int axis = 0; axis < D; ++axis)
+          boxes[i].max[axis] =
+              boxes[i].min[axis] + (uniform_[i].max[axis] - uniform_[i].min[axis]) * (frame == 20 ? 0 : size);
+      }
+    });
+    add("all at one point, coming and going", Boxes<D>(count_ / 3, box_about<D>({}, 0)), 20,
+        [&](int frame, Boxes<D>& boxes) {
+          for (std::size_t i = 0; i < boxes.size(); i += 1 + dice.below(9))
+            boxes[i] = frame % 5 == 0 ? absent_box<D>() : box_about<D>({}, dice.one_in(9) ? 1.0F : 0.0F);
+        });
+    add("infinite boxes come, move and go", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_; i += 40) {
+        boxes[i] = any(dice);
+        const int axis = static_cast<int>(dice.below(D));
+        if (frame % 4 != 0) boxes[i].min[axis] = -infinity;
+        if (frame % 4 > 1) boxes[i].max[axis] = infinity;
+      }
+    });
+    add("every second one is infinite and then none", uniform_, 8, [&](int frame, Boxes<D>& boxes) {
+      for (std::size_t i = 0; i < count_; i += 2) {
+        boxes[i] = uniform_[i];
+        if (frame % 2 == 0) boxes[i].max[0] = infinity;
+      }
+    });
+    add("one outlier goes farther and farther", uniform_, 40, [&](int frame, Boxes<D>& boxes) {
+      std::array<float, D> place{};
+      place.fill(std::pow(8.0F, static_cast<float>(frame)));
+      boxes[5] = box_about<D>(place, 1);
+    });
+  }
+
+  std::vector<NamedFrames<D>> take() { return std::move(named_); }
+
+ private:
+  /// One or two neighbours each, and some large ones.
+  Box<D> any(Dice& dice) const { return box_in<D>(dice, world_, dice.one_in(30) ? world_ / 4 : 1.2F); }
+
+  static std::array<float, D> centre(const Box<D>& box) {
+    std::array<float, D> centre;
+    for (int axis = 0; axis < D; ++axis) centre[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+    return centre;
+  }
+
+  /// Unit boxes on whole coordinates, which touch their neighbours.
+  Boxes<D> lattice() const {
+    const auto side = static_cast<std::size_t>(world_);
+    Boxes<D> boxes(count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      std::size_t place = i;
+      for (int axis = 0; axis < D; ++axis) {
+        boxes[i].min[axis] = static_cast<float>(axis + 1 < D ? place % side : place);
+        boxes[i].max[axis] = boxes[i].min[axis] + 1;
+        place /= side;
+      }
+    }
+    return boxes;
+  }
+
+  std::size_t count_;
+  float world_;  // with so many unit boxes, each meets a few
+  Boxes<D> uniform_;
+  std::vector<NamedFrames<D>> named_;
+};
+
+}  // namespace
+
+template <int D>
+std::vector<NamedFrames<D>> harder_histories(const Algorithm& algorithm) {
+  Histories<D> histories(reduced(240, 1) + 60);
+  histories.add_moderate();
+  if (algorithm.kind != AlgorithmKind::peer) histories.add_extreme();
+  std::vector<NamedFrames<D>> named = histories.take();
+  for (NamedFrames<D>& history : named) {
+    for (WholeFrame<D>& frame : history.frames) {
+      for (Box<D>& box : frame.boxes) {
+        if (is_beyond(algorithm, box)) box = absent_box<D>();
+      }
+    }
+  }
+  return named;
+}
+
+template <int D>
+std::vector<WholeFrame<D>> large_history(std::size_t count) {
+  Dice dice(3);
+  const float world = std::pow(static_cast<float>(count), 1.0F / D);
+  Boxes<D> boxes(count);
+  const auto any = [&] { return box_in<D>(dice, world, dice.one_in(1000) ? world / 4 : 1); };
+  for (Box<D>& box : boxes) box = any();
+  std::vector<WholeFrame<D>> frames = {frame_of<D>(boxes)};
+  const auto add = [&] { frames.push_back(frame_of<D>(boxes)); };
+  const auto drift = [&](std::size_t every) {
+    for (std::size_t i = dice.below(every); i < boxes.size(); i += every) {
+      if (!is_absent(boxes[i])) move(boxes[i], dice.whole(0, D - 1), dice.between(-0.3F, 0.3F));
+    }
+    add();
+  };
+  drift(100);
+  drift(100);
+  drift(10);
+  drift(1);
+  drift(1);
+  drift(1000);
+  for (Box<D>& box : boxes) box = any();
+  add();
+  drift(50);
+  for (std::size_t i = 0; i < count; i += 1 + dice.below(20)) boxes[i] = absent_box<D>();
+  add();
+  drift(30);
+  for (std::size_t i = 0; i < count; i += 1 + dice.below(20)) boxes[i] = any();
+  add();
+  boxes.resize(count / 3);
+  add();
+  drift(5);
+  while (boxes.size() < count) boxes.push_back(any());
+  add();
+  drift(200);
+  drift(2);
+  add();
+  return frames;
+}
+
+template std::vector<NamedFrames<2>> harder_histories(const Algorithm&);
+template std::vector<NamedFrames<3>> harder_histories(const Algorithm&);
+template std::vector<WholeFrame<2>> large_history(std::size_t);
+template std::vector<WholeFrame<3>> large_history(std::size_t);
+
+}  // namespace broadside::laws
