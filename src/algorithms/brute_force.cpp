@@ -4,6 +4,7 @@
 
 #include "broadside/broad_phase.hpp"
 
+#include "algorithms/brute_force_tracker.hpp"
 #include "algorithms/descriptions.hpp"
 #include "core/parallel.hpp"
 #include "kernels/sweep.hpp"
@@ -54,16 +55,28 @@ class BruteForce final : public PairFinder<D> {
   kernels::RunBuffer<D> left_run_;
 };
 
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings&) {
+  return std::make_unique<BruteForce<D>>();
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_brute_force_tracker<D>(settings, make<D>(settings));
+}
+
 }  // namespace
 
 Algorithm brute_force() {
   return {
       .name = "brute_force",
       .summary = "every box against every other, over a structure of arrays",
-      .source = "paper.md, section II",
-      .tunables = {core::threads_tunable()},
-      .finder_2d = [](const Settings&) { return std::make_unique<BruteForce<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<BruteForce<3>>(); },
+      .source = "paper.md, sections II and VI-A",
+      .tunables = {brute_force_update(), core::threads_tunable()},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
   };
 }
 
