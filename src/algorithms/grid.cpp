@@ -18,6 +18,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/grid_layout.hpp"
 #include "algorithms/grid_sweep.hpp"
+#include "algorithms/grid_tracker.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "kernels/run.hpp"
@@ -128,22 +129,34 @@ std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
   return std::make_unique<Grid<D>>(settings.number("cell"));
 }
 
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_grid_tracker<D>(settings, make<D>(settings));
+}
+
+std::vector<Tunable> tunables() {
+  std::vector<Tunable> all = {
+      {.name = "cell",
+       .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 cells a box",
+       .standard = "auto",
+       .least = std::numeric_limits<float>::min()}};
+  for (Tunable& tunable : grid_tracking()) all.push_back(std::move(tunable));
+  all.push_back(core::threads_tunable());
+  return all;
+}
+
 }  // namespace
 
 Algorithm grid() {
   return {
       .name = "grid",
       .summary = "cells over all axes but one, a sweep along that one in each",
-      .source = "paper.md, section III; report-once rule: Tsitsigkos et al., arXiv 2307.09256",
-      .tunables =
-          {{.name = "cell",
-            .summary =
-                "size of a cell, in the boxes' unit; made larger where there would be over 4 cells a box",
-            .standard = "auto",
-            .least = std::numeric_limits<float>::min()},
-           core::threads_tunable()},
+      .source = "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256",
+      .tunables = tunables(),
       .finder_2d = make<2>,
       .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
   };
 }
 

@@ -48,6 +48,25 @@ void IncrementalTracker<D>::choose(const Change<D>& change) {
 }
 
 template <int D>
+std::size_t IncrementalTracker<D>::take_sample(std::span<const Box<D>> boxes, Sample<D>& sample,
+                                               std::vector<Box<D>>& sampled) {
+  constexpr std::size_t most = 256;
+  sampled.clear();
+  const auto take = [&](const Box<D>& box) {
+    if (is_present(box)) sampled.push_back(box);
+  };
+  std::size_t looks = 0;
+  if (boxes.size() <= 4 * most) {
+    for (; looks < boxes.size(); ++looks) take(boxes[looks]);
+  } else {
+    for (; looks < 4 * most && sampled.size() < most; ++looks)
+      take(boxes[sampled_place(looks, boxes.size())]);
+  }
+  sample.take(sampled);
+  return looks == 0 ? 0 : boxes.size() * sampled.size() / looks;
+}
+
+template <int D>
 std::string IncrementalTracker<D>::explanation() const {
   if (way_ != Way::choose) return {};
   return (is_rebuilding_ ? "all pairs anew: " : "followed: ") + std::to_string(changed_) + " of " +

@@ -4,9 +4,13 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "broadside/pair_tracker.hpp"
+
+#include "core/sample.hpp"
 
 namespace broadside::core {
 
@@ -26,6 +30,10 @@ class IncrementalTracker : public PairTracker<D> {
   static bool is_refiltered(const Change<D>& change, BoxId id) {
     return !change.filters_now.empty() && change.filters_before[index(id)] != change.filters_now[index(id)];
   }
+
+  /// Samples those of the boxes that are present; about how many there are in all. `sampled` is for its use.
+  static std::size_t take_sample(std::span<const Box<D>> boxes, Sample<D>& sample,
+                                 std::vector<Box<D>>& sampled);
 
   /// Writes the event, if it is one, of a changed box and one whose overlap with it a step changed. Any box
   /// that has changed itself may have done so before the step or not yet: whoever takes the changed boxes one
