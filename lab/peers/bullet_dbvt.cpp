@@ -6,9 +6,8 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <fmt/format.h>
 
-#include "lab/peers/bullet_volume.hpp"
+#include "lab/peers/bullet_proxies.hpp"
 #include "lab/peers/peers.hpp"
-#include "lab/peers/proxies.hpp"
 
 namespace broadside::lab::peers {
 namespace {
@@ -35,74 +34,50 @@ class BulletDbvt final : public PairFinder<D> {
   }
 };
 
+/// Bullet makes moving boxes larger by 0.05, being made for boxes of about 1: by a twentieth of what is usual
+/// here.
 template <int D>
-class DbvtProxies final : public Proxies<D> {
+float margin_for(std::span<const Box<D>> boxes) {
+  std::vector<float> sides;
+  for (const Box<D>& box : boxes) {
+    if (is_present(box)) sides.push_back(box.max[0] - box.min[0]);
+  }
+  if (sides.empty()) return 0;
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::nth_element(sides.begin(), middle, sides.end());
+  return *middle / 20;
+}
+
+/// With a margin of its own, where Bullet has one for the whole program, and with its proxies, which Bullet
+/// leaves to who made them to take out one by one.
+class OwnDbvt final : public btDbvtBroadphase {
  public:
-  ~DbvtProxies() override { drop(); }
+  OwnDbvt(float margin, bool deferred) : margin_(margin) { m_deferedcollide = deferred; }
 
-  void clear(std::span<const Box<D>> boxes) override {
-    drop();
-    broadphase_ = std::make_unique<btDbvtBroadphase>();
-    proxies_.assign(boxes.size(), nullptr);
-    margin_ = margin_for(boxes);
-  }
-
-  void add(BoxId id, const Box<D>& box) override {
-    if (proxies_.size() <= index(id)) proxies_.resize(index(id) + 1);
-    proxies_[index(id)] = broadphase_->createProxy(bullet_point(box.min), bullet_point(box.max), 0,
-                                                   bullet_data(id), 1, 1, nullptr);
-  }
-
-  void move(BoxId id, const Box<D>& box) override {
-    gDbvtMargin = margin_;
-    broadphase_->setAabb(proxies_[index(id)], bullet_point(box.min), bullet_point(box.max), nullptr);
-  }
-
-  void remove(BoxId id) override {
-    broadphase_->destroyProxy(std::exchange(proxies_[index(id)], nullptr), nullptr);
-  }
-
-  void collect(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    broadphase_->calculateOverlappingPairs(nullptr);
-    // The cache holds pairs of boxes that were made larger, and some that ended a while ago.
-    btOverlappingPairCache& cache = *broadphase_->getOverlappingPairCache();
-    const btBroadphasePair* const cached = cache.getOverlappingPairArrayPtr();
-    for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
-      const BoxId a = id_in(cached[i].m_pProxy0->m_clientObject);
-      const BoxId b = id_in(cached[i].m_pProxy1->m_clientObject);
-      if (overlap(boxes[index(a)], boxes[index(b)])) pairs.add(a, b);
+  ~OwnDbvt() override {
+    for (btDbvtProxy* proxy : m_stageRoots) {
+      while (proxy != nullptr) btAlignedFree(std::exchange(proxy, proxy->links[1]));
     }
+  }
+
+  void setAabb(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max,
+               btDispatcher* dispatcher) override {
+    gDbvtMargin = margin_;
+    btDbvtBroadphase::setAabb(proxy, min, max, dispatcher);
   }
 
  private:
-  /// Bullet makes moving boxes larger by 0.05, being made for boxes of about 1: by a twentieth of what is
-  /// usual here.
-  static float margin_for(std::span<const Box<D>> boxes) {
-    std::vector<float> sides;
-    for (const Box<D>& box : boxes) {
-      if (is_present(box)) sides.push_back(box.max[0] - box.min[0]);
-    }
-    if (sides.empty()) return 0;
-    const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
-    std::nth_element(sides.begin(), middle, sides.end());
-    return *middle / 20;
-  }
-
-  /// Frees the proxies, which the broad phase does not do, without looking for the pairs of each.
-  void drop() {
-    broadphase_.reset();
-    for (btBroadphaseProxy* const proxy : proxies_) btAlignedFree(proxy);
-    proxies_.clear();
-  }
-
-  std::unique_ptr<btDbvtBroadphase> broadphase_;
-  std::vector<btBroadphaseProxy*> proxies_;  // null where there is no box
-  float margin_ = 0;
+  float margin_;
 };
 
 template <int D>
-std::unique_ptr<PairTracker<D>> tracker(const Settings&) {
-  return std::make_unique<ProxyTracker<D>>(std::make_unique<DbvtProxies<D>>());
+std::unique_ptr<PairTracker<D>> tracker(const Settings& settings) {
+  const auto make = [deferred = settings.text("collide") == "deferred"](std::span<const Box<D>> boxes,
+                                                                        unsigned) {
+    return std::make_unique<OwnDbvt>(margin_for(boxes), deferred);
+  };
+  constexpr bool bounded = false;
+  return std::make_unique<ProxyTracker<D>>(std::make_unique<BulletProxies<D>>(make, bounded));
 }
 
 }  // namespace
@@ -117,6 +92,11 @@ Algorithm bullet_dbvt() {
       .summary = "Bullet's dynamic tree joined with itself; in motion, its btDbvtBroadphase",
       .source = "Bullet, btDbvt and btDbvtBroadphase, by Nathanael Presson",
       .version = bullet_version(),
+      .tunables = {{.name = "collide",
+                    .summary = "in motion: each box as it moves, as Bullet does unless told, or all deferred",
+                    .standard = "at_once",
+                    .type = Tunable::Type::choice,
+                    .choices = {"at_once", "deferred"}}},
       .finder_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
       .finder_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
       .tracker_2d = tracker<2>,

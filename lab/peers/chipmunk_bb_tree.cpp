@@ -5,8 +5,8 @@
 namespace broadside::lab::peers {
 namespace {
 
-ChipmunkIndex make_tree(std::span<const Box2>, bool moving) {
-  ChipmunkIndex tree(cpBBTreeNew(bounds_of, nullptr));
+ChipmunkIndex make_tree(std::span<const Box2>, bool moving, cpSpatialIndex* resting) {
+  ChipmunkIndex tree(cpBBTreeNew(bounds_of, resting));
   // Margins are for what moves.
   if (moving)
     cpBBTreeSetVelocityFunc(tree.get(),

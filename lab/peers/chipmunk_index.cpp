@@ -1,7 +1,9 @@
 // Chipmunk's spatial indexes as finders and trackers: filled one by one, then asked for all pairs at once.
 #include "lab/peers/chipmunk_index.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
@@ -13,7 +15,7 @@ namespace broadside::lab::peers {
 namespace {
 
 ChipmunkObject object_of(const Box2& box, BoxId id) {
-  return {cpBBNew(box.min[0], box.min[1], box.max[0], box.max[1]), cpvzero, id};
+  return {.bounds = cpBBNew(box.min[0], box.min[1], box.max[0], box.max[1]), .velocity = cpvzero, .id = id};
 }
 
 cpHashValue hash_of(const ChipmunkObject& object) { return index(object.id); }
@@ -29,6 +31,12 @@ struct Search {
     const BoxId b = static_cast<ChipmunkObject*>(second)->id;
     if (overlap(search.boxes[index(a)], search.boxes[index(b)])) search.pairs.add(a, b);
     return id;
+  }
+
+  /// Likewise, of a search for each of the boxes, which tells every pair from both its sides.
+  static cpCollisionID take_once(void* first, void* second, cpCollisionID id, void* data) {
+    const bool once = static_cast<ChipmunkObject*>(first)->id < static_cast<ChipmunkObject*>(second)->id;
+    return once ? take(first, second, id, data) : id;
   }
 };
 
@@ -47,7 +55,7 @@ class ChipmunkFinder final : public PairFinder<2> {
     objects_.clear();
     objects_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) objects_.push_back(object_of(boxes[i], BoxId(i)));
-    const ChipmunkIndex spatial_index = make_(boxes, false);
+    const ChipmunkIndex spatial_index = make_(boxes, false, nullptr);
     for (ChipmunkObject& object : objects_)
       cpSpatialIndexInsert(spatial_index.get(), &object, hash_of(object));
     find_all(spatial_index.get(), boxes, pairs);
@@ -57,44 +65,97 @@ class ChipmunkFinder final : public PairFinder<2> {
   std::vector<ChipmunkObject> objects_;
 };
 
+/// As cpSpace does, with an index for what moves and one for what rests: shapes go to the latter with their
+/// body once it has slept for a while, and the former alone is brought up to date and searched.
 class ChipmunkTracker final : public PeerTracker<2> {
  public:
   explicit ChipmunkTracker(MakeIndex make) : make_(make) {}
 
  private:
+  static constexpr std::uint32_t frames_until_sleep = 30;  // half a second
+
+  /// What is there at the start rests until it is seen to move, as the ground does.
   void build(std::span<const Box2> boxes, std::span<const Box2> now) override {
-    index_ = make_(now, true);
+    moving_.reset();
+    resting_ = make_(now, true, nullptr);
+    moving_ = make_(now, true, resting_.get());
     objects_.clear();
+    awake_.clear();
+    starts_ = true;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (is_present(boxes[i])) insert(object_of(boxes[i], BoxId(i)));
     }
   }
 
   void move(const Change<2>& change) override {
+    starts_ = std::ranges::none_of(change.before, is_present<2, float>);
+    ++frame_;
     for (const BoxId id : change.changed) {
       const Box2& before = change.before[index(id)];
       const Box2& now = change.now[index(id)];
-      if (is_present(before) && !is_present(now)) {
+      if (is_present(before)) {
         ChipmunkObject& object = objects_[index(id)];
-        cpSpatialIndexRemove(index_.get(), &object, hash_of(object));
-      } else if (is_present(before)) {
-        ChipmunkObject& object = objects_[index(id)];
-        object.bounds = object_of(now, id).bounds;
-        object.velocity = velocity(before, now);
-      } else if (is_present(now)) {
-        insert(object_of(now, id));
+        if (object.awake && is_present(now)) {
+          object.bounds = object_of(now, id).bounds;
+          object.velocity = velocity(before, now);
+          object.moved = frame_;
+          continue;
+        }
+        cpSpatialIndexRemove(index_of(object), &object, hash_of(object));
       }
+      if (!is_present(now)) continue;
+      ChipmunkObject object = object_of(now, id);
+      if (is_present(before)) object.velocity = velocity(before, now);
+      insert(object);
     }
+    std::erase_if(awake_, [&](BoxId id) { return falls_asleep(id, change.now); });
   }
 
   void collide(const Change<2>& change, PairSink& pairs) override {
-    find_all(index_.get(), change.now, pairs);
+    if (starts_)
+      find_resting(change.now, pairs);
+    else
+      find_all(moving_.get(), change.now, pairs);
+    starts_ = false;
   }
 
-  void insert(const ChipmunkObject& object) {
+  /// The index of what rests knows no pairs within: each box is looked up.
+  void find_resting(std::span<const Box2> boxes, PairSink& pairs) {
+    Search search{boxes, CallbackSink(pairs)};
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (is_present(boxes[i]))
+        cpSpatialIndexQuery(resting_.get(), &objects_[i], objects_[i].bounds, Search::take_once, &search);
+    }
+    search.pairs.finish();
+  }
+
+  /// Whether the object has no place among those awake any more.
+  bool falls_asleep(BoxId id, std::span<const Box2> boxes) {
+    ChipmunkObject& object = objects_[index(id)];
+    if (!is_present(boxes[index(id)])) return !(object.listed = false);
+    if (frame_ - object.moved < frames_until_sleep) return false;
+    cpSpatialIndexRemove(moving_.get(), &object, hash_of(object));
+    object.awake = object.listed = false;
+    cpSpatialIndexInsert(resting_.get(), &object, hash_of(object));
+    return true;
+  }
+
+  void insert(ChipmunkObject object) {
     if (objects_.size() <= index(object.id)) objects_.resize(index(object.id) + std::size_t{1});
-    objects_[index(object.id)] = object;
-    cpSpatialIndexInsert(index_.get(), &objects_[index(object.id)], hash_of(object));
+    ChipmunkObject& there = objects_[index(object.id)];
+    object.awake = !starts_;
+    object.moved = frame_;
+    object.listed = there.listed;
+    if (object.awake && !object.listed) {
+      awake_.push_back(object.id);
+      object.listed = true;
+    }
+    there = object;
+    cpSpatialIndexInsert(index_of(there), &there, hash_of(there));
+  }
+
+  cpSpatialIndex* index_of(const ChipmunkObject& object) const {
+    return object.awake ? moving_.get() : resting_.get();
   }
 
   /// The velocity that makes the tree's margin last for some frames: a game has 60 frames a second. What
@@ -111,7 +172,11 @@ class ChipmunkTracker final : public PeerTracker<2> {
 
   MakeIndex make_;
   std::deque<ChipmunkObject> objects_;  // by place
-  ChipmunkIndex index_;                 // points into them
+  ChipmunkIndex resting_;               // points into them
+  ChipmunkIndex moving_;                // likewise, and to resting_
+  std::vector<BoxId> awake_;            // those in moving_, and some that were removed from it
+  std::uint32_t frame_ = 0;
+  bool starts_ = true;  // there was nothing before: all that is there is in resting_
 };
 
 }  // namespace

@@ -8,12 +8,12 @@
 namespace broadside::lab::peers {
 namespace {
 
-ChipmunkIndex make_hash(std::span<const Box2> boxes, bool) {
+ChipmunkIndex make_hash(std::span<const Box2> boxes, bool, cpSpatialIndex* resting) {
   // Its manual: cells about as large as the objects, and ten times as many cells as objects.
   constexpr std::size_t cells_a_box = 10;
   constexpr std::size_t most_cells = 100'000'000;
   const std::size_t cells = std::min(cells_a_box * std::max<std::size_t>(boxes.size(), 1), most_cells);
-  return ChipmunkIndex(cpSpaceHashNew(cell_size(boxes, 1), static_cast<int>(cells), bounds_of, nullptr));
+  return ChipmunkIndex(cpSpaceHashNew(cell_size(boxes, 1), static_cast<int>(cells), bounds_of, resting));
 }
 
 }  // namespace

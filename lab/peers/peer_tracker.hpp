@@ -29,10 +29,13 @@ class PeerTracker : public PairTracker<D> {
     if (change.rebuild) {
       build(change.before, change.now);
       pairs_.clear();
-      find({change.before, change.before, change.changed, change.flags, true}, pairs_);
+      // Nearly always there was no frame before.
+      if (std::ranges::any_of(change.before, is_present<D, float>))
+        find({change.before, change.before, change.changed, change.flags, true}, pairs_);
     }
     move(change);
     find(change, found_);
+    // As in DiffTracker: what a pair was in the other frame can be seen from its boxes.
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };

@@ -1,13 +1,14 @@
-// A library that follows boxes by itself, made a tracker and a finder.
+// A library that follows boxes by itself, box by box, made a tracker and a finder.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "broadside/broad_phase.hpp"
+
+#include "lab/peers/peer_tracker.hpp"
 
 namespace broadside::lab::peers {
 
@@ -20,8 +21,8 @@ class Proxies {
   Proxies& operator=(const Proxies&) = delete;
   virtual ~Proxies() = default;
 
-  /// Forgets every box. `boxes` are those that will be added one by one, and absent ones: for libraries that
-  /// take bounds of the world, or a cell size.
+  /// Forgets every box. `boxes` are those that will be there: for libraries that take bounds of the world, or
+  /// a cell size.
   virtual void clear(std::span<const Box<D>> boxes) = 0;
 
   /// Whether what clear() laid out does for `boxes` as well; if not, all starts over with them.
@@ -32,24 +33,52 @@ class Proxies {
   virtual void move(BoxId id, const Box<D>& box) = 0;
   virtual void remove(BoxId id) = 0;
 
-  /// Writes each overlapping pair of `boxes`, which are as they were added and moved, once. A library that
-  /// knows boxes by larger ones has what it reports tested against `boxes`.
-  virtual void collect(std::span<const Box<D>> boxes, PairSink& pairs) = 0;
+  /// Writes each overlapping pair of `boxes`, which are as they were added and moved, once; where there are
+  /// flags, pairs of two boxes whose flags are 0 may be left out. A library that knows boxes by larger ones
+  /// has what it reports tested against `boxes`.
+  virtual void collect(std::span<const Box<D>> boxes, std::span<const std::uint8_t> flags,
+                       PairSink& pairs) = 0;
 };
 
-/// Tracks with proxies: tells the library what changed, and what differs between the pairs that it then
-/// reports and those it did before. Cost a frame: the library's, and a pass over the pairs of both frames.
+/// Adds those of `boxes` that are present to proxies without any.
 template <int D>
-class ProxyTracker final : public PairTracker<D> {
+void add_all(Proxies<D>& proxies, std::span<const Box<D>> boxes) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (is_present(boxes[i])) proxies.add(BoxId(i), boxes[i]);
+  }
+}
+
+/// Tracks with proxies: tells the library what changed, and then asks it for the pairs.
+template <int D>
+class ProxyTracker final : public PeerTracker<D> {
  public:
   explicit ProxyTracker(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
 
  private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) override {
+    proxies_->clear(now);
+    add_all(*proxies_, boxes);
+  }
+
+  void move(const Change<D>& change) override {
+    if (!proxies_->fits(change.now)) return build(change.now, change.now);
+    for (const BoxId id : change.changed) {
+      const bool was = is_present(change.before[index(id)]);
+      const Box<D>& now = change.now[index(id)];
+      if (was && is_present(now))
+        proxies_->move(id, now);
+      else if (is_present(now))
+        proxies_->add(id, now);
+      else if (was)
+        proxies_->remove(id);
+    }
+  }
+
+  void collide(const Change<D>& change, PairSink& pairs) override {
+    proxies_->collect(change.now, change.flags, pairs);
+  }
 
   std::unique_ptr<Proxies<D>> proxies_;
-  std::vector<Pair> pairs_;  // those of the frame before
-  std::vector<Pair> found_;
 };
 
 /// Finds with proxies, all of them added anew.
@@ -59,7 +88,11 @@ class ProxyFinder final : public PairFinder<D> {
   explicit ProxyFinder(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
 
  private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override;
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    proxies_->clear(boxes);
+    add_all(*proxies_, boxes);
+    proxies_->collect(boxes, {}, pairs);
+  }
 
   std::unique_ptr<Proxies<D>> proxies_;
 };
