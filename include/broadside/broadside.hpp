@@ -13,6 +13,8 @@
 #include "broadside/pair.hpp"
 #include "broadside/pair_finder.hpp"
 #include "broadside/pair_tracker.hpp"
+#include "broadside/queries.hpp"
+#include "broadside/ray.hpp"
 #include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/spec.hpp"

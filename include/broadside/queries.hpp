@@ -1,0 +1,175 @@
+// BoxIndex: which boxes overlap a box, hold a point, meet a ray or a moved box, or are nearest to a point.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/pair_tracker.hpp"
+#include "broadside/ray.hpp"
+
+namespace broadside {
+
+/// A box that a ray or a moved box meets, and the parameter at which it does so first.
+template <typename Real>
+struct Hit {
+  BoxId box;
+  Real entry;
+
+  friend constexpr bool operator==(const Hit&, const Hit&) = default;
+};
+
+/// A box and the square of its distance from a point.
+template <typename Real>
+struct Neighbour {
+  BoxId box;
+  Real distance_squared;
+
+  friend constexpr bool operator==(const Neighbour&, const Neighbour&) = default;
+};
+
+/// Takes what a query finds, BoxIds or Hits, in chunks.
+template <typename Found>
+class Visitor {
+ public:
+  virtual ~Visitor() = default;
+
+  /// Whether the search is to go on. Chunks are small at first and grow to some hundred.
+  virtual bool visit(std::span<const Found> found) = 0;
+};
+
+/// A function of one thing found: it says whether to go on, or nothing and the search goes on.
+template <typename Function, typename Found>
+concept VisitFunction = std::invocable<Function&, Found> &&
+    (std::convertible_to<std::invoke_result_t<Function&, Found>, bool> ||
+     std::is_void_v<std::invoke_result_t<Function&, Found>>);
+
+/// Answers queries to the boxes of a frame, exactly as the definitions in ray.hpp and box.hpp say.
+///
+/// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
+/// With an `asker`, only boxes whose filter accepts it are. Results have an order that the boxes' history
+/// fixes, and that means nothing but where it is said. A query takes some tens of nanoseconds and what it
+/// finds; none allocates. Each throws InvalidInput if something asked about is NaN, or infinite where it must
+/// not be, and what the visitor throws.
+template <int D, typename Real = float>
+class BoxIndex {
+ public:
+  using Point = std::array<Real, D>;
+
+  BoxIndex() = default;
+  BoxIndex(const BoxIndex&) = delete;
+  BoxIndex& operator=(const BoxIndex&) = delete;
+  virtual ~BoxIndex() = default;
+
+  /// Takes a frame, as a PairTracker does: in the first one everything has changed; ignored pairs are not
+  /// looked at. Throws InvalidInput before anything has changed. Cost: O(changed) for few changes, about as
+  /// much as to find all pairs for many, and now and then.
+  void update(const Frame<D, Real>& frame);
+
+  /// The boxes that overlap `box`; false if the visitor ended the search. Nothing overlaps an absent box.
+  bool overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const Filter* asker = nullptr) const;
+
+  /// The boxes that hold the point, which may be infinite.
+  bool holding(const Point& point, Visitor<BoxId>& visitor, const Filter* asker = nullptr) const {
+    return overlapping({point, point}, visitor, asker);
+  }
+
+  /// All boxes that the moved box, or the ray, meets.
+  bool hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor, const Filter* asker = nullptr) const;
+  bool hits(const Ray<D, Real>& ray, Visitor<Hit<Real>>& visitor, const Filter* asker = nullptr) const {
+    return hits(as_cast(ray), visitor, asker);
+  }
+
+  /// The one that it meets first: of the least entry, of several such the one with the least id.
+  std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast, const Filter* asker = nullptr) const;
+  std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray, const Filter* asker = nullptr) const {
+    return first_hit(as_cast(ray), asker);
+  }
+
+  /// Sets `found` to the `count` boxes nearest to the point, or all if there are fewer: by distance, equally
+  /// distant ones by id. Those farther than `furthest`, a square, do not count.
+  void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
+               const Filter* asker = nullptr, Real furthest = std::numeric_limits<Real>::infinity()) const;
+
+  /// The same with a function for each BoxId or Hit.
+  template <VisitFunction<BoxId> Function>
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* asker = nullptr) const {
+    Calls<BoxId, Function> calls(function);
+    return overlapping(box, static_cast<Visitor<BoxId>&>(calls), asker);
+  }
+  template <VisitFunction<BoxId> Function>
+  bool holding(const Point& point, Function&& function, const Filter* asker = nullptr) const {
+    return overlapping({point, point}, function, asker);
+  }
+  template <typename Shape, VisitFunction<Hit<Real>> Function>
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* asker = nullptr) const {
+    Calls<Hit<Real>, Function> calls(function);
+    return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(calls), asker);
+  }
+
+  /// The bytes held.
+  std::size_t bytes() const noexcept { return filters_.capacity() * sizeof(Filter) + index_bytes(); }
+
+ protected:
+  /// Whether box `id` may be found by who asks.
+  bool may_find(BoxId id, const Filter* asker) const noexcept {
+    return asker == nullptr || accepts(*asker, filters_.empty() ? Filter{} : filters_[index(id)]);
+  }
+
+ private:
+  template <typename Found, typename Function>
+  class Calls final : public Visitor<Found> {
+   public:
+    explicit Calls(std::remove_reference_t<Function>& function) : function_(function) {}
+
+    bool visit(std::span<const Found> found) override {
+      for (const Found& one : found) {
+        if constexpr (std::is_void_v<std::invoke_result_t<Function&, Found>>)
+          function_(one);
+        else if (!function_(one))
+          return false;
+      }
+      return true;
+    }
+
+   private:
+    std::remove_reference_t<Function>& function_;
+  };
+
+  /// What an index writes. `boxes` are those of a frame, valid, some perhaps absent; `changed` are places,
+  /// perhaps repeated, some perhaps beyond the boxes: those are absent. `rebuild`: nothing kept counts, and
+  /// everything has changed.
+  virtual void update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
+                            bool rebuild) = 0;
+
+  /// Likewise, the questions being valid; the box is not absent.
+  virtual bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
+                                const Filter* asker) const = 0;
+  virtual bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
+                         const Filter* asker) const = 0;
+  virtual std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast,
+                                                  const Filter* asker) const = 0;
+  virtual void find_nearest(const Point& point, std::size_t count, Real furthest,
+                            std::vector<Neighbour<Real>>& found, const Filter* asker) const = 0;
+  virtual std::size_t index_bytes() const noexcept = 0;
+
+  std::vector<Filter> filters_;  // of the last frame; empty if it had none
+  std::vector<BoxId> changed_;   // with those that need not be listed
+  std::size_t size_ = 0;         // of the last frame
+  bool dirty_ = true;            // the last update did not end, or there was none
+};
+
+/// An index that is a tree of bounds, sixteen to a node. 30 to 70 bytes a box, twice that in double.
+template <int D, typename Real = float>
+std::unique_ptr<BoxIndex<D, Real>> make_box_index();
+
+}  // namespace broadside

@@ -1,0 +1,444 @@
+// Queries to a tree of boxes, sixteen children at a time, written once for every instruction set.
+//
+// Slabs after T. Kay and J. Kajiya, "Ray tracing complex scenes" (1986). Bounds are tested with
+// multiplications by an inverse and a margin above what these can be wrong by, so that no box is lost that
+// the definition, with divisions, lets be met.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/query_tree.cpp"
+#include "kernels/query_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/compress.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, node_width>;
+using Numbers = hn::Rebind<std::uint32_t, Floats>;
+using FloatVector = hn::Vec<Floats>;
+using FloatMask = hn::Mask<Floats>;
+
+/// The elements of a vector, sixteen of which are one or several.
+constexpr std::size_t lanes = hn::MaxLanes(Floats());
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// By how much what is multiplied may differ from what is divided: some roundings, and some of numbers that
+/// are not normal.
+constexpr float margin = 1 + 0x1p-20f;
+constexpr float least = 0x1p-126f;
+
+HWY_INLINE FloatVector all(float value) { return hn::Set(Floats(), value); }
+HWY_INLINE FloatVector load(const std::array<float, node_width>& values, std::size_t at) {
+  return hn::Load(Floats(), values.data() + at);
+}
+
+/// Appends the children from `at` on that are in `mask` to `to`; how many.
+template <int D>
+HWY_INLINE std::size_t append(const QueryNode<D>& node, std::size_t at, FloatMask mask, std::uint32_t* to) {
+  const auto hits = hn::RebindMask(Numbers(), mask);
+  hn::StoreU(compress(Numbers(), hn::Load(Numbers(), node.child.data() + at), hits), Numbers(), to);
+  return hn::CountTrue(Floats(), mask);
+}
+
+/// The same with a number that belongs to each of them.
+template <int D>
+HWY_INLINE std::size_t append(const QueryNode<D>& node, std::size_t at, FloatMask mask, FloatVector values,
+                              std::uint32_t* to, float* values_to) {
+  const auto hits = hn::RebindMask(Numbers(), mask);
+  const auto bits = hn::BitCast(Numbers(), values);
+  hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), values_to);
+  return append(node, at, mask, to);
+}
+
+template <int D>
+struct Overlap {
+  HWY_INLINE explicit Overlap(const Box<D>& box) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = all(box.min[axis]);
+      max[axis] = all(box.max[axis]);
+    }
+  }
+
+  HWY_INLINE FloatMask operator()(const QueryNode<D>& node, std::size_t at) const {
+    FloatMask hits = hn::Le(load(node.min[0], at), max[0]);
+    hits = hn::And(hits, hn::Le(min[0], load(node.max[0], at)));
+    for (int axis = 1; axis < D; ++axis) {
+      hits = hn::And(hits, hn::Le(load(node.min[axis], at), max[axis]));
+      hits = hn::And(hits, hn::Le(min[axis], load(node.max[axis], at)));
+    }
+    return hits;
+  }
+
+  FloatVector min[D];
+  FloatVector max[D];
+};
+
+template <int D>
+bool overlapping(const QueryTree<D>& tree, const Box<D>& box, FoundBoxes& found) {
+  const Overlap<D> overlap(box);
+  std::uint32_t waiting[(longest_path + 1) * node_width];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) == 0) {
+      for (std::size_t at = 0; at < node_width; at += lanes)
+        count += append(node, at, overlap(node, at), waiting + count);
+      continue;
+    }
+    std::size_t hits = found.count;
+    for (std::size_t at = 0; at < node_width; at += lanes)
+      hits += append(node, at, overlap(node, at), found.ids.data() + hits);
+    found.count = hits;
+    if (hits >= found.full && !found.take()) return false;
+  }
+  return true;
+}
+
+/// A cast, in every lane.
+template <int D>
+struct Cast {
+  HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast(query) {
+    for (int axis = 0; axis < D; ++axis) {
+      const bool is_back = query.course[axis] == Course::backward ||
+                           (query.course[axis] == Course::unknown && query.direction[axis] < 0);
+      // What comes first of the cast box meets what comes first of the other one.
+      near_side[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
+      far_side[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
+      inverse[axis] = all(query.inverse[axis]);
+      backward[axis] = is_back;
+    }
+  }
+
+  /// Which children from `at` on may be met up to `furthest`, which is what `limit` is made of.
+  HWY_INLINE FloatMask may_meet(const QueryNode<D>& node, std::size_t at, FloatVector limit,
+                                FloatVector& enter) const {
+    FloatVector leave = all(infinity);
+    enter = hn::Zero(Floats());
+    FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));  // not NaN
+    for (int axis = 0; axis < D; ++axis) {
+      if (HWY_UNLIKELY(cast.course[axis] >= Course::still)) {
+        if (cast.course[axis] == Course::still) hits = hn::And(hits, overlaps(node, axis, at));
+        continue;
+      }
+      enter = hn::Max(enter, hn::Mul(hn::Sub(near_bound(node, axis, at), near_side[axis]), inverse[axis]));
+      leave = hn::Min(leave, hn::Mul(hn::Sub(far_bound(node, axis, at), far_side[axis]), inverse[axis]));
+    }
+    leave = hn::MulAdd(leave, all(margin), all(least));
+    return hn::And(hits, hn::Le(enter, hn::Min(leave, limit)));
+  }
+
+  /// Which children from `at` on are met up to `furthest`, by the definition.
+  HWY_INLINE FloatMask meets(const QueryNode<D>& node, std::size_t at, FloatVector furthest,
+                             FloatVector& enter) const {
+    FloatVector leave = furthest;
+    enter = hn::Zero(Floats());
+    FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));
+    for (int axis = 0; axis < D; ++axis) {
+      if (HWY_UNLIKELY(cast.course[axis] == Course::still)) {
+        hits = hn::And(hits, overlaps(node, axis, at));
+        continue;
+      }
+      const FloatVector direction = all(cast.direction[axis]);
+      enter = hn::Max(enter, hn::Div(hn::Sub(near_bound(node, axis, at), near_side[axis]), direction));
+      leave = hn::Min(leave, hn::Div(hn::Sub(far_bound(node, axis, at), far_side[axis]), direction));
+    }
+    return hn::And(hits, hn::Le(enter, leave));
+  }
+
+  /// Appends the boxes of a leaf that are met (or may be, where the cast is not exact) to what was found.
+  HWY_INLINE void leaf(const QueryNode<D>& node, FoundBoxes& found, FloatVector limit) const {
+    const FloatVector furthest = all(found.furthest);
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      FloatMask hits = may_meet(node, at, limit, enter);
+      if (cast.exact) {
+        if (hn::AllFalse(Floats(), hits)) continue;
+        hits = meets(node, at, furthest, enter);
+      }
+      // What is -0.0 becomes 0.0.
+      const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
+      found.count +=
+          append(node, at, hits, entries, found.ids.data() + found.count, found.entries.data() + found.count);
+    }
+  }
+
+  /// As far as bounds may count if boxes do up to `furthest`.
+  static HWY_INLINE FloatVector limit(float furthest) { return all(furthest * margin + least); }
+
+ private:
+  HWY_INLINE FloatVector near_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return load(backward[axis] ? node.max[axis] : node.min[axis], at);
+  }
+  HWY_INLINE FloatVector far_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return load(backward[axis] ? node.min[axis] : node.max[axis], at);
+  }
+  HWY_INLINE FloatMask overlaps(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return hn::And(hn::Le(load(node.min[axis], at), near_side[axis]),
+                   hn::Le(far_side[axis], load(node.max[axis], at)));
+  }
+
+  const CastQuery<D>& cast;
+  FloatVector near_side[D];
+  FloatVector far_side[D];
+  FloatVector inverse[D];
+  bool backward[D];
+};
+
+template <int D>
+bool met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+  const Cast<D> cast(query);
+  const FloatVector limit = Cast<D>::limit(found.furthest);
+  std::uint32_t waiting[(longest_path + 1) * node_width];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      cast.leaf(node, found, limit);
+      if (found.count >= found.full && !found.take()) return false;
+      continue;
+    }
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      const FloatMask hits = cast.may_meet(node, at, limit, enter);
+      count += append(node, at, hits, waiting + count);
+    }
+  }
+  return true;
+}
+
+template <int D>
+void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+  const Cast<D> cast(query);
+  FloatVector limit = Cast<D>::limit(found.furthest);
+  std::uint32_t waiting[(longest_path + 1) * node_width];
+  float enters[(longest_path + 1) * node_width];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  enters[0] = 0;
+  while (count > 0) {
+    --count;
+    if (!(enters[count] <= hn::GetLane(limit))) continue;
+    const std::uint32_t number = waiting[count];
+    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      cast.leaf(node, found, limit);
+      if (found.count == 0) continue;
+      found.take();
+      limit = Cast<D>::limit(found.furthest);
+      continue;
+    }
+    const std::size_t begin = count;
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      const FloatMask hits = cast.may_meet(node, at, limit, enter);
+      count += append(node, at, hits, enter, waiting + count, enters + count);
+    }
+    // The nearest one last, where it is taken from.
+    for (std::size_t i = begin + 1; i < count; ++i) {
+      const float enter = enters[i];
+      const std::uint32_t child = waiting[i];
+      std::size_t to = i;
+      for (; to > begin && enters[to - 1] < enter; --to) {
+        enters[to] = enters[to - 1];
+        waiting[to] = waiting[to - 1];
+      }
+      enters[to] = enter;
+      waiting[to] = child;
+    }
+  }
+}
+
+template <int D>
+void distances_of(const QueryNode<D>& node, const DistanceQuery<D>& query,
+                  std::array<float, node_width>& result) {
+  for (std::size_t at = 0; at < node_width; at += lanes) {
+    FloatVector sum = hn::Zero(Floats());
+    for (int axis = 0; axis < D; ++axis) {
+      const FloatVector min = load(node.min[axis], at);
+      const FloatVector max = load(node.max[axis], at);
+      const FloatVector low = all(query.point.min[axis]);
+      const FloatVector high = all(query.point.max[axis]);
+      // No infinity is subtracted from itself where it counts.
+      const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
+      const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
+      sum = hn::Add(sum, hn::Mul(gap, gap));
+    }
+    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.most)), all(query.share)), all(query.allowance));
+    hn::StoreU(sum, Floats(), result.data() + at);
+  }
+}
+
+template <int D>
+Box<D> bounds(const QueryNode<D>& node) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    FloatVector least_min = all(infinity);
+    FloatVector greatest_max = all(-infinity);
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      const FloatVector min = load(node.min[axis], at);
+      const FloatVector max = load(node.max[axis], at);
+      const FloatMask is_there = hn::Le(min, max);
+      least_min = hn::Min(least_min, hn::IfThenElse(is_there, min, all(infinity)));
+      greatest_max = hn::Max(greatest_max, hn::IfThenElse(is_there, max, all(-infinity)));
+    }
+    box.min[axis] = hn::GetLane(hn::MinOfLanes(Floats(), least_min));
+    box.max[axis] = hn::GetLane(hn::MaxOfLanes(Floats(), greatest_max));
+  }
+  return box;
+}
+
+template <int D>
+std::size_t best(const QueryNode<D>& node, std::size_t count, const Box<D>& box) {
+  // Beyond it, sizes are not told apart; sums of them are finite.
+  const FloatVector limit = all(0x1p120f);
+  const FloatVector other_limit = all(-0x1p120f);
+  const auto bounded = [&](FloatVector v) HWY_ATTR { return hn::Max(hn::Min(v, limit), other_limit); };
+  HWY_ALIGN float growths[node_width];
+  HWY_ALIGN float sizes[node_width];
+  for (std::size_t at = 0; at < node_width; at += lanes) {
+    FloatVector growth = hn::Zero(Floats());
+    FloatVector size = hn::Zero(Floats());
+    for (int axis = 0; axis < D; ++axis) {
+      const FloatVector min = bounded(load(node.min[axis], at));
+      const FloatVector max = bounded(load(node.max[axis], at));
+      const FloatVector low = bounded(all(box.min[axis]));
+      const FloatVector high = bounded(all(box.max[axis]));
+      growth = hn::Add(growth, hn::Sub(hn::Max(max, high), max));
+      growth = hn::Add(growth, hn::Sub(min, hn::Min(min, low)));
+      size = hn::Add(size, hn::Sub(max, min));
+    }
+    hn::Store(growth, Floats(), growths + at);
+    hn::Store(size, Floats(), sizes + at);
+  }
+  std::size_t chosen = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    const bool is_better =
+        growths[i] < growths[chosen] || (growths[i] == growths[chosen] && sizes[i] < sizes[chosen]);
+    if (is_better) chosen = i;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+// What the dispatch below can name: no templates.
+bool overlapping_2(const QueryTree<2>& tree, const Box<2>& box, FoundBoxes& found) {
+  return overlapping(tree, box, found);
+}
+bool overlapping_3(const QueryTree<3>& tree, const Box<3>& box, FoundBoxes& found) {
+  return overlapping(tree, box, found);
+}
+bool met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  return met(tree, cast, found);
+}
+bool met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  return met(tree, cast, found);
+}
+void first_met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  first_met(tree, cast, found);
+}
+void first_met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  first_met(tree, cast, found);
+}
+void distances_2(const QueryNode<2>& node, const DistanceQuery<2>& query,
+                 std::array<float, node_width>& result) {
+  distances_of(node, query, result);
+}
+void distances_3(const QueryNode<3>& node, const DistanceQuery<3>& query,
+                 std::array<float, node_width>& result) {
+  distances_of(node, query, result);
+}
+Box<2> bounds_2(const QueryNode<2>& node) { return bounds(node); }
+Box<3> bounds_3(const QueryNode<3>& node) { return bounds(node); }
+std::size_t best_2(const QueryNode<2>& node, std::size_t count, const Box<2>& box) {
+  return best(node, count, box);
+}
+std::size_t best_3(const QueryNode<3>& node, std::size_t count, const Box<3>& box) {
+  return best(node, count, box);
+}
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace broadside::kernels {
+
+HWY_EXPORT(overlapping_2);
+HWY_EXPORT(overlapping_3);
+HWY_EXPORT(met_2);
+HWY_EXPORT(met_3);
+HWY_EXPORT(first_met_2);
+HWY_EXPORT(first_met_3);
+HWY_EXPORT(distances_2);
+HWY_EXPORT(distances_3);
+HWY_EXPORT(bounds_2);
+HWY_EXPORT(bounds_3);
+HWY_EXPORT(best_2);
+HWY_EXPORT(best_3);
+
+template <>
+bool find_overlapping(const QueryTree<2>& tree, const Box<2>& box, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(overlapping_2)(tree, box, found);
+}
+template <>
+bool find_overlapping(const QueryTree<3>& tree, const Box<3>& box, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(overlapping_3)(tree, box, found);
+}
+template <>
+bool find_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(met_2)(tree, cast, found);
+}
+template <>
+bool find_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(met_3)(tree, cast, found);
+}
+template <>
+void find_first_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(first_met_2)(tree, cast, found);
+}
+template <>
+void find_first_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(first_met_3)(tree, cast, found);
+}
+template <>
+void distances(const QueryNode<2>& node, const DistanceQuery<2>& query,
+               std::array<float, node_width>& result) {
+  HWY_DYNAMIC_DISPATCH(distances_2)(node, query, result);
+}
+template <>
+void distances(const QueryNode<3>& node, const DistanceQuery<3>& query,
+               std::array<float, node_width>& result) {
+  HWY_DYNAMIC_DISPATCH(distances_3)(node, query, result);
+}
+template <>
+Box<2> bounds_of(const QueryNode<2>& node) {
+  return HWY_DYNAMIC_DISPATCH(bounds_2)(node);
+}
+template <>
+Box<3> bounds_of(const QueryNode<3>& node) {
+  return HWY_DYNAMIC_DISPATCH(bounds_3)(node);
+}
+template <>
+std::size_t best_child(const QueryNode<2>& node, std::size_t count, const Box<2>& box) {
+  return HWY_DYNAMIC_DISPATCH(best_2)(node, count, box);
+}
+template <>
+std::size_t best_child(const QueryNode<3>& node, std::size_t count, const Box<3>& box) {
+  return HWY_DYNAMIC_DISPATCH(best_3)(node, count, box);
+}
+
+}  // namespace broadside::kernels
+#endif  // HWY_ONCE

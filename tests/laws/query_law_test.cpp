@@ -1,0 +1,329 @@
+// The law of queries: whatever the boxes and their history, an index answers as the definitions do.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/queries.hpp"
+
+#include "dice.hpp"
+#include "hard_inputs.hpp"
+#include "histories.hpp"
+#include "lab/scenes/scene.hpp"
+#include "law_case.hpp"
+
+namespace broadside {
+
+template <typename Real>
+void PrintTo(const Hit<Real>& hit, std::ostream* out) {
+  *out << "box " << index(hit.box) << " at " << hit.entry;
+}
+
+template <typename Real>
+void PrintTo(const Neighbour<Real>& neighbour, std::ostream* out) {
+  *out << "box " << index(neighbour.box) << " at the square of " << std::sqrt(neighbour.distance_squared);
+}
+
+namespace laws {
+namespace {
+
+template <int Dimension, typename Coordinate>
+struct Kind {
+  static constexpr int dimension = Dimension;
+  using Real = Coordinate;
+};
+
+template <typename Kind>
+class QueryLaw : public testing::Test {
+ protected:
+  static constexpr int D = Kind::dimension;
+  using Real = typename Kind::Real;
+  using Point = std::array<Real, D>;
+  using Cast = BoxCast<D, Real>;
+  using Boxes = std::vector<Box<D, Real>>;
+
+  /// The box, in double with bits that a float does not have.
+  Box<D, Real> real(const Box<D>& box) {
+    Box<D, Real> result;
+    for (int axis = 0; axis < D; ++axis) {
+      result.min[axis] = box.min[axis];
+      result.max[axis] = box.max[axis];
+      if constexpr (std::is_same_v<Real, double>) {
+        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis]) || dice_.one_in(2)) continue;
+        result.min[axis] -= dice_.unit() * 0x1p-26 * std::abs(result.min[axis]);
+        result.max[axis] += dice_.unit() * 0x1p-26 * std::abs(result.max[axis]);
+      }
+    }
+    return result;
+  }
+
+  Boxes real(const std::vector<Box<D>>& boxes) {
+    Boxes result;
+    for (const Box<D>& box : boxes) result.push_back(real(box));
+    return result;
+  }
+
+  /// A coordinate where something happens: one that a box has, or close to it.
+  Real coordinate(const Boxes& boxes, int axis) {
+    if (boxes.empty() || dice_.one_in(8)) return dice_.between(-12, 12);
+    const Box<D, Real>& box = boxes[dice_.below(boxes.size())];
+    const Real at = dice_.one_in(2) ? box.min[axis] : box.max[axis];
+    if (dice_.one_in(4)) return at + dice_.between(-1, 1);
+    if (dice_.one_in(8)) return std::nextafter(at, Real(dice_.one_in(2) ? -1e30 : 1e30));
+    return at;
+  }
+
+  Real finite(const Boxes& boxes, int axis) {
+    const Real at = coordinate(boxes, axis);
+    return std::isfinite(at) ? at : Real(dice_.whole(-3, 3));
+  }
+
+  Box<D, Real> any_box(const Boxes& boxes) {
+    if (!boxes.empty() && dice_.one_in(3)) return boxes[dice_.below(boxes.size())];
+    Box<D, Real> box;
+    for (int axis = 0; axis < D; ++axis) {
+      const Real a = coordinate(boxes, axis);
+      const Real b = dice_.one_in(4) ? a : coordinate(boxes, axis);
+      box.min[axis] = std::min(a, b);
+      box.max[axis] = std::max(a, b);
+    }
+    return box;
+  }
+
+  /// Rays and casts that graze corners and edges, run in planes, stand still, or are very long or short.
+  Cast any_cast(const Boxes& boxes) {
+    constexpr bool is_float = std::is_same_v<Real, float>;
+    static const std::vector<Real> lengths = {1,
+                                              Real(3),
+                                              Real(-0.1),
+                                              Real(1e-20),
+                                              Real(is_float ? 1e-40 : 1e-310),
+                                              Real(is_float ? 3e38 : 1e308),
+                                              Real(1e30),
+                                              std::numeric_limits<Real>::denorm_min()};
+    Cast cast;
+    const Real length = dice_.one_in(3) ? lengths[dice_.below(lengths.size())] : 1;
+    const std::size_t way = dice_.below(4);
+    const int along = dice_.whole(0, D - 1);
+    for (int axis = 0; axis < D; ++axis) {
+      const Real from = finite(boxes, axis);
+      const Real to = finite(boxes, axis);
+      Real direction = 0;
+      if (way == 0) direction = std::isfinite(to - from) ? to - from : 1;
+      if (way == 1) direction = axis == along ? Real(dice_.one_in(2) ? 1 : -1) : Real(0);
+      if (way == 2) direction = Real(dice_.whole(-3, 3));
+      if (way == 3) direction = dice_.between(-1, 1) * (dice_.one_in(4) ? Real(1e-12) : Real(1));
+      direction *= length;
+      cast.direction[axis] = std::isfinite(direction) ? direction : 1;
+      cast.box.min[axis] = cast.box.max[axis] = from;
+    }
+    if (dice_.one_in(2)) {
+      for (int axis = 0; axis < D; ++axis) {
+        cast.box.max[axis] = finite(boxes, axis);
+        if (dice_.one_in(2)) cast.box.max[axis] = cast.box.min[axis] + Real(dice_.whole(0, 2));
+        if (cast.box.min[axis] > cast.box.max[axis]) std::swap(cast.box.min[axis], cast.box.max[axis]);
+      }
+    }
+    if (dice_.one_in(3)) cast.furthest = Real(dice_.whole(0, 4)) / Real(dice_.whole(1, 3));
+    if (dice_.one_in(9)) cast.furthest *= 100;
+    return cast;
+  }
+
+  /// Asks all kinds of queries and compares the answers with the definitions.
+  void expect_answers(const BoxIndex<D, Real>& index, const Boxes& boxes, const std::vector<Filter>& filters,
+                      std::size_t rounds) {
+    Filter asker{.category = 2, .mask = 1};
+    for (std::size_t round = 0; round < rounds; ++round) {
+      const Filter* const filter = dice_.one_in(4) ? &asker : nullptr;
+      const auto counts = [&](std::size_t i) {
+        const Filter own = filters.empty() ? Filter{} : filters[i];
+        return is_present(boxes[i]) && (filter == nullptr || accepts(*filter, own));
+      };
+      expect_overlapping(index, boxes, any_box(boxes), filter, counts);
+      expect_met(index, boxes, any_cast(boxes), filter, counts);
+      Point point;
+      for (int axis = 0; axis < D; ++axis) point[axis] = coordinate(boxes, axis);
+      expect_nearest(index, boxes, point, filter, counts);
+      if (this->HasFailure()) return;
+    }
+  }
+
+  template <typename Counts>
+  void expect_overlapping(const BoxIndex<D, Real>& index, const Boxes& boxes, const Box<D, Real>& box,
+                          const Filter* filter, Counts counts) {
+    std::vector<BoxId> expected;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (counts(i) && is_present(box) && overlap(boxes[i], box)) expected.push_back(BoxId(i));
+    }
+    std::vector<BoxId> found;
+    EXPECT_TRUE(index.overlapping(
+        box, [&found](BoxId id) { found.push_back(id); }, filter));
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << "overlapping a box from " << testing::PrintToString(box.min) << " to "
+                               << testing::PrintToString(box.max);
+  }
+
+  template <typename Counts>
+  void expect_met(const BoxIndex<D, Real>& index, const Boxes& boxes, const Cast& cast, const Filter* filter,
+                  Counts counts) {
+    std::vector<Hit<Real>> expected;
+    std::optional<Hit<Real>> first;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const std::optional<Real> enter = counts(i) ? entry(cast, boxes[i]) : std::nullopt;
+      if (!enter) continue;
+      expected.push_back({BoxId(i), *enter});
+      if (!first || *enter < first->entry) first = expected.back();
+    }
+    std::vector<Hit<Real>> found;
+    EXPECT_TRUE(index.hits(
+        cast, [&found](Hit<Real> hit) { found.push_back(hit); }, filter));
+    std::ranges::sort(found, {}, &Hit<Real>::box);
+    const auto shown = [&cast] {
+      return "cast from " + testing::PrintToString(cast.box.min) + " to " +
+             testing::PrintToString(cast.box.max) + " along " + testing::PrintToString(cast.direction) +
+             " up to " + testing::PrintToString(cast.furthest);
+    };
+    EXPECT_EQ(found, expected) << shown();
+    EXPECT_EQ(index.first_hit(cast, filter), first) << shown();
+  }
+
+  template <typename Counts>
+  void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const Point& point,
+                      const Filter* filter, Counts counts) {
+    constexpr Real infinity = std::numeric_limits<Real>::infinity();
+    const std::size_t count = dice_.one_in(10) ? boxes.size() : dice_.below(12);
+    const Real furthest = dice_.one_in(3) ? Real(dice_.whole(0, 9)) : infinity;
+    std::vector<Neighbour<Real>> expected;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (!counts(i)) continue;
+      const Real distance = distance_squared(point, boxes[i]);
+      if (distance <= furthest) expected.push_back({BoxId(i), distance});
+    }
+    std::ranges::stable_sort(expected, {}, &Neighbour<Real>::distance_squared);
+    if (expected.size() > count) expected.resize(count);
+    std::vector<Neighbour<Real>> found = {{BoxId(7), 7}};
+    index.nearest(point, count, found, filter, furthest);
+    EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point);
+  }
+
+  Dice dice_{1};
+};
+
+using Kinds = testing::Types<Kind<2, float>, Kind<3, float>, Kind<2, double>, Kind<3, double>>;
+
+class KindNames {
+ public:
+  template <typename Kind>
+  static std::string GetName(int) {  // NOLINT(readability-identifier-naming): GoogleTest's name
+    return std::to_string(Kind::dimension) + (std::is_same_v<typename Kind::Real, float> ? "d" : "d_double");
+  }
+};
+
+TYPED_TEST_SUITE(QueryLaw, Kinds, KindNames);
+
+TYPED_TEST(QueryLaw, HoldsForHardInputs) {
+  for (const auto& [name, floats] : hard_inputs<TestFixture::D>(Algorithm{})) {
+    const typename TestFixture::Boxes boxes = this->real(floats);
+    const auto index = make_box_index<TestFixture::D, typename TestFixture::Real>();
+    index->update({.boxes = boxes, .changed = {}});
+    this->expect_answers(*index, boxes, {}, reduced(60, 1));
+    ASSERT_FALSE(this->HasFailure()) << name;
+  }
+}
+
+TYPED_TEST(QueryLaw, HoldsForScenes) {
+  constexpr int dimension = TestFixture::D;
+  for (const lab::Scene& scene : lab::scenes()) {
+    if (!scene.has_dimension(dimension)) continue;
+    const auto history =
+        lab::make_history<dimension>(scene, {scene.name, {}}, lab::SceneRequest{.boxes = reduced(2000)});
+    if (history.boxes.size() > 20'000) continue;
+    const typename TestFixture::Boxes boxes = this->real(history.boxes);
+    const auto index = make_box_index<dimension, typename TestFixture::Real>();
+    index->update({.boxes = boxes, .changed = {}});
+    this->expect_answers(*index, boxes, {}, reduced(30, 1));
+    ASSERT_FALSE(this->HasFailure()) << scene.name;
+  }
+}
+
+TYPED_TEST(QueryLaw, HoldsAfterHistories) {
+  constexpr int dimension = TestFixture::D;
+  for (const auto& [name, history] : hard_histories<dimension>(Algorithm{})) {
+    typename TestFixture::Boxes boxes = this->real(history.boxes);
+    std::vector<Filter> filters(boxes.size());
+    const bool has_filters = this->dice_.one_in(2);
+    const auto index = make_box_index<dimension, typename TestFixture::Real>();
+    const auto update = [&](const std::vector<BoxId>& changed) {
+      index->update({.boxes = boxes,
+                     .changed = changed,
+                     .filters = std::span(filters).first(has_filters ? filters.size() : 0)});
+      this->expect_answers(*index, boxes, has_filters ? filters : std::vector<Filter>{}, 2);
+    };
+    update({});
+    for (const lab::Step<dimension>& step : history.steps) {
+      boxes.resize(step.size, absent_box<dimension, typename TestFixture::Real>());
+      filters.resize(step.size);
+      for (std::size_t i = 0; i < step.changed.size(); ++i) {
+        if (broadside::index(step.changed[i]) >= step.size) continue;
+        boxes[broadside::index(step.changed[i])] = this->real(step.boxes[i]);
+        filters[broadside::index(step.changed[i])].category = this->dice_.one_in(2) ? 1 : 2;
+      }
+      update(step.changed);
+      ASSERT_FALSE(this->HasFailure()) << name;
+    }
+  }
+}
+
+/// Few of many boxes change in a frame, so that none of them is built anew: they jump, drift, go and come.
+TYPED_TEST(QueryLaw, HoldsAfterManySmallChanges) {
+  constexpr int dimension = TestFixture::D;
+  for (const int way : {0, 1, 2, 3}) {
+    Dice dice(5);
+    const auto anywhere = [&dice, way] {
+      Box<dimension, typename TestFixture::Real> box;
+      for (int axis = 0; axis < dimension; ++axis) {
+        box.min[axis] = way == 3 ? typename TestFixture::Real(dice.whole(0, 9)) : dice.between(0, 40);
+        box.max[axis] =
+            box.min[axis] + (way == 3 ? typename TestFixture::Real(dice.whole(0, 1)) : dice.between(0, 3));
+      }
+      return box;
+    };
+    typename TestFixture::Boxes boxes(reduced(1500, 1));
+    std::ranges::generate(boxes, anywhere);
+    const auto index = make_box_index<dimension, typename TestFixture::Real>();
+    index->update({.boxes = boxes, .changed = {}});
+    for (std::size_t frame = 0; frame < reduced(150, 1); ++frame) {
+      std::vector<BoxId> changed;
+      // Whole regions empty and fill in the second way.
+      for (std::size_t k = 0; k < boxes.size() / 10; ++k) {
+        const std::size_t i = way == 1 ? (frame * 97 + k) % boxes.size() : dice.below(boxes.size());
+        Box<dimension, typename TestFixture::Real>& box = boxes[i];
+        changed.push_back(BoxId(i));
+        if (way == 1) {
+          box = is_present(box) ? absent_box<dimension, typename TestFixture::Real>() : anywhere();
+        } else if (way == 2 && is_present(box)) {
+          const typename TestFixture::Real step = dice.between(-2, 2);
+          const int axis = dice.whole(0, dimension - 1);
+          box.min[axis] += step;
+          box.max[axis] += step;
+        } else {
+          box = anywhere();
+        }
+      }
+      index->update({.boxes = boxes, .changed = changed});
+      if (frame % 5 == 0) this->expect_answers(*index, boxes, {}, 3);
+      ASSERT_FALSE(this->HasFailure()) << "frame " << frame << ", way " << way;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace laws
+}  // namespace broadside

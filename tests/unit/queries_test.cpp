@@ -1,0 +1,273 @@
+// Queries: what they promise beyond agreeing with the definitions.
+#include "broadside/queries.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+/// `count` boxes in a row along axis 0, one apart: box i spans 2i to 2i + 1, and 0 to 1 on axis 1.
+std::vector<Box2> row(std::size_t count) {
+  std::vector<Box2> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<float>(2 * i);
+    boxes.push_back({{at, 0}, {at + 1, 1}});
+  }
+  return boxes;
+}
+
+std::unique_ptr<BoxIndex<2>> index_of(const std::vector<Box2>& boxes) {
+  auto index = make_box_index<2>();
+  index->update({.boxes = boxes, .changed = {}});
+  return index;
+}
+
+std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box, const Filter* asker = nullptr) {
+  std::vector<BoxId> found;
+  index.overlapping(
+      box, [&found](BoxId id) { found.push_back(id); }, asker);
+  std::ranges::sort(found);
+  return found;
+}
+
+TEST(RayEntry, IsWhereTheRayFirstTouches) {
+  const Box2 box{{2, 0}, {4, 1}};
+  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}}, box), 2);
+  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {4, 0}}, box), 0.5f);
+  EXPECT_EQ(entry(Ray<2>{{6, 0.5f}, {-1, 0}}, box), 2);
+  EXPECT_EQ(entry(Ray<2>{{3, 0.5f}, {1, 0}}, box), 0);
+  EXPECT_EQ(entry(Ray<2>{{3, 0.5f}, {0, 0}}, box), 0);
+  EXPECT_EQ(entry(Ray<2>{{6, 0.5f}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(entry(Ray<2>{{0, 2}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}, 1.5f}, box), std::nullopt);
+  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}, 2}, box), 2);
+}
+
+TEST(RayEntry, CountsWhatIsGrazed) {
+  const Box2 box{{1, 3}, {2, 4}};
+  EXPECT_EQ(entry(Ray<2>{{0, 3}, {1, 0}}, box), 1) << "along a face";
+  EXPECT_EQ(entry(Ray<2>{{0, 0}, {2, 3}}, box), 1) << "a corner";
+  EXPECT_EQ(entry(Ray<2>{{0, 5}, {7, -7}}, box), 1 / 7.0f) << "another corner";
+  EXPECT_EQ(entry(Ray<2>{{2, 4}, {1, 1}}, box), 0) << "from a corner outwards";
+}
+
+TEST(RayEntry, KnowsInfiniteBoxes) {
+  const Box2 half_space{{5, -infinity}, {infinity, infinity}};
+  EXPECT_EQ(entry(Ray<2>{{0, 0}, {2, 1}}, half_space), 2.5f);
+  EXPECT_EQ(entry(Ray<2>{{0, 0}, {-1, 0}}, half_space), std::nullopt);
+  EXPECT_EQ(entry(Ray<2>{{0, 0}, {0, 1}}, half_space), std::nullopt);
+  EXPECT_EQ(entry(Ray<2>{{6, 0}, {0, 1}}, half_space), 0);
+}
+
+TEST(BoxCastEntry, IsWhereTheMovedBoxFirstTouches) {
+  const Box2 box{{5, 0}, {6, 1}};
+  EXPECT_EQ(entry(BoxCast<2>{{{0, 0}, {2, 1}}, {1, 0}}, box), 3);
+  EXPECT_EQ(entry(BoxCast<2>{{{0, 1}, {2, 2}}, {1, 0}}, box), 3) << "touching at a face";
+  EXPECT_EQ(entry(BoxCast<2>{{{0, 1.5f}, {2, 2}}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(entry(BoxCast<2>{{{9, 0}, {10, 1}}, {-2, 0}}, box), 1.5f);
+}
+
+TEST(DistanceSquared, IsZeroInsideAndDefinedForInfinities) {
+  const Box2 box{{0, 0}, {1, infinity}};
+  EXPECT_EQ(distance_squared({0.5f, 7}, box), 0);
+  EXPECT_EQ(distance_squared({4, -4}, box), 25);
+  EXPECT_EQ(distance_squared({0, infinity}, box), 0);
+  EXPECT_EQ(distance_squared({-infinity, 0}, box), infinity);
+}
+
+TEST(BoxIndex, AnswersNothingBeforeAnUpdateAndWithoutBoxes) {
+  const auto index = make_box_index<2>();
+  const Box2 everything{{-infinity, -infinity}, {infinity, infinity}};
+  EXPECT_THAT(overlapping(*index, everything), IsEmpty());
+  EXPECT_EQ(index->first_hit(Ray<2>{{0, 0}, {1, 0}}), std::nullopt);
+  const std::vector<Box2> absent(40, absent_box<2>());
+  index->update({.boxes = absent, .changed = {}});
+  EXPECT_THAT(overlapping(*index, everything), IsEmpty());
+  std::vector<Neighbour<float>> found;
+  index->nearest({0, 0}, 3, found);
+  EXPECT_THAT(found, IsEmpty());
+}
+
+TEST(BoxIndex, FindsNothingForAnAbsentBox) {
+  const auto index = index_of({{{-infinity, -infinity}, {infinity, infinity}}});
+  EXPECT_THAT(overlapping(*index, absent_box<2>()), IsEmpty());
+}
+
+TEST(BoxIndex, FollowsTheFrames) {
+  std::vector<Box2> boxes = row(100);
+  const auto index = index_of(boxes);
+  const Box2 far{{1000, 0}, {1001, 1}};
+  boxes[3] = far;
+  boxes[4] = absent_box<2>();
+  boxes.push_back(far);
+  index->update({.boxes = boxes, .changed = std::vector{BoxId(3), BoxId(4)}});
+  EXPECT_THAT(overlapping(*index, far), ElementsAre(BoxId(3), BoxId(100)));
+  EXPECT_THAT(overlapping(*index, {{6, 0}, {9, 1}}), IsEmpty());
+  boxes.resize(2);
+  index->update({.boxes = boxes, .changed = {}});
+  EXPECT_THAT(overlapping(*index, {{-1e9f, 0}, {1e9f, 1}}), ElementsAre(BoxId(0), BoxId(1)));
+}
+
+TEST(BoxIndex, KeepsItsAnswersWhenAFrameIsRefused) {
+  std::vector<Box2> boxes = row(50);
+  const auto index = index_of(boxes);
+  boxes[7].min[0] = not_a_number;
+  boxes[2] = {{500, 0}, {501, 1}};
+  const std::vector changed = {BoxId(2), BoxId(7)};
+  EXPECT_THROW(index->update({.boxes = boxes, .changed = changed}), InvalidInput);
+  EXPECT_THAT(overlapping(*index, {{4, 0}, {4, 0}}), ElementsAre(BoxId(2)));
+  const std::vector beyond = {BoxId(50)};
+  EXPECT_THROW(index->update({.boxes = row(50), .changed = beyond}), InvalidInput);
+  const std::vector<Filter> filters(49);
+  EXPECT_THROW(index->update({.boxes = row(50), .changed = {}, .filters = filters}), InvalidInput);
+}
+
+TEST(BoxIndex, EndsASearchWhenTheVisitorSaysSo) {
+  const auto index = index_of(row(2000));
+  const Box2 everything{{-1, 0}, {1e6f, 1}};
+  int calls = 0;
+  EXPECT_FALSE(index->overlapping(everything, [&calls](BoxId) { return ++calls < 3; }));
+  EXPECT_EQ(calls, 3);
+  calls = 0;
+  const Ray<2> along{{-1, 0.5f}, {1, 0}};
+  EXPECT_FALSE(index->hits(along, [&calls](Hit<float>) { return ++calls < 30; }));
+  EXPECT_EQ(calls, 30);
+}
+
+TEST(BoxIndex, HandsOnSmallChunksFirst) {
+  class Sizes final : public Visitor<BoxId> {
+   public:
+    bool visit(std::span<const BoxId> found) override {
+      sizes.push_back(found.size());
+      return true;
+    }
+    std::vector<std::size_t> sizes;
+  } visitor;
+  const auto index = index_of(row(5000));
+  EXPECT_TRUE(index->overlapping({{-1, 0}, {1e6f, 1}}, visitor));
+  EXPECT_LE(visitor.sizes.front(), 32U);
+  EXPECT_LE(visitor.sizes.size(), 60U);
+  EXPECT_EQ(std::accumulate(visitor.sizes.begin(), visitor.sizes.end(), std::size_t{0}), 5000U);
+}
+
+TEST(BoxIndex, FindsOnlyWhatAcceptsTheAsker) {
+  const std::vector<Box2> boxes = row(6);
+  std::vector<Filter> filters(6);
+  filters[1].category = 4;
+  filters[3].mask = 8;
+  filters[4].group = -2;
+  auto index = make_box_index<2>();
+  index->update({.boxes = boxes, .changed = {}, .filters = filters});
+  const Filter asker{.category = 1, .mask = 1, .group = -2};
+  const Box2 all{{0, 0}, {100, 1}};
+  EXPECT_THAT(overlapping(*index, all, &asker), ElementsAre(BoxId(0), BoxId(2), BoxId(5)));
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker)->box, BoxId(5));
+  filters[5].category = 16;
+  index->update({.boxes = boxes, .changed = std::vector{BoxId(5)}, .filters = filters});
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker), std::nullopt);
+  index->update({.boxes = boxes, .changed = {}});
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker)->box, BoxId(3));
+}
+
+TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
+  const std::vector<Box2> boxes(300, Box2{{5, 0}, {6, 1}});
+  const auto index = index_of(boxes);
+  EXPECT_EQ(index->first_hit(Ray<2>{{0, 0.5f}, {1, 0}}), (Hit<float>{BoxId(0), 5}));
+  std::vector<Neighbour<float>> found;
+  index->nearest({3, 0}, 3, found);
+  EXPECT_THAT(found, ElementsAre(Neighbour<float>{BoxId(0), 4}, Neighbour<float>{BoxId(1), 4},
+                                 Neighbour<float>{BoxId(2), 4}));
+}
+
+TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
+  const auto index = index_of(row(3));
+  const auto ignore = [](auto) {};
+  std::vector<Neighbour<float>> found;
+  const Ray<2> good{{0, 0}, {1, 0}};
+  Ray<2> bad = good;
+  bad.origin[1] = infinity;
+  EXPECT_THAT(message_of<InvalidInput>([&] { index->first_hit(bad); }), HasSubstr("0, inf; expected finite"));
+  bad = good;
+  bad.direction[0] = not_a_number;
+  EXPECT_THAT(message_of<InvalidInput>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
+  bad = good;
+  bad.furthest = -1;
+  EXPECT_THAT(message_of<InvalidInput>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
+  EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidInput);
+  EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidInput);
+  EXPECT_THROW(index->holding({0, not_a_number}, ignore), InvalidInput);
+  EXPECT_THROW(index->nearest({0, not_a_number}, 1, found), InvalidInput);
+  EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidInput);
+}
+
+TEST(BoxIndex, LetsAVisitorsExceptionThroughAndGoesOn) {
+  const auto index = index_of(row(100));
+  const Box2 all{{0, 0}, {1000, 1}};
+  EXPECT_THROW(index->overlapping(all, [](BoxId) { throw std::runtime_error("enough"); }),
+               std::runtime_error);
+  EXPECT_EQ(overlapping(*index, all).size(), 100U);
+}
+
+TEST(BoxIndex, DoesNotGrowUnderChurn) {
+  std::vector<Box2> boxes = row(2000);
+  const auto index = index_of(boxes);
+  std::vector<BoxId> changed;
+  std::size_t bytes = 0;
+  for (std::size_t frame = 0; frame < 2000; ++frame) {
+    changed.clear();
+    for (std::size_t k = 0; k < 20; ++k) {
+      const std::size_t i = (frame * 20 + k) * 37 % boxes.size();
+      const auto at = static_cast<float>((frame * 7919 + k * 104729) % 4000);
+      boxes[i] = (frame + k) % 3 == 0 ? absent_box<2>() : Box2{{at, 0}, {at + 1, 1}};
+      changed.push_back(BoxId(i));
+    }
+    index->update({.boxes = boxes, .changed = changed});
+    if (frame == 200) bytes = index->bytes();
+  }
+  EXPECT_LE(index->bytes(), bytes + bytes / 4);
+}
+
+TEST(BoxIndexThreads, MayAllAskAtOnce) {
+  const std::vector<Box2> boxes = row(3000);
+  const auto index = index_of(boxes);
+  std::array<std::size_t, 4> found{};
+  std::vector<std::thread> threads;
+  for (std::size_t& count : found) {
+    threads.emplace_back([&index, &count] {
+      for (int i = 0; i < 50; ++i) {
+        const auto at = static_cast<float>(i * 100);
+        index->overlapping({{at, 0}, {at + 60, 1}}, [&count](BoxId) { ++count; });
+        if (index->first_hit(Ray<2>{{at, 0.5f}, {1, 0}})) ++count;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(found[0], 0U);
+  EXPECT_THAT(found, testing::Each(found[0]));
+}
+
+}  // namespace
+}  // namespace broadside
