@@ -15,6 +15,7 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "algorithms/sweep_and_prune_tracker.hpp"
 #include "core/cell_lists.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -158,6 +159,11 @@ std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
   return std::make_unique<SweepAndPrune<D>>(settings);
 }
 
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_sweep_and_prune_tracker<D>(settings, make<D>(settings));
+}
+
 }  // namespace
 
 Algorithm sweep_and_prune() {
@@ -166,7 +172,7 @@ Algorithm sweep_and_prune() {
       .summary =
           "a sorted sweep along the axis that separates the boxes best, in stripes of a second axis where "
           "that pays",
-      .source = "paper.md, section IV; P. Terdiman, Box pruning revisited",
+      .source = "paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited",
       .tunables = {{.name = "axis",
                     .summary = "the axis to sweep along",
                     .standard = "auto",
@@ -177,9 +183,12 @@ Algorithm sweep_and_prune() {
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"1", "2"}},
+                   sweep_and_prune_update(),
                    core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
   };
 }
 

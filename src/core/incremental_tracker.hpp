@@ -26,6 +26,8 @@ class IncrementalTracker : public PairTracker<D> {
   /// `worthwhile` is the fraction of boxes that may change before finding all pairs anew costs less.
   IncrementalTracker(Way way, double worthwhile, std::unique_ptr<PairFinder<D>> finder);
 
+  void set_worthwhile(double worthwhile) noexcept { worthwhile_ = worthwhile; }
+
   /// Whether the filters of a changed box are not what they were.
   static bool is_refiltered(const Change<D>& change, BoxId id) {
     return !change.filters_now.empty() && change.filters_before[index(id)] != change.filters_now[index(id)];
