@@ -14,6 +14,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "auto_tracker.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 
@@ -154,16 +155,35 @@ std::unique_ptr<PairFinder<D>> make(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
+  const std::string& way = settings.text("way");
+  return std::make_unique<AutoTracker<D>>(std::make_unique<Auto<D>>(),
+                                          make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}),
+                                          way == "rebuild"       ? Way::rebuild
+                                          : way == "incremental" ? Way::incremental
+                                                                 : Way::automatic);
+}
+
 }  // namespace
 
 Algorithm automatic() {
   return {
       .name = "auto",
-      .summary = "looks at a sample of the boxes and chooses among the others",
+      .summary =
+          "looks at a sample of the boxes and chooses among the others; where boxes move, from frame to "
+          "frame",
       .source = "Broadside's measurements",
-      .tunables = {core::threads_tunable()},
+      .tunables = {core::threads_tunable(),
+                   {.name = "way",
+                    .summary = "in tracking: find all pairs anew in each frame, or follow what changed",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"auto", "rebuild", "incremental"}}},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
+      .tracker_2d = make_tracking<2>,
+      .tracker_3d = make_tracking<3>,
   };
 }
 

@@ -52,8 +52,10 @@ bool has_threads(const Algorithm& algorithm) {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::automatic(), own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),
-      own::bvh(),       paper::brute_force(), paper::grid(), paper::sweep_and_prune(), paper::quadtree(),
+      own::automatic(),         own::brute_force(),   own::grid(),
+      own::sweep_and_prune(),   own::quadtree(),      own::bvh(),
+      own::hierarchical_grid(), paper::brute_force(), paper::grid(),
+      paper::sweep_and_prune(), paper::quadtree(),
   };
   return list;
 }

@@ -11,5 +11,6 @@ Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
 Algorithm bvh();
+Algorithm hierarchical_grid();
 
 }  // namespace broadside::own

@@ -5,6 +5,8 @@
 #include "broadside/pair_tracker.hpp"
 #include "broadside/sinks.hpp"
 
+#include "core/pair_difference.hpp"
+
 namespace broadside {
 
 template <int D, typename Real>
@@ -22,14 +24,7 @@ void DiffTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
   };
   if (change.rebuild) find(change.before, pairs_);
   find(change.now, found_);
-  // Events need no search in the stored pairs: what a pair was in the other frame can be seen from its boxes;
-  // and of two boxes that rested nothing has to be asked.
-  const auto report = [&](Pair pair) {
-    if ((change.flags[index(pair.first)] | change.flags[index(pair.second)]) != 0)
-      change.report(pair.first, pair.second, begun, ended);
-  };
-  for (const Pair pair : found_) report(pair);
-  for (const Pair pair : pairs_) report(pair);
+  core::report_differences<D, Real>(change, found_, pairs_, begun, ended);
   std::swap(pairs_, found_);
   this->count(finder_->statistics());
 }

@@ -3,34 +3,81 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 namespace broadside::core {
 namespace {
 
-constexpr int digit_bits = 11;
-constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+/// The most bits that are sorted by at once.
+constexpr int most_bits = 11;
 
 /// Up to here comparing costs less than counting.
-constexpr std::size_t few = 512;
+constexpr std::size_t few = 128;
 
-/// Sorts `pairs` by a digit of one of their ids. Pairs of the same digit stay in order.
+constexpr int most_steps = 3;  // for 32 bits
+
+/// How the bits of an id are cut for sorting: in as few and as short digits as do for the greatest.
+class Digits {
+ public:
+  explicit Digits(std::uint32_t greatest) {
+    const int bits = std::bit_width(greatest);
+    steps_ = (bits + most_bits - 1) / most_bits;
+    width_ = steps_ == 0 ? 0 : (bits + steps_ - 1) / steps_;
+  }
+
+  int steps() const { return steps_; }
+  std::size_t values() const { return std::size_t{1} << width_; }
+  std::uint32_t operator()(BoxId id, int step) const {
+    return index(id) >> (step * width_) & ((1U << width_) - 1);
+  }
+
+ private:
+  int steps_;
+  int width_;
+};
+
+using Counts = std::array<std::uint32_t, std::size_t{1} << most_bits>;
+
+/// Sorts `pairs` by a digit that each value of has `counts` pairs. Pairs that are alike in it stay in order.
 template <typename DigitOf>
-void sort_by(std::vector<Pair>& pairs, std::vector<Pair>& scratch, DigitOf digit) {
-  std::array<std::uint32_t, buckets> places{};
-  for (const Pair pair : pairs) ++places[digit(pair)];
-  std::exclusive_scan(places.begin(), places.end(), places.begin(), std::uint32_t{0});
-  for (const Pair pair : pairs) scratch[places[digit(pair)]++] = pair;
+void sort_by(std::vector<Pair>& pairs, std::vector<Pair>& scratch, std::span<std::uint32_t> counts,
+             DigitOf digit) {
+  std::exclusive_scan(counts.begin(), counts.end(), counts.begin(), std::uint32_t{0});
+  for (const Pair pair : pairs) scratch[counts[digit(pair)]++] = pair;
   pairs.swap(scratch);
 }
 
-/// Sorts `pairs` by one of their ids.
-template <typename IdOf>
-void sort_by_id(std::vector<Pair>& pairs, std::vector<Pair>& scratch, std::uint32_t greatest, IdOf id) {
-  for (int shift = 0; shift < 32 && greatest >> shift != 0; shift += digit_bits)
-    sort_by(pairs, scratch, [=](Pair pair) { return index(id(pair)) >> shift & (buckets - 1); });
+void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+  std::uint32_t greatest_first = 0;
+  std::uint32_t greatest_second = 0;
+  for (const Pair pair : pairs) {
+    greatest_first = std::max(greatest_first, index(pair.first));
+    greatest_second = std::max(greatest_second, index(pair.second));
+  }
+  const Digits first(greatest_first);
+  const Digits second(greatest_second);
+  // Whatever the order, a digit's values are as many as they are: all are counted at once.
+  std::array<Counts, most_steps> of_first;
+  std::array<Counts, most_steps> of_second;
+  for (int step = 0; step < first.steps(); ++step) std::fill_n(of_first[step].begin(), first.values(), 0);
+  for (int step = 0; step < second.steps(); ++step) std::fill_n(of_second[step].begin(), second.values(), 0);
+  for (const Pair pair : pairs) {
+    for (int step = 0; step < first.steps(); ++step) ++of_first[step][first(pair.first, step)];
+    for (int step = 0; step < second.steps(); ++step) ++of_second[step][second(pair.second, step)];
+  }
+  scratch.resize(pairs.size());
+  for (int step = 0; step < second.steps(); ++step) {
+    sort_by(pairs, scratch, std::span(of_second[step]).first(second.values()),
+            [&, step](Pair pair) { return second(pair.second, step); });
+  }
+  for (int step = 0; step < first.steps(); ++step) {
+    sort_by(pairs, scratch, std::span(of_first[step]).first(first.values()),
+            [&, step](Pair pair) { return first(pair.first, step); });
+  }
 }
 
 }  // namespace
@@ -40,15 +87,7 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   if (pairs.size() <= few || pairs.size() > 0xffffffffU) {
     std::sort(pairs.begin(), pairs.end());
   } else {
-    scratch.resize(pairs.size());
-    std::uint32_t first = 0;
-    std::uint32_t second = 0;
-    for (const Pair pair : pairs) {
-      first = std::max(first, index(pair.first));
-      second = std::max(second, index(pair.second));
-    }
-    sort_by_id(pairs, scratch, second, [](Pair pair) { return pair.second; });
-    sort_by_id(pairs, scratch, first, [](Pair pair) { return pair.first; });
+    radix_sort(pairs, scratch);
   }
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }

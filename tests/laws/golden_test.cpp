@@ -43,7 +43,7 @@ struct GoldenOrder {
   std::uint64_t hash;
 };
 
-constexpr std::array<GoldenOrder, 12> golden_orders = {{
+constexpr std::array<GoldenOrder, 14> golden_orders = {{
     {"auto", 2, 0x84e8fe29d048d7edU},
     {"auto", 3, 0xa5ece44084832406U},
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
@@ -56,6 +56,8 @@ constexpr std::array<GoldenOrder, 12> golden_orders = {{
     {"quadtree", 3, 0x4e4907df8b50316aU},
     {"bvh", 2, 0x84e8fe29d048d7edU},
     {"bvh", 3, 0xa5ece44084832406U},
+    {"hierarchical_grid", 2, 0x41b31846a2c02011U},
+    {"hierarchical_grid", 3, 0x1f47c2fcb3649d12U},
 }};
 
 template <int D>

@@ -82,10 +82,10 @@ TEST(Compare, TracksAMovingScene) {
 
 TEST(Compare, ShowsEveryWayOfBeingWrong) {
   for (const CaseRequest& request : {small_still, small_moving}) {
-    const std::vector<std::pair<Algorithm, std::string>> wrong = {
-        {misses_a_pair(), "is missing"},
-        {repeats_a_pair(), "is reported more than once"},
-        {mistakes_a_pair(), "is reported; expected not"}};
+    std::vector<std::pair<Algorithm, std::string>> wrong = {{misses_a_pair(), "is missing"},
+                                                            {mistakes_a_pair(), "is reported; expected not"}};
+    // In motion a pair may be written twice: events are sorted, and what is there twice is dropped.
+    if (request.frames == 0) wrong.emplace_back(repeats_a_pair(), "is reported more than once");
     for (const auto& [algorithm, what] : wrong) {
       Catalogue catalogue;
       catalogue.add(algorithm);

@@ -1,0 +1,56 @@
+// The hierarchical grid: a level of cells for each size of boxes, and a box in one cell only.
+//
+// After C. Ericson, "Real-Time Collision Detection" (2005), section 7.2, and B. Mirtich's and M. Overmars'
+// use of it: since no box is filed twice, a box that moves is taken from one cell and put into another, or
+// stays where it is. Made for motion; as a finder it is filed anew at each call.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+
+#include "broadside/broad_phase.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "algorithms/hierarchical_grid_cells.hpp"
+#include "algorithms/hierarchical_grid_tracker.hpp"
+#include "kernels/cell_blocks.hpp"
+
+namespace broadside::own {
+namespace {
+
+template <int D>
+class HierarchicalGrid final : public PairFinder<D> {
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    cells_.build(boxes, boxes);
+    constexpr std::size_t batch = 64;
+    std::array<kernels::CellQuery<D>, batch> queries;
+    std::uint64_t tests = 0;
+    for (std::size_t at = 0; at < boxes.size(); at += batch) {
+      const std::size_t count = std::min(batch, boxes.size() - at);
+      for (std::size_t i = 0; i < count; ++i)
+        queries[i] = {
+            .before = boxes[at + i], .now = boxes[at + i], .bounds = boxes[at + i], .id = BoxId(at + i)};
+      tests += kernels::find_later<D>(cells_.view(), std::span(queries).first(count), pairs).tests;
+    }
+    this->count({.tests = tests, .references = boxes.size(), .cells = cells_.cells()});
+  }
+
+  HierarchicalGridCells<D> cells_;
+};
+
+}  // namespace
+
+Algorithm hierarchical_grid() {
+  return {
+      .name = "hierarchical_grid",
+      .summary = "levels of cells, one for each size of boxes; made for boxes that move",
+      .source = "C. Ericson, Real-Time Collision Detection (2005), 7.2",
+      .finder_2d = [](const Settings&) { return std::make_unique<HierarchicalGrid<2>>(); },
+      .finder_3d = [](const Settings&) { return std::make_unique<HierarchicalGrid<3>>(); },
+      .tracker_2d = [](const Settings&) { return std::make_unique<HierarchicalGridTracker<2>>(); },
+      .tracker_3d = [](const Settings&) { return std::make_unique<HierarchicalGridTracker<3>>(); },
+  };
+}
+
+}  // namespace broadside::own

@@ -1,0 +1,59 @@
+// The tracker of auto: boxes are moved in a structure that stays, or all pairs are found anew, whichever
+// costs less in this frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "broadside/pair_finder.hpp"
+#include "broadside/pair_tracker.hpp"
+
+namespace broadside::own {
+
+/// How a frame is done.
+enum class Way { automatic, rebuild, incremental };
+
+/// Decides by counts alone, of boxes, of changes and of tests, so that the same history always goes the same
+/// way. Cost of an update: near the lesser of the two ways', and never much more than finding all pairs anew.
+template <int D>
+class AutoTracker final : public PairTracker<D> {
+ public:
+  /// Both are of the library: what finds all pairs, and what follows boxes that move.
+  AutoTracker(std::unique_ptr<PairFinder<D>> finder, std::unique_ptr<PairTracker<D>> follower, Way way);
+
+  std::string explanation() const override;
+
+ private:
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  void workers_changed() override { finder_->set_workers(this->workers()); }
+  std::size_t algorithm_bytes() const noexcept override;
+
+  bool is_incremental(const Change<D>& change);
+  void rebuild(const Change<D>& change, PairSink& begun, PairSink& ended);
+  void follow(const Change<D>& change, PairSink& begun, PairSink& ended);
+  void drop_ended(const Change<D>& change, std::size_t added);
+
+  std::unique_ptr<PairFinder<D>> finder_;
+  std::unique_ptr<PairTracker<D>> follower_;
+  Way way_;
+
+  bool followed_ = false;  // whether the follower has the boxes of the last frame
+  double cost_of_mover_;   // in nanoseconds of one machine; only their ratios matter
+  double cost_of_box_;
+  double saved_ = 0;  // what following would have saved since it was last done
+  bool was_incremental_ = false;
+  std::size_t changed_ = 0;  // of the last update
+  std::size_t break_even_ = 0;
+
+  // All pairs that held in the last frame, and some that did before; one may be there more than once.
+  std::vector<Pair> pairs_;
+  std::size_t found_count_ = 0;  // how many there were when they were last known exactly
+  std::size_t looked_at_ = 0;    // where the search for those that do not hold any more goes on
+  std::vector<Pair> found_;
+  std::vector<Pair> begun_;
+};
+
+}  // namespace broadside::own
