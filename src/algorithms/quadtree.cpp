@@ -20,6 +20,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "algorithms/quadtree_tracker.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -325,9 +326,14 @@ Algorithm quadtree() {
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1 << 30},
+                   quadtree_update(),
                    core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
+      .tracker_2d =
+          [](const Settings& settings) { return make_quadtree_tracker(settings, make<2>(settings)); },
+      .tracker_3d =
+          [](const Settings& settings) { return make_quadtree_tracker(settings, make<3>(settings)); },
   };
 }
 
