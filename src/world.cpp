@@ -1,151 +1,300 @@
-// World: handles over a tracker's array of boxes.
+// World: slots, their boxes, and the handles that name them.
 #include "broadside/world.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "broadside/error.hpp"
-#include "broadside/sinks.hpp"
 
 #include "core/input_check.hpp"
+#include "world_state.hpp"
 
 namespace broadside {
 namespace {
 
-/// Refuses what is no box for add() and move(): an absent one is what remove() is for.
+/// The box with `margin` on every side.
 template <int D, typename Real>
-void check_present(const Box<D, Real>& box, std::uint32_t slot) {
-  if (is_present(box)) return;
-  const std::string name = "the box for slot " + std::to_string(slot);
-  if (is_absent(box)) throw InvalidInput(slot, name + " is absent; expected a box");
-  core::refuse_box(box, slot, name);
+Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+template <int D, typename Real>
+bool encloses(const Box<D, Real>& outer, const Box<D, Real>& inner) noexcept {
+  bool encloses = true;
+  for (int axis = 0; axis < D; ++axis)
+    encloses &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
+  return encloses;
+}
+
+/// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
+constexpr int most_margins = 4;
+
+WorldOptions with_algorithm(std::string_view spec) {
+  WorldOptions options;
+  options.algorithm = spec;
+  return options;
 }
 
 }  // namespace
 
 template <int D, typename Real>
-World<D, Real>::World(std::string_view spec) : World(make_tracker<D, Real>(spec)) {}
+World<D, Real>::World(std::string_view spec) : World(with_algorithm(spec)) {}
 
 template <int D, typename Real>
-World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker) : tracker_(std::move(tracker)) {
-  if (!tracker_) throw std::invalid_argument("World was given a null tracker; expected a tracker");
+World<D, Real>::World(const WorldOptions& options)
+    : state_(std::make_unique<State>(make_tracker<D, Real>(options.algorithm), options, true)) {}
+
+template <int D, typename Real>
+World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options)
+    : state_(std::make_unique<State>(std::move(tracker), options, false)) {}
+
+template <int D, typename Real>
+World<D, Real>::World(World&& other) noexcept = default;
+template <int D, typename Real>
+World<D, Real>& World<D, Real>::operator=(World&& other) noexcept = default;
+template <int D, typename Real>
+World<D, Real>::~World() = default;
+
+template <int D, typename Real>
+World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
+                             const WorldOptions& its_options, bool is_own)
+    : options(its_options),
+      margin(static_cast<Real>(its_options.margin)),
+      is_own_tracker(is_own),
+      tracker(std::move(its_tracker)),
+      is_refining(margin > 0) {
+  if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
+  if (!(margin >= 0) || !std::isfinite(margin)) {
+    throw std::invalid_argument("the margin of a world is " + std::to_string(options.margin) +
+                                "; expected a finite number of at least 0");
+  }
 }
 
 template <int D, typename Real>
-Handle World<D, Real>::add(const Box<D, Real>& box) {
+Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
-  const auto slot = free_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_.back();
-  check_present(box, slot);
-  if (free_.empty()) {
-    core::check_count(slots_.size() + 1);
-    boxes_.resize(slots_.size() + 1, absent_box<D, Real>());
-    slots_.emplace_back();
-  } else {
-    free_.pop_back();
-  }
-  mark_changed(slot);
-  slots_[slot].state = SlotState::live;
-  boxes_[slot] = added;
-  ++size_;
-  return {slot, slots_[slot].generation};
+  if (!is_present(added)) State::refuse_box(added, state_->next_slot(), "for slot");
+  state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
+  return state_->add_valid(added, options);
 }
 
 template <int D, typename Real>
 void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
-  if (!contains(handle)) refuse(handle, "move");
-  check_present(box, handle.slot);
-  mark_changed(handle.slot);
-  boxes_[handle.slot] = box;
+  const std::uint32_t slot = state_->live_slot(handle, "move");
+  if (!is_present(box)) State::refuse_box(box, slot, "for slot");
+  make_room(state_->changed, 1);
+  make_room(state_->moved, 1);
+  state_->set_box(slot, box);
 }
 
 template <int D, typename Real>
 void World<D, Real>::remove(Handle handle) {
-  if (!contains(handle)) refuse(handle, "remove");
-  mark_changed(handle.slot);
-  last_boxes_.insert_or_assign(handle.slot, boxes_[handle.slot]);
-  removed_.push_back(handle.slot);
-  boxes_[handle.slot] = absent_box<D, Real>();
-  slots_[handle.slot].state = SlotState::removed;
-  --size_;
-}
-
-template <int D, typename Real>
-Events World<D, Real>::update() {
-  begun_ids_.clear();
-  ended_ids_.clear();
-  PairCollector begun(begun_ids_);
-  PairCollector ended(ended_ids_);
-  tracker_->update({boxes_, changed_}, begun, ended);
-
-  collect(begun_ids_, begun_);
-  collect(ended_ids_, ended_);
-  if (!begun_.empty() || !ended_.empty()) {
-    merged_.clear();
-    std::ranges::set_difference(pairs_, ended_, std::back_inserter(merged_));
-    pairs_.clear();
-    std::ranges::merge(merged_, begun_, std::back_inserter(pairs_));
-  }
-
-  // A slot whose removal the last update reported can be used again from here on; one whose removal this
-  // update reports, from the next on.
-  for (const std::uint32_t slot : reported_) {
-    last_boxes_.erase(slot);
-    slots_[slot].state = SlotState::free;
-    ++slots_[slot].generation;
-    free_.push_back(slot);
-  }
-  reported_.clear();
-  for (const std::uint32_t slot : removed_) slots_[slot].state = SlotState::reported;
-  std::swap(reported_, removed_);
-  for (const BoxId id : changed_) slots_[index(id)].changed = false;
-  changed_.clear();
-  return {begun_, ended_};
+  const std::uint32_t slot = state_->live_slot(handle, "remove");
+  state_->reserve_removals(1, state_->ignored_edges.size());
+  state_->remove_valid(slot);
 }
 
 template <int D, typename Real>
 bool World<D, Real>::contains(Handle handle) const noexcept {
-  return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
-         slots_[handle.slot].state == SlotState::live;
+  return state_->is_live(handle);
 }
 
 template <int D, typename Real>
 const Box<D, Real>& World<D, Real>::box(Handle handle) const {
-  if (contains(handle)) return boxes_[handle.slot];
-  if (handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation) {
-    if (const auto last = last_boxes_.find(handle.slot); last != last_boxes_.end()) return last->second;
+  using SlotState = typename State::SlotState;
+  const std::uint32_t slot = state_->readable_slot(handle);
+  switch (state_->slots[slot].state) {
+    case SlotState::removed:
+      return state_->removed[state_->slots[slot].place].box;
+    case SlotState::reported:
+      return state_->reported[state_->slots[slot].place].box;
+    default:
+      return state_->boxes[slot];
+  }
+}
+
+template <int D, typename Real>
+std::uint64_t World<D, Real>::user_data(Handle handle) const {
+  const std::uint32_t slot = state_->readable_slot(handle);
+  return !state_->uses_user_data ? 0 : state_->user_data[slot];
+}
+
+template <int D, typename Real>
+void World<D, Real>::set_user_data(Handle handle, std::uint64_t user_data) {
+  const std::uint32_t slot = state_->live_slot(handle, "give user data to");
+  state_->reserve(0, false, true);
+  state_->user_data[slot] = user_data;
+}
+
+template <int D, typename Real>
+std::size_t World<D, Real>::size() const noexcept {
+  return state_->size;
+}
+
+template <int D, typename Real>
+const Workers& World<D, Real>::workers() const noexcept {
+  return state_->tracker->workers();
+}
+
+template <int D, typename Real>
+void World<D, Real>::set_workers(const Workers& workers) {
+  state_->tracker->set_workers(workers);
+}
+
+template <int D, typename Real>
+bool World<D, Real>::State::is_live(Handle handle) const noexcept {
+  return handle.slot < slots.size() && generations[handle.slot] == handle.generation &&
+         slots[handle.slot].state == SlotState::live;
+}
+
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::live_slot(Handle handle, const char* action) const {
+  if (!is_live(handle)) refuse(handle, action);
+  return handle.slot;
+}
+
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::readable_slot(Handle handle) const {
+  if (handle.slot < slots.size() && generations[handle.slot] == handle.generation) {
+    const SlotState state = slots[handle.slot].state;
+    if (state == SlotState::live || state == SlotState::removed || state == SlotState::reported)
+      return handle.slot;
   }
   refuse(handle, "read");
 }
 
 template <int D, typename Real>
-void World<D, Real>::mark_changed(std::uint32_t slot) {
-  if (slots_[slot].changed) return;
-  changed_.push_back(BoxId{slot});
-  slots_[slot].changed = true;
-}
-
-template <int D, typename Real>
-void World<D, Real>::refuse(Handle handle, const char* action) const {
+void World<D, Real>::State::refuse(Handle handle, const char* action) const {
   const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
                             std::to_string(handle.generation) + ")";
   // A slot that is free has not yet issued a handle of its own generation.
-  const bool issued =
-      handle.slot < slots_.size() &&
-      (handle.generation < slots_[handle.slot].generation ||
-       (handle.generation == slots_[handle.slot].generation && slots_[handle.slot].state != SlotState::free));
-  const char* const why = issued ? " names a box that was removed" : " was never issued by this world";
+  const bool is_issued = handle.slot < slots.size() ? handle.generation < generations[handle.slot] ||
+                                                          (handle.generation == generations[handle.slot] &&
+                                                           slots[handle.slot].state != SlotState::free)
+                                                    : handle.generation < first_generation;
+  const char* const why = is_issued ? " names a box that was removed" : " was never issued by this world";
   throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why +
                       "; expected a box in the world");
 }
 
+/// What is no box for add() and move(): an absent one is what remove() is for.
 template <int D, typename Real>
-void World<D, Real>::collect(std::span<const Pair> pairs, std::vector<HandlePair>& handles) const {
-  handles.clear();
-  const auto handle = [this](BoxId id) { return Handle{index(id), slots_[index(id)].generation}; };
-  for (const Pair pair : pairs) handles.push_back({handle(pair.first), handle(pair.second)});
+void World<D, Real>::State::refuse_box(const Box<D, Real>& box, std::size_t place, const char* whose) {
+  const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
+  if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
+  core::refuse_box(box, place, name);
+}
+
+/// The slot that the next box gets: the lowest free one, so that the arrays stay dense.
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::next_slot() const noexcept {
+  return free.empty() ? static_cast<std::uint32_t>(slots.size()) : free.lowest();
+}
+
+/// Makes all the room that adding so many boxes takes, so that it cannot fail half way.
+template <int D, typename Real>
+void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool with_user_data) {
+  const std::size_t added = count > free.size() ? count - free.size() : 0;
+  core::check_count(slots.size() + added);
+  make_room(boxes, added);
+  make_room(generations, added);
+  make_room(slots, added);
+  make_room(changed, count);
+  if (has_margin()) {
+    make_room(enlarged, added);
+    make_room(moved, count);
+  }
+  if (with_filters || uses_filters) make_room(filters, slots.size() - filters.size() + added);
+  if (with_user_data || uses_user_data) make_room(user_data, slots.size() - user_data.size() + added);
+  free.reserve(slots.size() + added);
+  // Nothing is done yet, but from here on these are in use.
+  if (with_filters) filters.resize(slots.size());
+  if (with_user_data) user_data.resize(slots.size());
+  uses_filters |= with_filters;
+  uses_user_data |= with_user_data;
+}
+
+template <int D, typename Real>
+Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOptions& its_options) noexcept {
+  const std::uint32_t slot = next_slot();
+  if (slot == slots.size()) {
+    boxes.push_back(absent_box<D, Real>());
+    if (has_margin()) enlarged.push_back(absent_box<D, Real>());
+    generations.push_back(first_generation);
+    slots.emplace_back();
+    if (uses_filters) filters.emplace_back();
+    if (uses_user_data) user_data.emplace_back();
+  } else {
+    free.erase(slot);
+  }
+  slots[slot].state = SlotState::live;
+  if (uses_filters) filters[slot] = its_options.filter;
+  if (uses_user_data) user_data[slot] = its_options.user_data;
+  set_box(slot, box);
+  ++size;
+  return {slot, generations[slot]};
+}
+
+/// There is room in `changed` and `moved`.
+template <int D, typename Real>
+void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& box) noexcept {
+  mark_changed(slot);
+  boxes[slot] = box;
+  if (!has_margin()) return;
+  Box<D, Real>& seen = enlarged[slot];
+  if (!is_absent(seen) && encloses(seen, box) && encloses(enlarge(box, most_margins * margin), seen)) return;
+  mark_moved(slot);
+  seen = enlarge(box, margin);
+}
+
+/// Makes all the room that removing so many boxes takes, which may be part of so many ignored pairs.
+template <int D, typename Real>
+void World<D, Real>::State::reserve_removals(std::size_t count, std::size_t ignored_count) {
+  make_room(changed, count);
+  make_room(moved, count);
+  make_room(removed, count);
+  make_room(ignored_changed, ignored_count);
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::remove_valid(std::uint32_t slot) noexcept {
+  mark_changed(slot);
+  slots[slot].state = SlotState::removed;
+  slots[slot].place = static_cast<std::uint32_t>(removed.size());
+  removed.push_back({slot, boxes[slot]});
+  boxes[slot] = absent_box<D, Real>();
+  if (has_margin()) {
+    mark_moved(slot);
+    enlarged[slot] = absent_box<D, Real>();
+  }
+  ignored_edges.for_each_of(BoxId{slot}, [this](core::PairGraph::EdgeId edge) {
+    const Pair pair = ignored_edges.pair(edge);
+    ignored.erase(pair);
+    ignored_changed.push_back(pair);
+    ignored_edges.erase(edge);
+  });
+  --size;
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::mark_changed(std::uint32_t slot) noexcept {
+  is_settled = false;
+  if (slots[slot].is_changed) return;
+  slots[slot].is_changed = true;
+  changed.push_back(BoxId{slot});
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::mark_moved(std::uint32_t slot) noexcept {
+  if (slots[slot].is_moved) return;
+  slots[slot].is_moved = true;
+  moved.push_back(BoxId{slot});
 }
 
 template class World<2, float>;

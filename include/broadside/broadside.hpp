@@ -9,6 +9,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/find_pairs.hpp"
+#include "broadside/handle.hpp"
 #include "broadside/instruction_set.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/pair_finder.hpp"
@@ -21,4 +22,6 @@
 #include "broadside/statistics.hpp"
 #include "broadside/version.hpp"
 #include "broadside/world.hpp"
+#include "broadside/world_options.hpp"
+#include "broadside/world_statistics.hpp"
 // IWYU pragma: end_exports

@@ -2,117 +2,136 @@
 // engines.
 #pragma once
 
-#include <compare>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/broad_phase.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/handle.hpp"
+#include "broadside/world_options.hpp"
+#include "broadside/world_statistics.hpp"
 
 namespace broadside {
 
-/// Names one box of a world for as long as it lives. A slot is used again, under another generation.
-struct Handle {
-  std::uint32_t slot = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t generation = 0;
-
-  friend constexpr auto operator<=>(const Handle&, const Handle&) = default;
-};
-
-/// Two boxes of a world; first.slot < second.slot.
-struct HandlePair {
-  Handle first;
-  Handle second;
-
-  friend constexpr auto operator<=>(const HandlePair&, const HandlePair&) = default;
-};
-
-/// What one update brought, sorted by slots. Valid until the next update of the world it came from.
-struct Events {
-  std::span<const HandlePair> begun;
-  std::span<const HandlePair> ended;
-};
-
 /// A set of boxes that changes, and its overlapping pairs.
 ///
-/// Of boxes of floats or of doubles. add(), move() and remove() cost O(1) and show their effect on pairs at
-/// the next update(). One thread at a time; several may read between updates. A world that was moved from may
-/// only be assigned to or destroyed.
+/// Of boxes of floats or of doubles. What is done to boxes and filters shows its effect on pairs at the next
+/// update(). One thread at a time; between updates, while nothing is changed, several may call the const
+/// members. A call that throws has changed nothing, and a failed update can be tried again. A world that was
+/// moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
 class World {
  public:
-  /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec.
+  /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
+  /// std::invalid_argument if a margin is negative or not finite.
   explicit World(std::string_view spec = default_algorithm);
+  explicit World(const WorldOptions& options);
 
-  /// A world over a tracker of the caller's.
-  explicit World(std::unique_ptr<PairTracker<D, Real>> tracker);
+  /// A world over a tracker of the caller's, which no frame was handed to; options.algorithm is not used.
+  explicit World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options = {});
 
-  /// Adds a box and names it. Throws InvalidInput if the box has a NaN or min > max.
-  Handle add(const Box<D, Real>& box);
+  World(World&& other) noexcept;
+  World& operator=(World&& other) noexcept;
+  ~World();
 
-  /// Replaces a box. Throws InvalidHandle if it is not in the world, InvalidInput as add() does.
+  /// Adds a box and names it. O(1). Throws InvalidInput if the box has a NaN or min > max.
+  Handle add(const Box<D, Real>& box, const BoxOptions& options = {});
+
+  /// Replaces a box. O(1). Throws InvalidHandle if it is not in the world, InvalidInput as add() does.
   void move(Handle handle, const Box<D, Real>& box);
 
-  /// Takes a box out. Its pairs end at the next update. Throws InvalidHandle if it is not in the world.
+  /// Takes a box out, and forgets what was ignored of it. O(1). Its pairs end at the next update. Throws
+  /// InvalidHandle if it is not in the world.
   void remove(Handle handle);
 
-  /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
-  const Workers& workers() const noexcept { return tracker_->workers(); }
-  void set_workers(const Workers& workers) { tracker_->set_workers(workers); }
+  /// The same for many at once: all of them or, if one is wrong, none. `handles` takes the names of the
+  /// boxes; `options` are one for each box, or none. Adding a million boxes to an empty world is one build at
+  /// the next update. Throws std::invalid_argument if the lengths differ; of a handle given twice, the last
+  /// move counts and the second removal is refused.
+  void add(std::span<const Box<D, Real>> boxes, std::span<Handle> handles,
+           std::span<const BoxOptions> options = {});
+  void move(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes);
+  void remove(std::span<const Handle> handles);
 
-  /// Brings the pairs up to date. Cost: the tracker's, and one pass over the current pairs if any began or
-  /// ended.
+  /// Makes `origin` the new origin: subtracts it from all coordinates. O(slots), and the next update has
+  /// everything changed. Pairs that rounding makes or parts begin or end there. Throws InvalidInput if a
+  /// coordinate of `origin` is not finite.
+  void shift_origin(const std::array<Real, D>& origin);
+
+  /// Replaces a box's filter. O(1), but the first one other than the standard one makes the next update take
+  /// all boxes for changed. Throws InvalidHandle.
+  void set_filter(Handle handle, const Filter& filter);
+
+  /// Lets two boxes never count as a pair, as those that a joint connects, or lets them again; what was so
+  /// already stays so. Forgotten when one of the boxes is removed. O(1), some 100 bytes a pair. Throws
+  /// InvalidHandle, and std::invalid_argument for a box with itself.
+  void ignore(Handle a, Handle b);
+  void unignore(Handle a, Handle b);
+  bool is_ignored(Handle a, Handle b) const;
+
+  /// Has update() ask `predicate` about each pair before it begins, in the order of the slots, and in this
+  /// thread; from the next update on, and then about all current pairs as well. It may read the world and
+  /// must not change it; what it throws is thrown by update(). An empty one lets all pairs count. Without
+  /// `keep_pairs` it must be set before the first update, else std::logic_error is thrown. Some 50 bytes for
+  /// each pair of boxes that overlap.
+  void set_predicate(PairPredicate predicate);
+
+  /// Has the next update ask the predicate again: about the pairs of one box, or about all. Without a
+  /// predicate nothing happens; set_filter() needs no such call. Throws InvalidHandle.
+  void refilter(Handle handle);
+  void refilter();
+
+  /// Brings the pairs up to date. Cost: the tracker's, O(changed) for the boxes, and some ten nanoseconds an
+  /// event; never O(boxes) or O(pairs), but that memory no longer needed is given back now and then.
   Events update();
 
-  /// The pairs that hold since the last update, sorted by slots. Valid until the next update.
-  std::span<const HandlePair> pairs() const noexcept { return pairs_; }
+  /// The pairs that hold since the last update, sorted by slots, and those of them that did not begin in it.
+  /// Valid until the next update. O(events since it was last asked), and one pass over the pairs if there
+  /// were any. Throws std::logic_error in a world without `keep_pairs`.
+  std::span<const HandlePair> pairs() const;
+  std::span<const HandlePair> persisting() const;
+
+  /// Puts into `pairs` those of a box of this world and an overlapping one of `other`, if their filters
+  /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Cost:
+  /// one search between two sets, which takes memory of its own.
+  void join(const World& other, std::vector<HandlePair>& pairs) const;
 
   /// Whether the box is in the world: added and not removed.
   bool contains(Handle handle) const noexcept;
 
   /// The box as it was last set. A removed one stays readable until the update after the one that reported
-  /// its removal, so that whoever handles its ended pairs can look at it. The reference holds until the next
-  /// add(), remove() or update(). Throws InvalidHandle.
+  /// its removal, so that whoever handles its ended pairs can look at it; so do its filter and user data. The
+  /// reference holds until the next add(), remove() or update(). Throws InvalidHandle.
   const Box<D, Real>& box(Handle handle) const;
+  Filter filter(Handle handle) const;
+  std::uint64_t user_data(Handle handle) const;
+  void set_user_data(Handle handle, std::uint64_t user_data);
 
   /// The number of boxes in the world.
-  std::size_t size() const noexcept { return size_; }
+  std::size_t size() const noexcept;
+
+  /// What the world holds and what the last update did. O(1), but for what the tracker says of itself.
+  WorldStatistics statistics() const;
+
+  /// Gives memory back that the boxes there are do not need. It costs one build; update() does it by itself
+  /// when some three quarters of the slots are gone. A tracker of the caller's keeps what it has.
+  void shrink_to_fit();
+
+  /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
+  const Workers& workers() const noexcept;
+  void set_workers(const Workers& workers);
 
  private:
-  enum class SlotState : std::uint8_t { free, live, removed, reported };
+  struct State;
 
-  struct Slot {
-    std::uint32_t generation = 0;
-    SlotState state = SlotState::free;
-    bool changed = false;
-  };
-
-  void mark_changed(std::uint32_t slot);
-  [[noreturn]] void refuse(Handle handle, const char* action) const;
-  void collect(std::span<const Pair> pairs, std::vector<HandlePair>& handles) const;
-
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
-  std::vector<Box<D, Real>> boxes_;  // by slot; absent where nothing lives
-  std::vector<Slot> slots_;
-  std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> removed_;                          // since the last update
-  std::vector<std::uint32_t> reported_;                         // whose removal the last update reported
-  std::unordered_map<std::uint32_t, Box<D, Real>> last_boxes_;  // of those two
-  std::vector<BoxId> changed_;
-  std::vector<Pair> begun_ids_;
-  std::vector<Pair> ended_ids_;
-  std::vector<HandlePair> begun_;
-  std::vector<HandlePair> ended_;
-  std::vector<HandlePair> pairs_;
-  std::vector<HandlePair> merged_;
-  std::size_t size_ = 0;
+  std::unique_ptr<State> state_;
 };
 
 using World2 = World<2>;

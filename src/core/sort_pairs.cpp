@@ -82,13 +82,17 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 
 }  // namespace
 
-void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   // What is 2^32 or more does not fit the counts, and is never seen.
   if (pairs.size() <= few || pairs.size() > 0xffffffffU) {
     std::sort(pairs.begin(), pairs.end());
   } else {
     radix_sort(pairs, scratch);
   }
+}
+
+void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+  sort(pairs, scratch);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 

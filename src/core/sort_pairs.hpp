@@ -7,8 +7,11 @@
 
 namespace broadside::core {
 
-/// Sorts `pairs` and drops those that are there twice. `scratch` is memory to be kept between calls. O(n)
-/// where there are many: a radix sort over the bits in which they differ.
+/// Sorts `pairs`. `scratch` is memory to be kept between calls. O(n) where there are many: a radix sort over
+/// the bits in which they differ.
+void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
+
+/// Likewise, and drops those that are there twice.
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
 
 }  // namespace broadside::core
