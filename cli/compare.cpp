@@ -14,6 +14,7 @@
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/motion_options.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
@@ -34,6 +35,7 @@ struct CompareArguments {
   std::vector<int> dimensions;
   std::vector<double> moving;
   std::string frames;
+  MotionOptions motion;
   std::vector<std::string> threads = {"1"};
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
@@ -43,16 +45,20 @@ struct CompareArguments {
 
 std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
   const bool own_plan = !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
-                        !arguments.frames.empty();
+                        !arguments.frames.empty() || arguments.motion.any();
   if (own_plan) {
     if (arguments.is_long)
-      throw Unusable("--long is a plan of its own; expected it without --scenes, -n, --moving and --frames");
+      throw Unusable(
+          "--long is a plan of its own; expected it without --scenes, -n, --moving, --frames, "
+          "--drift and --teleport");
     return lab::plan_of({
         .scenes = arguments.scenes,
         .boxes = read_counts("-n", arguments.boxes),
         .dimensions = arguments.dimensions,
         .moving = arguments.moving,
         .frames = arguments.frames.empty() ? 0 : read_count("--frames", arguments.frames),
+        .drift = arguments.motion.drift_or_standard(),
+        .teleport = arguments.motion.teleport_or_standard(),
         .find = find,
     });
   }
@@ -63,6 +69,10 @@ std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const l
 void check(const CompareArguments& arguments) {
   for (const int dimension : arguments.dimensions) check_dimension(dimension);
   for (const double moving : arguments.moving) check_fraction("--moving", moving);
+  check(arguments.motion);
+  const bool any_moves = std::ranges::any_of(arguments.moving, [](double moving) { return moving > 0; });
+  if (arguments.motion.any() && !any_moves && arguments.frames.empty())
+    throw Unusable("--drift and --teleport say how boxes move; expected --moving or --frames as well");
   if (arguments.budget && !(*arguments.budget > 0))
     throw Unusable(fmt::format("--budget is {}; expected a number of seconds above 0", *arguments.budget));
   if (std::ranges::find(arguments.scenes, arguments.json) != arguments.scenes.end())
@@ -80,8 +90,10 @@ void warn_of_ignored(const CompareArguments& arguments, const lab::FindScene& fi
     };
     if (!arguments.boxes.empty() && scene.fixed_count) warn("-n", "whose number of boxes is its own");
     if (arguments.seed && scene.fixed_seed) warn("--seed", "which is the same for every seed");
-    if (!arguments.moving.empty() && (scene.history_2d || scene.history_3d))
-      warn("--moving", "which moves by itself");
+    if (!scene.history_2d && !scene.history_3d) continue;
+    if (!arguments.moving.empty()) warn("--moving", "which moves by itself");
+    if (arguments.motion.drift) warn("--drift", "which moves by itself");
+    if (arguments.motion.teleport) warn("--teleport", "which moves by itself");
   }
 }
 
@@ -101,7 +113,7 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   warn_of_ignored(arguments, options.find);
   options.seed = arguments.seed.value_or(options.seed);
   if (arguments.is_long) options.effort = lab::long_effort();
-  if (arguments.budget) options.effort.budget_seconds = *arguments.budget;
+  if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
   options.finished = [&](const lab::CaseResult& result) {
@@ -158,6 +170,7 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
       ->delimiter(',');
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
+  add_motion_options(*verb, arguments->motion);
   verb->add_option("--threads", arguments->threads,
                    "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
                    "1,2, each. Our own use them, others are there once, with one thread")
@@ -168,8 +181,9 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
       ->check(is_seed);
   verb->add_option("--budget", arguments->budget,
                    fmt::format("Seconds that one search, or one history, may take; a slower algorithm is "
-                               "skipped and its time estimated (standard: {}, with --long {})",
-                               lab::Effort{}.budget_seconds, lab::long_effort().budget_seconds));
+                               "skipped and its time estimated (standard: {} and {}, with --long {})",
+                               lab::Effort{}.budget_seconds, lab::Effort{}.history_seconds,
+                               lab::long_effort().budget_seconds));
   verb->add_option("--json", arguments->json, "Write the results to this file as well")->type_name("FILE");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   return [arguments, command] { return run(*arguments, command); };

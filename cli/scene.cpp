@@ -13,6 +13,7 @@
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/motion_options.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -33,6 +34,7 @@ struct SceneArguments {
   int dimension = 0;
   std::optional<double> moving;
   std::string frames;
+  MotionOptions motion;
   std::optional<std::uint64_t> seed;
 };
 
@@ -43,7 +45,10 @@ void check(const SceneArguments& arguments, const lab::Scene& scene) {
   };
   if (!arguments.boxes.empty() && scene.fixed_count) refuse("-n", "whose number of boxes is its own");
   if (arguments.seed && scene.fixed_seed) refuse("--seed", "which is the same for every seed");
-  if (arguments.moving && (scene.history_2d || scene.history_3d)) refuse("--moving", "which moves by itself");
+  if (!scene.history_2d && !scene.history_3d) return;
+  if (arguments.moving) refuse("--moving", "which moves by itself");
+  if (arguments.motion.drift) refuse("--drift", "which moves by itself");
+  if (arguments.motion.teleport) refuse("--teleport", "which moves by itself");
 }
 
 template <int D>
@@ -54,6 +59,8 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
   request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
   request.moving = arguments.moving.value_or(0);
+  request.drift = arguments.motion.drift_or_standard();
+  request.teleport = arguments.motion.teleport_or_standard();
   if (!arguments.frames.empty())
     request.frames = read_count("--frames", arguments.frames);
   else if (moves)
@@ -70,6 +77,7 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
 Exit run(const SceneArguments& arguments) {
   on_signal(OnSignal::end);
   if (arguments.moving) check_fraction("--moving", *arguments.moving);
+  check(arguments.motion);
   check_writable("-o", arguments.output);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   const lab::NamedScene named =
@@ -103,6 +111,7 @@ Verb add_scene(CLI::App& program) {
   verb->add_option(
       "--frames", arguments->frames,
       "Frames after the first (standard: 20 where something moves); alone, a tenth of the boxes moves");
+  add_motion_options(*verb, arguments->motion);
   verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
       ->check(is_seed);
   add_file_options(*verb, arguments->input);

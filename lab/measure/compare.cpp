@@ -59,6 +59,22 @@ void check_pair_count(std::span<const Box<D>> boxes) {
   }
 }
 
+/// Refuses motion whose steps, and the events that are to be expected of them, would fill the machine.
+template <int D>
+void check_steps(const CaseRequest& request) {
+  constexpr double most = 4e9;  // bytes
+  const double moved =
+      request.moving * static_cast<double>(request.boxes) * static_cast<double>(request.frames);
+  // In a frame about as many pairs begin or end as boxes move, where these have some neighbours.
+  const double taken = moved * static_cast<double>(sizeof(Box<D>) + sizeof(BoxId) + 2 * sizeof(Pair));
+  if (taken > most) {
+    throw std::runtime_error(fmt::format(
+        "{} frames of {:.0f} boxes that move are about {:.1f} GB; expected at most {:.0f} GB, since "
+        "they are kept to be followed again",
+        request.frames, request.moving * static_cast<double>(request.boxes), taken / 1e9, most / 1e9));
+  }
+}
+
 class Runner {
  public:
   Runner(const Catalogue& catalogue, const CompareOptions& options)
@@ -132,10 +148,15 @@ class Runner {
     watch.at("making the boxes");
     const auto make = [&](std::uint64_t seed) {
       of.seeds.push_back(seed);
-      inputs.push_back(make_history<D>(
-          named.scene, named.spec,
-          {.boxes = request.boxes, .seed = seed, .frames = request.frames, .moving = request.moving}));
+      inputs.push_back(make_history<D>(named.scene, named.spec,
+                                       {.boxes = request.boxes,
+                                        .seed = seed,
+                                        .frames = request.frames,
+                                        .moving = request.moving,
+                                        .drift = request.drift,
+                                        .teleport = request.teleport}));
     };
+    check_steps<D>(request);
     make(options_.seed);
     check_pair_count<D>(inputs[0].boxes);
     of.scene = named.spec.text();
@@ -147,6 +168,10 @@ class Runner {
     of.frames = inputs[0].steps.size();
     of.moving = moving_fraction(inputs[0]);
     of.mode = of.frames == 0 ? Mode::find : Mode::track;
+    if (of.mode == Mode::track && request.moving > 0) {
+      of.drift = request.drift;
+      of.teleport = request.teleport;
+    }
     const std::size_t seeds = named.scene.fixed_seed ? 1 : seeds_for(of.boxes, of.mode);
     for (std::size_t i = 1; i < seeds; ++i) make(options_.seed + i);
   }

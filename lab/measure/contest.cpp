@@ -56,9 +56,9 @@ void fail(Measurement& entry, const std::string& fault) {
 void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, double budget) {
   entry.outcome = Outcome::skipped;
   entry.reason = text(estimate);
-  if (calls > 1) entry.reason += fmt::format(", for each of {} frames", grouped(calls));
+  if (calls > 1) entry.reason += fmt::format(", for {} frames", grouped(calls));
   entry.reason += fmt::format("; budget {:g} s", budget);
-  entry.estimated_ms = estimate.seconds * 1e3;
+  entry.estimated_ms = estimate.seconds * 1e3 / static_cast<double>(calls);
 }
 
 void count_memory(Measurement& entry, const Algorithm& algorithm,

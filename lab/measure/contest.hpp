@@ -68,7 +68,8 @@ std::string fault_of(const Measurement& entry, const std::function<std::string()
 /// Marks the contender as wrong. It keeps no time.
 void fail(Measurement& entry, const std::string& fault);
 
-/// Marks the contender as too slow for `budget` seconds, in which it would have to make `calls` calls.
+/// Marks the contender as too slow for `budget` seconds, in which it would have to make `calls` calls. The
+/// estimate is of all of them.
 void skip(Measurement& entry, const Estimate& estimate, std::size_t calls, double budget);
 
 /// Notes the memory that was counted, if it was and if all that `algorithm` takes could be counted.

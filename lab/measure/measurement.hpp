@@ -21,9 +21,11 @@ struct Case {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of the scene, the standard ones too
   std::vector<std::uint64_t> seeds;
   int dimension = 2;
-  std::size_t boxes = 0;   ///< the most there are in any frame
-  std::size_t frames = 0;  ///< after the first; 0 in a still scene
-  double moving = 0;       ///< the mean fraction of the boxes that change from one frame to the next
+  std::size_t boxes = 0;          ///< the most there are in any frame
+  std::size_t frames = 0;         ///< after the first; 0 in a still scene
+  double moving = 0;              ///< the mean fraction of the boxes that change from one frame to the next
+  std::optional<double> drift{};  ///< how a scene that does not move by itself was set moving, as in
+  std::optional<double> teleport{};  ///< SceneRequest; empty for others
   Mode mode = Mode::find;
 };
 
@@ -46,7 +48,8 @@ struct Measurement {
   std::string reason;                  ///< why there is no time: what diverged first, or why it was skipped
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
-  std::vector<double> samples_ms;  ///< each a whole call, from boxes to pairs, or a frame
+  std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
+  std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
   std::optional<Statistics> statistics;
@@ -64,10 +67,11 @@ struct CaseResult {
 
 /// How much time an algorithm may take in a case.
 struct Effort {
-  double budget_seconds = 0.25;    ///< for one search, or a whole history; above it the algorithm is skipped
-  double share_seconds = 0.02;     ///< timed calls go on until they have taken this long together ...
-  std::size_t least_samples = 3;   ///< ... and are at least so many ...
-  std::size_t most_samples = 100;  ///< ... and at most so many ...
+  double budget_seconds = 0.25;        ///< for one search; above it the algorithm is skipped
+  double history_seconds = 0.5;        ///< likewise for a whole history, from its first frame to its last
+  double share_seconds = 0.02;         ///< timed calls go on until they have taken this long together ...
+  std::size_t least_samples = 3;       ///< ... and are at least so many ...
+  std::size_t most_samples = 100;      ///< ... and at most so many ...
   double single_sample_seconds = 0.3;  ///< ... unless one takes so long that it is left at one
 };
 

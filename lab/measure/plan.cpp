@@ -67,7 +67,12 @@ std::vector<CaseRequest> plan_from(const std::vector<Part>& parts) {
         for (const double moving : part.moving) {
           for (const int dimension : {2, 3}) {
             if (has_dimension(scene, dimension))
-              plan.push_back({scene, dimension, boxes, moving, part.frames, false});
+              plan.push_back({.scene = scene,
+                              .dimension = dimension,
+                              .boxes = boxes,
+                              .moving = moving,
+                              .frames = part.frames,
+                              .required = false});
           }
         }
       }
@@ -93,6 +98,7 @@ std::vector<CaseRequest> long_plan() { return plan_from(long_parts()); }
 
 Effort long_effort() {
   return {.budget_seconds = 30,
+          .history_seconds = 30,
           .share_seconds = 1,
           .least_samples = 5,
           .most_samples = 400,
@@ -128,12 +134,14 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
       const std::size_t frames = wishes.frames > 0 ? wishes.frames : all;
       for (const std::size_t count : counts) {
         for (const double moving : fractions) {
-          const CaseRequest request{name,
-                                    dimension,
-                                    scene.fixed_count ? 0 : count,
-                                    moves ? 0 : moving,
-                                    moves || moving > 0 ? frames : 0,
-                                    named};
+          const CaseRequest request{.scene = name,
+                                    .dimension = dimension,
+                                    .boxes = scene.fixed_count ? 0 : count,
+                                    .moving = moves ? 0 : moving,
+                                    .frames = moves || moving > 0 ? frames : 0,
+                                    .drift = wishes.drift,
+                                    .teleport = wishes.teleport,
+                                    .required = named};
           if (std::ranges::find(plan, request) == plan.end()) plan.push_back(request);
           if (moves) break;
         }

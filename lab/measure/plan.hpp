@@ -16,10 +16,12 @@ namespace broadside::lab {
 struct CaseRequest {
   std::string scene;  ///< as a spec, or the path of a file
   int dimension = 2;
-  std::size_t boxes = 0;   ///< ignored by a scene that has a count of its own
-  double moving = 0;       ///< the fraction that moves, 0 for a scene that moves by itself
-  std::size_t frames = 0;  ///< 0: still
-  bool required = true;    ///< whether it is an error if the scene is not there
+  std::size_t boxes = 0;                      ///< ignored by a scene that has a count of its own
+  double moving = 0;                          ///< the fraction that moves, 0 for a scene that moves by itself
+  std::size_t frames = 0;                     ///< 0: still
+  double drift = SceneRequest{}.drift;        ///< as in SceneRequest
+  double teleport = SceneRequest{}.teleport;  ///< likewise
+  bool required = true;                       ///< whether it is an error if the scene is not there
 
   bool operator==(const CaseRequest&) const = default;
 };
@@ -39,6 +41,8 @@ struct Wishes {
   std::vector<int> dimensions{};
   std::vector<double> moving{};
   std::size_t frames = 0;  ///< 0: 20 where boxes move, all where they move in a file
+  double drift = SceneRequest{}.drift;
+  double teleport = SceneRequest{}.teleport;
   FindScene find = [](std::string_view text) { return find_scene(text); };
 };
 

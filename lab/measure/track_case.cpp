@@ -2,6 +2,7 @@
 #include "lab/measure/track_case.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/expected_events.hpp"
+#include "lab/measure/samples.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -29,6 +31,7 @@ struct Contestant {
   const ExpectedEvents* expected = nullptr;   // of this pass
   EventHasher hasher{};
   std::vector<double> frames_ms{};  // of this pass
+  std::vector<double> builds_ms{};  // the first frames of all passes
   double pass_ms = 0;               // of this pass, the first frame too
   double spent_ms = 0;              // in frames, of all passes
   std::uint64_t tests = 0;
@@ -104,15 +107,14 @@ class TrackCase {
     const History<D>& history = inputs_[0];
     entry.reason = unfit(contender, D, extremes_);
     if (!entry.reason.empty()) return false;
-    const double frames = static_cast<double>(case_.frames + 1);
-    const double budget = contest_.effort.budget_seconds;
-    const auto frame_seconds = [&](std::size_t count) {
+    const double budget = contest_.effort.history_seconds;
+    const auto history_seconds = [&](std::size_t count) {
       contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
-      return slowest_frame(contender, thinned(history, count, 2)) / 1e3;
+      return seconds_of(contender, thinned(history, count, 2));
     };
     const std::string fault = fault_of(entry, [&]() -> std::string {
       // A history cannot be left half way, so that its frames share the budget.
-      if (const auto estimate = estimate_above(budget / frames, case_.boxes, frame_seconds))
+      if (const auto estimate = estimate_above(budget, case_.boxes, history_seconds))
         skip(entry, *estimate, case_.frames + 1, budget);
       return {};
     });
@@ -120,15 +122,24 @@ class TrackCase {
     return entry.reason.empty();
   }
 
-  double slowest_frame(const Contender& contender, const History<D>& history) {
-    const auto tracker = make_tracker<D>(*contender.algorithm, contender.spec);
-    std::vector<Box<D>> boxes = history.boxes;
-    double slowest = update(*tracker, {boxes, {}});
-    for (const Step<D>& step : history.steps) {
-      apply(step, boxes);
-      slowest = std::max(slowest, update(*tracker, {boxes, step.changed}));
+  /// Seconds for as many frames as the case has, by a history's first frame and the mean of its others; of
+  /// two tries the shorter one, since what is short is easily disturbed.
+  double seconds_of(const Contender& contender, const History<D>& history) {
+    double least = INFINITY;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const auto tracker = make_tracker<D>(*contender.algorithm, contender.spec);
+      std::vector<Box<D>> boxes = history.boxes;
+      const double first = update(*tracker, {boxes, {}});
+      double others = 0;
+      for (const Step<D>& step : history.steps) {
+        apply(step, boxes);
+        others += update(*tracker, {boxes, step.changed});
+      }
+      const double frames = static_cast<double>(case_.frames) /
+                            static_cast<double>(std::max<std::size_t>(history.steps.size(), 1));
+      least = std::min(least, (first + others * frames) / 1e3);
     }
-    return slowest;
+    return least;
   }
 
   /// Milliseconds for one frame, whose events are then in events_.
@@ -183,7 +194,7 @@ class TrackCase {
     };
     const double milliseconds = is_first ? counted(contestant, make_and_update) : make_and_update();
     contestant.pass_ms += milliseconds;
-    if (frame > 0) contestant.frames_ms.push_back(milliseconds);
+    (frame > 0 ? contestant.frames_ms : contestant.builds_ms).push_back(milliseconds);
     if (is_first) note(contestant, frame);
     return difference(events_, expected.frames[frame], contestant.entry->algorithm, frame, now.boxes);
   }
@@ -220,6 +231,8 @@ class TrackCase {
     entry.outcome = Outcome::verified;
     entry.pairs = static_cast<std::uint64_t>(contestant.pairs);
     entry.pair_hash = contestant.hasher.hash();
+    entry.explanation = contestant.tracker->explanation();
+    entry.build_ms = median(contestant.builds_ms);
     if (contestant.pass_ms > contest_.effort.single_sample_seconds * 1e3) {
       entry.samples_ms = contestant.frames_ms;
       contestant.done = true;
@@ -230,6 +243,8 @@ class TrackCase {
     if (contestant.done) return;
     Measurement& entry = *contestant.entry;
     entry.samples_ms.insert(entry.samples_ms.end(), contestant.frames_ms.begin(), contestant.frames_ms.end());
+    // The first pass counts memory, which takes time.
+    entry.build_ms = median(std::span(contestant.builds_ms).subspan(1));
     contestant.spent_ms += contestant.pass_ms;
     const std::size_t samples = entry.samples_ms.size();
     contestant.done = samples >= contest_.effort.most_samples ||

@@ -50,6 +50,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   const std::vector<double>& samples = measurement.samples_ms;
   const bool timed = !samples.empty();
   const auto& statistics = measurement.statistics;
+  const double movers = of.mode == Mode::track ? of.moving * static_cast<double>(of.boxes) : 0;
   Json parameters = Json::object();
   for (const auto& [name, value] : of.parameters) parameters[name] = value;
   Json json;
@@ -60,6 +61,8 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["boxes"] = of.boxes;
   json["frames"] = of.frames;
   json["moving"] = of.moving;
+  json["drift"] = or_null(of.drift);
+  json["teleport"] = or_null(of.teleport);
   json["algorithm"] = measurement.algorithm;
   json["version"] = measurement.version;
   json["kind"] = name(measurement.kind);
@@ -77,10 +80,11 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
   json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
   json["samples_ms"] = timed ? Json(samples) : Json();
-  json["build_ms"] = nullptr;
+  json["build_ms"] = timed ? or_null(measurement.build_ms) : Json();
   json["search_ms"] = nullptr;
   json["ns_per_box"] =
       timed && of.boxes > 0 ? Json(median(samples) * 1e6 / static_cast<double>(of.boxes)) : Json();
+  json["ns_per_mover"] = timed && movers > 0 ? Json(median(samples) * 1e6 / movers) : Json();
   json["floor_ms"] = result.floor_ms.empty() ? Json() : Json(median(result.floor_ms));
   json["tests"] = statistics ? Json(statistics->tests) : Json();
   json["references"] = statistics ? Json(statistics->references) : Json();

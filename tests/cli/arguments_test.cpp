@@ -31,8 +31,9 @@ TEST(Help, NamesEveryVerbAndEveryOption) {
                                  HasSubstr("--version"), HasSubstr("Exit status: 0 fine")));
   const Ended compare = run({"compare", "--help"});
   EXPECT_EQ(compare.status, 0);
-  for (const char* const option : {"--algorithms", "--scenes", "-n", "--dimension", "--moving", "--frames",
-                                   "--threads", "--seed", "--json", "--budget", "--long"})
+  for (const char* const option :
+       {"--algorithms", "--scenes", "-n", "--dimension", "--moving", "--frames", "--drift", "--teleport",
+        "--threads", "--seed", "--json", "--budget", "--long"})
     EXPECT_THAT(compare.output, HasSubstr(option));
 }
 
@@ -82,6 +83,10 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{"compare", "-n", "1.5"}, {"-n is '1.5'"}},
       {{"compare", "--frames", "-3"}, {"--frames is '-3'"}},
       {{"compare", "--dimension", "4"}, {"--dimension is 4", "expected 2 or 3"}},
+      {{"compare", "--moving", "0.5", "--teleport", "2"},
+       {"--teleport is 2", "expected a fraction from 0 to 1"}},
+      {{"compare", "--moving", "0.5", "--drift", "-1"}, {"--drift is -1", "expected a number of at least 0"}},
+      {{"compare", "--drift", "1"}, {"--drift and --teleport say how boxes move", "expected --moving"}},
       {{"compare", "--moving", "1.5"}, {"--moving is 1.5", "expected a fraction from 0 to 1"}},
       {{"compare", "--threads", "2000"}, {"--threads is 2000", "expected at most 1024"}},
       {{"compare", "--threads", "two"}, {"--threads is 'two'", "expected a whole number from 0"}},

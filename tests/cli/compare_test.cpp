@@ -77,7 +77,19 @@ TEST(CompareVerb, TracksWhatMovesAndReadsNumbersAsPeopleWriteThem) {
   EXPECT_EQ(measurements[3]["mode"], "track");
   EXPECT_EQ(measurements[3]["frames"], 4);
   EXPECT_EQ(measurements[3]["moving"], 0.5);
+  EXPECT_EQ(measurements[3]["drift"], 0.2);
+  EXPECT_GT(measurements[3]["build_ms"], 0);
+  EXPECT_LE(measurements[3]["p99_ms"], measurements[3]["max_ms"]);
   EXPECT_EQ(measurements[3]["boxes"], 200);
+}
+
+TEST(CompareVerb, TellsOfMotionTheWorstFrameAndWhatAMoverCosts) {
+  const Ended ended =
+      run({"compare", "--scenes", "uniform", "-n", "300", "--moving", "0.1,1", "--drift", "0.5", "--teleport",
+           "0.1", "--frames", "3", "--dimension", "2", "--algorithms", "auto,bvh"});
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("10 % moving, 3 frames"), HasSubstr("100 % moving, 3 frames"),
+                                  HasSubstr(" worst "), HasSubstr(" ns a mover "), HasSubstr("\n  auto: ")));
 }
 
 TEST(CompareVerb, ComparesOnAFileThatSceneWrote) {

@@ -72,12 +72,34 @@ TEST(Compare, TracksAMovingScene) {
   for (const Measurement& measurement : result.measurements) {
     EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
     EXPECT_EQ(measurement.samples_ms.size() % 5, 0u);
+    EXPECT_GT(measurement.build_ms.value_or(0), 0);
     EXPECT_EQ(measurement.pair_hash, result.measurements[0].pair_hash);
   }
   History<3> history = make_history<3>(find_scene("uniform").scene, Spec{"uniform", {}},
                                        {.boxes = 300, .seed = 1, .frames = 5, .moving = 0.2});
   for (const Step<3>& step : history.steps) apply(step, history.boxes);
   EXPECT_EQ(result.measurements[0].pairs, reference_pairs<3>(history.boxes).size());
+}
+
+TEST(Compare, LetsBoxesJumpWhereItIsAskedTo) {
+  CaseRequest request = small_moving;
+  request.teleport = 1;
+  request.drift = 0;
+  const Catalogue catalogue;
+  const Comparison jumping = compare(catalogue, options_for("brute_force,bvh", {request, small_moving}));
+  EXPECT_TRUE(jumping.all_verified());
+  EXPECT_EQ(jumping.cases.at(0).of.teleport, 1);
+  EXPECT_EQ(jumping.cases.at(0).of.drift, 0);
+  EXPECT_EQ(jumping.cases.at(1).of.teleport, 0);
+  EXPECT_NE(jumping.cases[0].measurements[0].pair_hash, jumping.cases[1].measurements[0].pair_hash);
+}
+
+TEST(Compare, RefusesMoreMotionThanCanBeKept) {
+  const CaseRequest request{
+      .scene = "uniform", .dimension = 3, .boxes = 1'000'000, .moving = 1, .frames = 10'000};
+  const Catalogue catalogue;
+  EXPECT_THAT(message_of<std::runtime_error>([&] { compare(catalogue, options_for("grid", {request})); }),
+              HasSubstr("10000 frames of 1000000 boxes that move"));
 }
 
 TEST(Compare, ShowsEveryWayOfBeingWrong) {

@@ -153,8 +153,27 @@ TEST(Table, TellsHowAHistoryMoves) {
   result.of.moving = 0.1;
   const auto lines = lines_of(table_of(result));
   EXPECT_THAT(lines[0], HasSubstr("10,000 boxes, 10 % moving, 20 frames, 1,234 pairs at the end"));
-  EXPECT_THAT(lines[1], HasSubstr("ms a frame"));
-  EXPECT_THAT(lines[1], HasSubstr("min..p99"));
+  EXPECT_EQ(lines[1],
+            "  algorithm  ms a frame   p99  worst  ratio  to a peer  ns a mover  first frame  "
+            "tests a box   memory     peak");
+  EXPECT_EQ(lines[2],
+            "  first            4.55  4.60   4.60   1.00          -       4,550            -         "
+            "5.00  64.0 kB  65.0 kB  verified");
+}
+
+TEST(Table, TellsOfMotionWhatAMoverCostsAndWhatAPeerTakes) {
+  CaseResult result = still_case({timed("ours", {2, 3, 2}), timed("theirs", {8}), timed("others", {4, 4})});
+  result.of.mode = Mode::track;
+  result.of.frames = 20;
+  result.of.moving = 0.1;
+  result.measurements[0].build_ms = 7;
+  result.measurements[0].explanation = "incremental, since few move";
+  result.measurements[1].kind = AlgorithmKind::peer;
+  result.measurements[2].kind = AlgorithmKind::peer;
+  const auto lines = lines_of(table_of(result));
+  EXPECT_THAT(lines[2], testing::MatchesRegex("  ours +2.00  3.00 +3.00 +1.00 +0.50 +2,000 +7.00 .*"));
+  EXPECT_THAT(lines[4], testing::MatchesRegex("  theirs +8.00  8.00 +8.00 +4.00 +2.00 +8,000 +- .*"));
+  EXPECT_EQ(lines[5], "  ours: incremental, since few move");
 }
 
 TEST(Table, NamesEachReferenceOnce) {
@@ -220,12 +239,13 @@ TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
     EXPECT_TRUE(json["build"].contains(field));
   std::vector<std::string> fields;
   for (const auto& item : json["measurements"][0].items()) fields.push_back(item.key());
-  EXPECT_THAT(fields, testing::ElementsAre(
-                          "scene", "scene_parameters", "seeds", "dimension", "boxes", "frames", "moving",
-                          "algorithm", "version", "kind", "mode", "threads", "target", "pairs", "pair_hash",
-                          "verified", "verified_by", "skipped", "median_ms", "min_ms", "p99_ms", "max_ms",
-                          "samples_ms", "build_ms", "search_ms", "ns_per_box", "floor_ms", "tests",
-                          "references", "explanation", "own_bytes", "peak_bytes"));
+  EXPECT_THAT(fields,
+              testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes", "frames",
+                                   "moving", "drift", "teleport", "algorithm", "version", "kind", "mode",
+                                   "threads", "target", "pairs", "pair_hash", "verified", "verified_by",
+                                   "skipped", "median_ms", "min_ms", "p99_ms", "max_ms", "samples_ms",
+                                   "build_ms", "search_ms", "ns_per_box", "ns_per_mover", "floor_ms", "tests",
+                                   "references", "explanation", "own_bytes", "peak_bytes"));
 }
 
 TEST(JsonResults, HoldWhatWasMeasured) {
@@ -243,6 +263,26 @@ TEST(JsonResults, HoldWhatWasMeasured) {
   EXPECT_EQ(measurement["samples_ms"], (Json{1.0, 2.0, 6.0}));
   EXPECT_EQ(measurement["ns_per_box"], 200);
   EXPECT_EQ(measurement["tests"], 50'000);
+}
+
+TEST(JsonResults, HoldHowBoxesMovedAndWhatTheFirstFrameTook) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("grid", {1, 2, 6}), timed("bvh", {1})})};
+  Case& of = comparison.cases[0].of;
+  of.mode = Mode::track;
+  of.frames = 3;
+  of.moving = 0.1;
+  of.drift = 0.2;
+  comparison.cases[0].measurements[0].build_ms = 5;
+  const Json measurements = Json::parse(json_of(comparison, std::vector<std::string>{}))["measurements"];
+  EXPECT_EQ(measurements[0]["mode"], "track");
+  EXPECT_EQ(measurements[0]["drift"], 0.2);
+  EXPECT_TRUE(measurements[0]["teleport"].is_null());
+  EXPECT_EQ(measurements[0]["p99_ms"], 6);
+  EXPECT_EQ(measurements[0]["max_ms"], 6);
+  EXPECT_EQ(measurements[0]["ns_per_mover"], 2'000);
+  EXPECT_EQ(measurements[0]["build_ms"], 5);
+  EXPECT_TRUE(measurements[1]["build_ms"].is_null());
 }
 
 TEST(JsonResults, HaveTheFloorOfTheCaseInEachMeasurement) {
