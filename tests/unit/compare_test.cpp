@@ -182,7 +182,7 @@ TEST(Compare, CountsNoMemoryWhereItCannotAllBeCounted) {
 TEST(Compare, SkipsWhatIsTooSlowForTheBudgetAndEstimatesIt) {
   for (const std::size_t frames : {std::size_t{0}, std::size_t{2}}) {
     CompareOptions options = options_for("brute_force,grid", {{"uniform", 2, 5'100, 0.1, frames}});
-    options.effort.budget_seconds = 1e-9;
+    options.effort.budget_seconds = options.effort.history_seconds = 1e-9;
     const Comparison comparison = compare(Catalogue(), options);
     const Measurement& measurement = comparison.cases.at(0).measurements.at(0);
     EXPECT_EQ(measurement.outcome, Outcome::skipped);
