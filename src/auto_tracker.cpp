@@ -3,8 +3,8 @@
 // When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
 // as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
 // memory", VLDB 2013). What ended in a frame that finds all pairs anew is seen from the pairs of the frame
-// before, so these are kept in the other frames as well: what begins is added, and what has ended is dropped
-// by and by, some pairs a frame, so that no frame pays for others.
+// before. Nobody keeps these while boxes are followed: that would cost as much again in some frames as it
+// saves in one, the first that finds all anew, which finds those of the frame before as well.
 #include "auto_tracker.hpp"
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include "broadside/sinks.hpp"
 
 #include "core/pair_difference.hpp"
-#include "core/sort_pairs.hpp"
 
 namespace broadside::own {
 namespace {
@@ -50,7 +49,21 @@ void AutoTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pair
     follow(change, begun, ended);
   } else {
     rebuild(change, begun, ended);
+    // After a first frame come others, most often with few changes: what follows them is made ready with it,
+    // so that the second frame does not take longer than those after it.
+    if (change.rebuild && way_ == Way::automatic) start_following(change.now);
   }
+}
+
+template <int D>
+void AutoTracker<D>::start_following(std::span<const Box<D>> boxes) {
+  flags_.assign(boxes.size(), 0);
+  Change<D> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = flags_, .rebuild = true};
+  PairCounter none;
+  const std::optional<Statistics> statistics = this->statistics();
+  this->update_with(*follower_, nothing, none, none);
+  this->count(statistics);
+  followed_ = true;
 }
 
 template <int D>
@@ -78,12 +91,11 @@ void AutoTracker<D>::rebuild(const Change<D>& change, PairSink& begun, PairSink&
     PairCollector collector(pairs);
     finder_->find(boxes, collector);
   };
-  if (change.rebuild) find(change.before, pairs_);
+  if (change.rebuild || !has_pairs_) find(change.before, pairs_);
   find(change.now, found_);
   core::report_differences<D, float>(change, found_, pairs_, begun, ended);
   std::swap(pairs_, found_);
-  found_count_ = pairs_.size();
-  looked_at_ = 0;
+  has_pairs_ = true;
   followed_ = false;
   this->count(finder_->statistics());
   const double pairs = static_cast<double>(pairs_.size()) / std::max<double>(1, change.now.size());
@@ -92,48 +104,17 @@ void AutoTracker<D>::rebuild(const Change<D>& change, PairSink& begun, PairSink&
 
 template <int D>
 void AutoTracker<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  begun_.clear();
-  PairCollector new_pairs(begun_);
   Change<D> followed = change;
   followed.rebuild = !followed_ || change.rebuild;
-  this->update_with(*follower_, followed, new_pairs, ended);
-  new_pairs.flush();
+  this->update_with(*follower_, followed, begun, ended);
   followed_ = true;
+  has_pairs_ = false;
   saved_ = 0;
-  begun.put(begun_);
-  if (way_ == Way::automatic) {
-    pairs_.insert(pairs_.end(), begun_.begin(), begun_.end());
-    drop_ended(change, begun_.size());
-  }
   // Few movers tell little about what one costs.
   constexpr std::size_t telling = 64;
   if (changed_ < telling || !this->statistics()) return;
   const double tests = static_cast<double>(this->statistics()->tests) / static_cast<double>(changed_);
   cost_of_mover_ = cost_of_moving<D> + cost_of_a_test_of_a_mover * tests;
-}
-
-/// Looks at some of the pairs and drops those that hold no more: enough, in the long run, to keep up with
-/// those that are added.
-template <int D>
-void AutoTracker<D>::drop_ended(const Change<D>& change, std::size_t added) {
-  constexpr std::size_t spare = 256;
-  if (pairs_.size() <= found_count_ + found_count_ / 8 + spare) return;
-  const std::size_t looks = std::min(3 * added + spare, pairs_.size());
-  for (std::size_t look = 0; look < looks && !pairs_.empty(); ++look) {
-    if (looked_at_ >= pairs_.size()) looked_at_ = 0;
-    const Pair pair = pairs_[looked_at_];
-    if (change.holds(pair.first, pair.second)) {
-      ++looked_at_;
-    } else {
-      pairs_[looked_at_] = pairs_.back();
-      pairs_.pop_back();
-    }
-  }
-  // Pairs that begin again and again may be there many times, and pairs may have become many more.
-  if (pairs_.size() <= found_count_ + found_count_ / 2 + 4 * spare) return;
-  std::erase_if(pairs_, [&](Pair pair) { return !change.holds(pair.first, pair.second); });
-  core::sort_unique(pairs_, found_);
-  found_count_ = pairs_.size();
 }
 
 template <int D>
@@ -152,8 +133,7 @@ std::string AutoTracker<D>::explanation() const {
 
 template <int D>
 std::size_t AutoTracker<D>::algorithm_bytes() const noexcept {
-  return this->kept_bytes(*follower_) +
-         (pairs_.capacity() + found_.capacity() + begun_.capacity()) * sizeof(Pair);
+  return this->kept_bytes(*follower_) + (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
 }
 
 template class AutoTracker<2>;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,8 @@ class AutoTracker final : public PairTracker<D> {
 
   bool is_incremental(const Change<D>& change);
   void rebuild(const Change<D>& change, PairSink& begun, PairSink& ended);
+  void start_following(std::span<const Box<D>> boxes);
   void follow(const Change<D>& change, PairSink& begun, PairSink& ended);
-  void drop_ended(const Change<D>& change, std::size_t added);
 
   std::unique_ptr<PairFinder<D>> finder_;
   std::unique_ptr<PairTracker<D>> follower_;
@@ -48,12 +49,10 @@ class AutoTracker final : public PairTracker<D> {
   std::size_t changed_ = 0;  // of the last update
   std::size_t break_even_ = 0;
 
-  // All pairs that held in the last frame, and some that did before; one may be there more than once.
+  bool has_pairs_ = false;  // whether pairs_ are those of the last frame
   std::vector<Pair> pairs_;
-  std::size_t found_count_ = 0;  // how many there were when they were last known exactly
-  std::size_t looked_at_ = 0;    // where the search for those that do not hold any more goes on
   std::vector<Pair> found_;
-  std::vector<Pair> begun_;
+  std::vector<std::uint8_t> flags_;  // all 0
 };
 
 }  // namespace broadside::own

@@ -10,6 +10,8 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
+#include <utility>
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
@@ -37,9 +39,11 @@ HWY_INLINE std::uint32_t touching(const Box<D>& box, const CellBlock<D>& block, 
     hits =
         hn::And(hits, hn::Ge(hn::Load(floats, block.max[axis].data() + at), hn::Set(floats, box.min[axis])));
   }
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(floats, hits, bits.data());
-  return static_cast<std::uint32_t>(bits[0] | bits[1] << 8);
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(floats, hits, bytes.data());
+  std::uint16_t bits;
+  std::memcpy(&bits, bytes.data(), sizeof bits);  // the lowest one first, as all machines that we know do
+  return bits;
 }
 
 /// The same for the whole block.
@@ -216,23 +220,31 @@ class Search {
 
   /// Compares what is listed.
   HWY_NOINLINE void compare() {
+    const BlockHead* const heads = cells_.heads;
+    const CellBlock<D>* const blocks = cells_.blocks;
+    const CellQuery<D>* const queries = queries_.data();
+    const std::size_t listed = std::exchange(listed_, 0);
     std::size_t found = 0;
-    for (std::size_t i = 0; i < listed_; ++i) {
-      const CellQuery<D>& query = queries_[entries_[i].query];
+    std::uint64_t tests = 0;
+    std::uint64_t looked_at = 0;
+    for (std::size_t i = 0; i < listed; ++i) {
+      const std::uint32_t query = entries_[i].query;
       std::uint32_t block = entries_[i].block;
       do {
-        const BlockHead& head = cells_.heads[block];
-        found_[found].query = entries_[i].query;
+        const BlockHead& head = heads[block];
+        tests += static_cast<std::uint64_t>(std::popcount(head.used));
+        ++looked_at;
+        const std::uint32_t next = head.next;
+        found_[found].query = query;
         found_[found].block = block;
-        found += static_cast<std::size_t>(question_.hits(query, head, cells_.blocks[block], found_[found]));
+        found += static_cast<std::size_t>(question_.hits(queries[query], head, blocks[block], found_[found]));
         if (HWY_UNLIKELY(found == most_listed)) write(std::exchange(found, 0));
-        work_.tests += static_cast<std::uint64_t>(std::popcount(head.used));
-        ++work_.blocks;
-        block = head.next;
+        block = next;
       } while (HWY_UNLIKELY(block != no_block));
     }
     write(found);
-    listed_ = 0;
+    work_.tests += tests;
+    work_.blocks += looked_at;
   }
 
   void write(std::size_t found) {
