@@ -26,8 +26,26 @@ constexpr double step_fraction[] = {0, 0.7548776662, 0.5698402910};
 
 }  // namespace
 
+/// How many references to these boxes each level will have.
 template <int D>
-void GridCells<D>::start(const std::array<double, D>& sizes, int span, std::span<const Box<D>> boxes) {
+std::array<std::size_t, GridCells<D>::levels> GridCells<D>::references_of(
+    std::span<const Box<D>> boxes) const {
+  std::array<std::size_t, levels> references{};
+  for (const Box<D>& box : boxes) {
+    if (!is_present(box)) continue;
+    const Place place = place_of(box);
+    const CellRange<D> cells = cells_at(place.level, place.finest);
+    std::size_t touched = 1;
+    for (int axis = 0; axis < D; ++axis)
+      touched *= static_cast<std::size_t>(cells.last[axis] - cells.first[axis] + 1);
+    references[place.level] += touched;
+  }
+  return references;
+}
+
+template <int D>
+void GridCells<D>::start(const std::array<double, D>& sizes, int span, std::span<const Box<D>> boxes,
+                         std::span<const Box<D>> later) {
   for (int axis = 0; axis < D; ++axis) {
     per_unit_[axis] = static_cast<float>(std::clamp<double>(
         1 / sizes[axis], std::numeric_limits<float>::min(), std::numeric_limits<float>::max()));
@@ -38,17 +56,10 @@ void GridCells<D>::start(const std::array<double, D>& sizes, int span, std::span
   more_.clear();
   free_ = none;
   used_ = 0;
-  std::array<std::size_t, levels> expected{};
-  for (const Box<D>& box : boxes) {
-    if (!is_present(box)) continue;
-    const Place place = place_of(box);
-    const CellRange<D> cells = cells_at(place.level, place.finest);
-    std::size_t touched = 1;
-    for (int axis = 0; axis < D; ++axis)
-      touched *= static_cast<std::size_t>(cells.last[axis] - cells.first[axis] + 1);
-    expected[place.level] += touched;
-  }
-  for (int level = 0; level < levels; ++level) make_table(levels_[level], expected[level]);
+  const std::array<std::size_t, levels> first = references_of(boxes);
+  const std::array<std::size_t, levels> last = references_of(later);
+  for (int level = 0; level < levels; ++level)
+    make_table(levels_[level], std::max(first[level], last[level]));
   constexpr std::size_t ahead = 16;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (i + ahead < boxes.size() && is_present(boxes[i + ahead])) prefetch(place_of(boxes[i + ahead]));
@@ -58,6 +69,7 @@ void GridCells<D>::start(const std::array<double, D>& sizes, int span, std::span
 
 template <int D>
 void GridCells<D>::make_table(Level& level, std::size_t references) {
+  ++version_;
   level.references = 0;
   std::size_t blocks = references == 0 ? 0 : least_blocks;
   while (blocks * boxes_per_block < references) blocks *= 2;
@@ -142,39 +154,22 @@ void GridCells<D>::make_empty(Block& block) {
 
 template <int D>
 typename GridCells<D>::Place GridCells<D>::place_of(const Box<D>& box) const {
-  Place place;
   const auto cell_of = [](float cell) {
-    cell = std::min(std::max(cell, -most_cell), most_cell);
     const auto whole = static_cast<std::int32_t>(cell);
     return whole - static_cast<std::int32_t>(static_cast<float>(whole) > cell);
   };
+  Place place;
   float reach = 0;
-  bool is_bounded = true;
   for (int axis = 0; axis < D; ++axis) {
-    place.finest.first[axis] = cell_of(box.min[axis] * per_unit_[axis]);
-    place.finest.last[axis] = cell_of(box.max[axis] * per_unit_[axis]);
-    const float cells = (box.max[axis] - box.min[axis]) * per_unit_[axis];
-    is_bounded &= cells <= most_cell;  // false for a point at infinity, too
-    reach = std::max(reach, cells);
+    const float first = std::clamp(box.min[axis] * per_unit_[axis], -most_cell, most_cell);
+    const float last = std::clamp(box.max[axis] * per_unit_[axis], -most_cell, most_cell);
+    place.finest.first[axis] = cell_of(first);
+    place.finest.last[axis] = cell_of(last);
+    reach = std::max(reach, last - first);
   }
   place.level = 0;
-  if (!is_bounded) {
-    place.level = levels - 1;
-    return place;
-  }
   for (float most = span_; reach > most && place.level < levels - 1; most *= 4) ++place.level;
   return place;
-}
-
-template <int D>
-CellRange<D> GridCells<D>::cells_at(int level, const CellRange<D>& finest) {
-  CellRange<D> cells{};
-  if (level == levels - 1) return cells;
-  for (int axis = 0; axis < D; ++axis) {
-    cells.first[axis] = finest.first[axis] >> (2 * level);
-    cells.last[axis] = finest.last[axis] >> (2 * level);
-  }
-  return cells;
 }
 
 template <int D>
@@ -257,27 +252,6 @@ template <int D>
 void GridCells<D>::erase(const Place& place, BoxId id) {
   for_each_cell<D>(cells_at(place.level, place.finest),
                    [&](const auto& cell) { erase(place.level, cell, id); });
-}
-
-template <int D>
-void GridCells<D>::gather(int number, const CellRange<D>& cells, const CellRange<D>* except,
-                          std::vector<Block*>& blocks) {
-  Level& level = levels_[number];
-  const auto add = [&](Block& first) {
-    for (Block* block = &first;; block = &more_[next(*block)]) {
-      blocks.push_back(block);
-      if (next(*block) == none) break;
-    }
-  };
-  double count = 1;
-  for (int axis = 0; axis < D; ++axis) count *= static_cast<double>(cells.last[axis]) - cells.first[axis] + 1;
-  if (count >= static_cast<double>(level.heads.size())) {
-    for (Block& first : level.heads) add(first);
-    return;
-  }
-  for_each_cell<D>(cells, [&](const auto& cell) {
-    if (except == nullptr || !except->contains(cell)) add(head(level, cell));
-  });
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 // The cells of a grid that stays from frame to frame: boxes filed in every cell that they touch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -62,13 +63,24 @@ class GridCells {
 
   /// Starts over with these boxes, whose ids are their places; absent ones are left out. Cells of the first
   /// level are `sizes` wide on each axis, and a box reaches over `span` of them at most before it goes to the
-  /// next one.
-  void start(const std::array<double, D>& sizes, int span, std::span<const Box<D>> boxes);
+  /// next one. There will be room for as many boxes as there are `later`.
+  void start(const std::array<double, D>& sizes, int span, std::span<const Box<D>> boxes,
+             std::span<const Box<D>> later);
 
   Place place_of(const Box<D>& box) const;
 
   /// The cells of another level that hold those of the finest one.
-  static CellRange<D> cells_at(int level, const CellRange<D>& finest);
+  static CellRange<D> cells_at(int level, const CellRange<D>& finest) {
+    if (level == 0) [[likely]]
+      return finest;
+    CellRange<D> cells{};
+    if (level == levels - 1) return cells;
+    for (int axis = 0; axis < D; ++axis) {
+      cells.first[axis] = finest.first[axis] >> (2 * level);
+      cells.last[axis] = finest.last[axis] >> (2 * level);
+    }
+    return cells;
+  }
 
   void insert(int level, const std::array<std::int32_t, D>& cell, const Box<D>& box, BoxId id);
 
@@ -83,7 +95,61 @@ class GridCells {
 
   /// Appends the blocks of a range of a level's cells, but for those that `except` has as well; perhaps some
   /// more.
-  void gather(int level, const CellRange<D>& cells, const CellRange<D>* except, std::vector<Block*>& blocks);
+  void gather(int level, const CellRange<D>& cells, const CellRange<D>* except, std::vector<Block*>& blocks) {
+    Level& table = levels_[level];
+    std::uint64_t count = 1;
+    for (int axis = 0; axis < D; ++axis)
+      count *=
+          std::min<std::uint64_t>(static_cast<std::uint32_t>(cells.last[axis] - cells.first[axis]), 1 << 20) +
+          1;
+    if (count >= table.heads.size()) {
+      for (Block& first : table.heads) add_cell(first, blocks);
+      return;
+    }
+    for_each_cell<D>(cells, [&](const auto& cell) {
+      if (except == nullptr || !except->contains(cell)) add_cell(head(table, cell), blocks);
+    });
+  }
+
+  /// Appends a cell's first block and those that go on where it is full.
+  void add_cell(Block& first, std::vector<Block*>& blocks) {
+    for (Block* block = &first;; block = &more_[next(*block)]) {
+      blocks.push_back(block);
+      if (next(*block) == none) [[likely]]
+        return;
+    }
+  }
+
+  /// Sets `blocks` to the first ones of a range of at most two cells on each axis, and asks the processor for
+  /// them. Returns how many there are; 0 if the range is larger. They hold while version() does.
+  static constexpr std::uint32_t most_near = 1U << D;
+  std::uint32_t find_near(int level, const CellRange<D>& cells, Block** blocks) {
+    Level& table = levels_[level];
+    std::array<std::uint32_t, D> more;
+    for (int axis = 0; axis < D; ++axis) {
+      more[axis] =
+          static_cast<std::uint32_t>(cells.last[axis]) - static_cast<std::uint32_t>(cells.first[axis]);
+      if (more[axis] > 1) return 0;
+    }
+    // Whether there is one or two is as good as random: no branches.
+    std::uint32_t count = 0;
+    for (std::uint32_t corner = 0; corner < most_near; ++corner) {
+      std::array<std::int32_t, D> cell;
+      std::uint32_t inside = 1;
+      for (int axis = 0; axis < D; ++axis) {
+        const std::uint32_t step = corner >> axis & 1;
+        cell[axis] = cells.first[axis] + static_cast<std::int32_t>(step & more[axis]);
+        inside &= more[axis] | (step ^ 1);
+      }
+      Block* const block = &head(table, cell);
+      blocks[count] = block;
+      count += inside;
+      for (std::size_t line = 0; line < sizeof(Block); line += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(block) + line);
+    }
+    return count;
+  }
+  std::uint32_t version() const noexcept { return version_; }
 
   /// Asks the processor for the blocks of the box's cells.
   void prefetch(const Place& place) const;
@@ -119,6 +185,7 @@ class GridCells {
   static std::uint32_t& next(Block& block) { return block.id[Block::capacity]; }
   static void make_empty(Block& block);
 
+  std::array<std::size_t, levels> references_of(std::span<const Box<D>> boxes) const;
   void make_table(Level& level, std::size_t references);
   void fit_table(int number);
   void free_blocks(Block& first);
@@ -141,6 +208,7 @@ class GridCells {
   std::uint32_t free_ = none;
   std::size_t used_ = 0;  // of them, those that are not free
   std::size_t references_ = 0;
+  std::uint32_t version_ = 0;  // of the tables
 };
 
 }  // namespace broadside::own

@@ -22,13 +22,13 @@ namespace {
 
 /// The fraction of changed boxes from which finding all pairs anew is not slower.
 template <int D>
-constexpr double worthwhile = D == 2 ? 0.2 : 0.2;
+constexpr double worthwhile = D == 2 ? 0.4 : 0.3;
 
-/// As many boxes in a cell as fill a block without often needing a second one.
-constexpr double boxes_per_cell = 9;
+/// As many boxes in a cell as fill a block without too often needing a second one.
+constexpr double boxes_per_cell = 12;
 
 /// So many movers are looked at together, so that their cells are on the way when their turn comes.
-constexpr std::size_t movers_at_once = 16;
+constexpr std::size_t movers_at_once = 8;
 
 template <int D>
 class GridTracker final : public core::IncrementalTracker<D> {
@@ -48,8 +48,12 @@ class GridTracker final : public core::IncrementalTracker<D> {
     bool refiltered;
     bool was_present;
     bool is_present;
+    bool stays;  // in all its cells
     Place before;
     Place now;
+    std::uint32_t version;  // of the cells, for
+    std::uint32_t count;    // the first blocks of its level's cells, or 0 where they are many
+    std::array<Block*, Cells::most_near> blocks;
   };
 
   void follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
@@ -70,14 +74,9 @@ class GridTracker final : public core::IncrementalTracker<D> {
       if (!step.refiltered && before == now) continue;
       step.was_present = is_present(before);
       step.is_present = is_present(now);
-      if (step.was_present) {
-        step.before = cells_.place_of(before);
-        cells_.prefetch(step.before);
-      }
-      if (step.is_present) {
-        step.now = cells_.place_of(now);
-        if (!step.was_present || !(step.now.finest == step.before.finest)) cells_.prefetch(step.now);
-      }
+      if (step.was_present) step.before = cells_.place_of(before);
+      if (step.is_present) step.now = cells_.place_of(now);
+      find_blocks(step);
       if (++count == steps.size()) take_all();
     }
     take_all();
@@ -87,35 +86,57 @@ class GridTracker final : public core::IncrementalTracker<D> {
     look_at_sizes(change);
   }
 
+  /// Looks up the blocks of the box's cells, which are few where it moves a little, and asks for them.
+  void find_blocks(Step& step) {
+    step.stays = false;
+    step.count = 0;
+    if (!step.was_present || !step.is_present || step.before.level != step.now.level) {
+      if (step.was_present) cells_.prefetch(step.before);
+      if (step.is_present) cells_.prefetch(step.now);
+      return;
+    }
+    const int level = step.now.level;
+    const CellRange<D> before = Cells::cells_at(level, step.before.finest);
+    const CellRange<D> now = Cells::cells_at(level, step.now.finest);
+    CellRange<D> both;
+    std::int32_t changes = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      changes |= (before.first[axis] ^ now.first[axis]) | (before.last[axis] ^ now.last[axis]);
+      both.first[axis] = std::min(before.first[axis], now.first[axis]);
+      both.last[axis] = std::max(before.last[axis], now.last[axis]);
+    }
+    step.stays = changes == 0 && translates_;
+    step.version = cells_.version();
+    step.count = cells_.find_near(level, both, step.blocks.data());
+  }
+
   /// One changed box: its events, then its cells.
   void take(const Change<D>& change, const Step& step, PairSink& begun, PairSink& ended) {
     blocks_.clear();
-    const bool stays_in_level =
-        step.was_present && step.is_present && step.before.level == step.now.level && translates_;
-    for (std::uint32_t left = cells_.occupied(); left != 0; left &= left - 1)
-      gather(step, std::countr_zero(left));
-    answers_.resize(std::max(answers_.size(), blocks_.size()));
-    const Box<D>& now = change.now[index(step.id)];
-    const kernels::Mover<D> mover =
-        kernels::mover_of(change.before[index(step.id)], now, step.id, step.refiltered);
-    kernels::find_toggles(mover, blocks_.data(), blocks_.size(), answers_.data());
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      Block& block = *blocks_[i];
-      const kernels::BlockToggles& answer = answers_[i];
-      statistics_.tests += Cells::filled(block);
-      statistics_.hits += static_cast<std::uint64_t>(std::popcount(answer.overlaps));
-      for (std::uint32_t left = answer.toggled; left != 0; left &= left - 1) {
-        const int place = std::countr_zero(left);
-        Base::report_toggle(change, step.id, BoxId(block.id[place]), (answer.overlaps >> place & 1) != 0,
-                            begun, ended);
-      }
-      if (!stays_in_level) continue;
-      constexpr std::uint32_t boxes = (1U << Block::capacity) - 1;
-      for (std::uint32_t left = answer.own & boxes; left != 0; left &= left - 1)
-        Cells::write(block, static_cast<std::uint32_t>(std::countr_zero(left)), now);
+    std::uint32_t levels = cells_.occupied();
+    if (step.count > 0 && step.version == cells_.version()) {
+      for (std::uint32_t i = 0; i < step.count; ++i) cells_.add_cell(*step.blocks[i], blocks_);
+      levels &= ~(1U << step.now.level);
     }
+    for (; levels != 0; levels &= levels - 1) gather(step, std::countr_zero(levels));
+    const std::size_t room = (blocks_.size() + 1) * Block::places;
+    if (begun_.size() < room) {
+      begun_.resize(2 * room);
+      ended_.resize(2 * room);
+    }
+    for (const Block* block : blocks_) statistics_.tests += Cells::filled(*block);
+    const Box<D>& now = change.now[index(step.id)];
+    kernels::StepEvents events{begun_.data(), ended_.data()};
+    kernels::take_step(kernels::mover_of(change.before[index(step.id)], now, step.id, step.refiltered),
+                       blocks_.data(), blocks_.size(), events);
+    statistics_.hits += events.hits;
+    for (std::size_t i = 0; i < events.begun_count; ++i)
+      Base::report_toggle(change, step.id, BoxId(begun_[i]), true, begun, ended);
+    for (std::size_t i = 0; i < events.ended_count; ++i)
+      Base::report_toggle(change, step.id, BoxId(ended_[i]), false, begun, ended);
     visited_ += blocks_.size();
-    if (stays_in_level) {
+    if (step.stays) return;
+    if (translates_ && step.was_present && step.is_present && step.before.level == step.now.level) {
       translate(step, now);
     } else {
       if (step.was_present) cells_.erase(step.before, step.id);
@@ -140,7 +161,6 @@ class GridTracker final : public core::IncrementalTracker<D> {
     const int level = step.now.level;
     const CellRange<D> before = Cells::cells_at(level, step.before.finest);
     const CellRange<D> now = Cells::cells_at(level, step.now.finest);
-    if (before == now) return;
     for_each_cell<D>(before, [&](const auto& cell) {
       if (!now.contains(cell)) cells_.erase(level, cell, step.id);
     });
@@ -151,7 +171,7 @@ class GridTracker final : public core::IncrementalTracker<D> {
 
   void start(const Change<D>& change) {
     sizes_ = sizes_for(change);
-    cells_.start(sizes_, span_, change.before);
+    cells_.start(sizes_, span_, change.before, change.now);
     is_outgrown_ = false;
     visited_ = 0;
   }
@@ -199,7 +219,7 @@ class GridTracker final : public core::IncrementalTracker<D> {
 
   std::size_t structure_bytes() const noexcept override {
     return cells_.bytes() + blocks_.capacity() * sizeof(Block*) +
-           answers_.capacity() * sizeof(kernels::BlockToggles);
+           (begun_.capacity() + ended_.capacity()) * sizeof(std::uint32_t);
   }
 
   bool translates_;
@@ -211,7 +231,8 @@ class GridTracker final : public core::IncrementalTracker<D> {
   bool is_outgrown_ = false;
   std::size_t visited_ = 0;  // blocks, since the last look at sizes
   std::vector<Block*> blocks_;
-  std::vector<kernels::BlockToggles> answers_;
+  std::vector<std::uint32_t> begun_;  // what one box's step toggles
+  std::vector<std::uint32_t> ended_;
   core::Sample<D> sample_;
   std::vector<Box<D>> sampled_;
   Statistics statistics_;

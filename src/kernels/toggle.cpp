@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/compress.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
@@ -55,13 +57,13 @@ struct Lanes {
     }
   }
 
-  HWY_INLINE std::uint32_t overlaps(const Everywhere<D>& box) const {
+  HWY_INLINE hn::Mask<Floats> overlaps(const Everywhere<D>& box) const {
     auto touching = hn::And(hn::Le(min[0], box.max[0]), hn::Le(box.min[0], max[0]));
     for (int axis = 1; axis < D; ++axis) {
       touching = hn::And(touching, hn::Le(min[axis], box.max[axis]));
       touching = hn::And(touching, hn::Le(box.min[axis], max[axis]));
     }
-    return bits_of(Floats(), touching);
+    return touching;
   }
 
   FloatVector min[D];
@@ -78,8 +80,8 @@ std::size_t toggles_in_run(const Mover<D>& mover, const Run<D>& run, std::size_t
   std::size_t count = 0;
   for (std::size_t at = begin; at < end; at += lanes) {
     const Lanes<D> boxes(run, at);
-    const std::uint32_t did = boxes.overlaps(before);
-    const std::uint32_t does = boxes.overlaps(now);
+    const std::uint32_t did = bits_of(Floats(), boxes.overlaps(before));
+    const std::uint32_t does = bits_of(Floats(), boxes.overlaps(now));
     std::uint32_t toggled = (did ^ does) | (did & does & both);
     if (HWY_LIKELY(toggled == 0)) continue;
     if (end - at < lanes) toggled &= (1U << (end - at)) - 1;
@@ -93,29 +95,45 @@ std::size_t toggles_in_run(const Mover<D>& mover, const Run<D>& run, std::size_t
   return count;
 }
 
+/// Writes the ids at the mask's lanes to `out`, without a branch.
+HWY_INLINE std::size_t put(IdVector ids, hn::Mask<Ids> mask, std::uint32_t* out) {
+  hn::StoreU(compress(Ids(), ids, mask), Ids(), out);
+  return hn::CountTrue(Ids(), mask);
+}
+
 template <int D>
-void toggles_in_blocks(const Mover<D>& mover, const Block<D>* const* blocks, std::size_t count,
-                       BlockToggles* answers) {
+void step_in_blocks(const Mover<D>& mover, Block<D>* const* blocks, std::size_t count, StepEvents& events) {
   constexpr std::size_t lanes = hn::MaxLanes(Floats());
+  const Floats floats;
+  const Ids ids;
   const Everywhere<D> before(mover.before);
   const Everywhere<D> now(mover.now);
-  const IdVector id = hn::Set(Ids(), index(mover.id));
-  const std::uint32_t both = mover.refiltered ? ~0U : 0U;
+  const IdVector id = hn::Set(ids, index(mover.id));
+  std::uint32_t* begun = events.begun;
+  std::uint32_t* ended = events.ended;
+  std::size_t hits = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Block<D>& block = *blocks[i];
-    std::uint32_t did = 0;
-    std::uint32_t does = 0;
-    std::uint32_t own = 0;
+    Block<D>& block = *blocks[i];
     for (std::size_t at = 0; at < Block<D>::places; at += lanes) {
       const Lanes<D> boxes(block, at);
-      did |= boxes.overlaps(before) << at;
-      does |= boxes.overlaps(now) << at;
-      own |= bits_of(Ids(), hn::Eq(hn::LoadU(Ids(), block.id + at), id)) << at;
+      const IdVector there = hn::LoadU(ids, block.id + at);
+      // The last place's id is no id.
+      const auto own = hn::And(hn::Eq(there, id), hn::FirstN(ids, Block<D>::capacity - at));
+      const auto did = hn::AndNot(own, hn::RebindMask(ids, boxes.overlaps(before)));
+      const auto does = hn::AndNot(own, hn::RebindMask(ids, boxes.overlaps(now)));
+      hits += hn::CountTrue(ids, does);
+      begun += put(there, HWY_UNLIKELY(mover.refiltered) ? does : hn::AndNot(did, does), begun);
+      ended += put(there, hn::AndNot(does, did), ended);
+      const auto own_floats = hn::RebindMask(floats, own);
+      for (int axis = 0; axis < D; ++axis) {
+        hn::BlendedStore(now.min[axis], own_floats, floats, block.min[axis] + at);
+        hn::BlendedStore(now.max[axis], own_floats, floats, block.max[axis] + at);
+      }
     }
-    const std::uint32_t toggled = ((did ^ does) | (did & does & both)) & ~own;
-    answers[i] = {static_cast<std::uint16_t>(toggled), static_cast<std::uint16_t>(does),
-                  static_cast<std::uint16_t>(own)};
   }
+  events.begun_count = static_cast<std::size_t>(begun - events.begun);
+  events.ended_count = static_cast<std::size_t>(ended - events.ended);
+  events.hits = hits;
 }
 
 }  // namespace
@@ -129,13 +147,11 @@ std::size_t toggles_in_run_3(const Mover<3>& mover, const Run<3>& run, std::size
                              Toggle* toggles) {
   return toggles_in_run(mover, run, begin, end, toggles);
 }
-void toggles_in_blocks_2(const Mover<2>& mover, const Block<2>* const* blocks, std::size_t count,
-                         BlockToggles* answers) {
-  toggles_in_blocks(mover, blocks, count, answers);
+void step_in_blocks_2(const Mover<2>& mover, Block<2>* const* blocks, std::size_t count, StepEvents& events) {
+  step_in_blocks(mover, blocks, count, events);
 }
-void toggles_in_blocks_3(const Mover<3>& mover, const Block<3>* const* blocks, std::size_t count,
-                         BlockToggles* answers) {
-  toggles_in_blocks(mover, blocks, count, answers);
+void step_in_blocks_3(const Mover<3>& mover, Block<3>* const* blocks, std::size_t count, StepEvents& events) {
+  step_in_blocks(mover, blocks, count, events);
 }
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
@@ -146,8 +162,8 @@ namespace broadside::kernels {
 
 HWY_EXPORT(toggles_in_run_2);
 HWY_EXPORT(toggles_in_run_3);
-HWY_EXPORT(toggles_in_blocks_2);
-HWY_EXPORT(toggles_in_blocks_3);
+HWY_EXPORT(step_in_blocks_2);
+HWY_EXPORT(step_in_blocks_3);
 
 template <>
 std::size_t find_toggles(const Mover<2>& mover, const Run<2>& run, std::size_t begin, std::size_t end,
@@ -162,15 +178,13 @@ std::size_t find_toggles(const Mover<3>& mover, const Run<3>& run, std::size_t b
 }
 
 template <>
-void find_toggles(const Mover<2>& mover, const Block<2>* const* blocks, std::size_t count,
-                  BlockToggles* answers) {
-  HWY_DYNAMIC_DISPATCH(toggles_in_blocks_2)(mover, blocks, count, answers);
+void take_step(const Mover<2>& mover, Block<2>* const* blocks, std::size_t count, StepEvents& events) {
+  HWY_DYNAMIC_DISPATCH(step_in_blocks_2)(mover, blocks, count, events);
 }
 
 template <>
-void find_toggles(const Mover<3>& mover, const Block<3>* const* blocks, std::size_t count,
-                  BlockToggles* answers) {
-  HWY_DYNAMIC_DISPATCH(toggles_in_blocks_3)(mover, blocks, count, answers);
+void take_step(const Mover<3>& mover, Block<3>* const* blocks, std::size_t count, StepEvents& events) {
+  HWY_DYNAMIC_DISPATCH(step_in_blocks_3)(mover, blocks, count, events);
 }
 
 }  // namespace broadside::kernels

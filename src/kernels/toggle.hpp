@@ -55,16 +55,18 @@ struct alignas(64) Block {
   std::uint32_t id[places];
 };
 
-/// What a step changes among the boxes of a block, a bit for each place.
-struct BlockToggles {
-  std::uint16_t toggled;   ///< the overlap with the mover changes
-  std::uint16_t overlaps;  ///< they overlap it now
-  std::uint16_t own;       ///< they have the mover's id
+/// What a step changes.
+struct StepEvents {
+  std::uint32_t* begun;  ///< where the ids of boxes go that the mover overlaps now and did not before ...
+  std::uint32_t* ended;  ///< ... or the other way round: room for the boxes of all blocks, and one block more
+  std::size_t begun_count = 0;
+  std::size_t ended_count = 0;
+  std::uint64_t hits = 0;  ///< boxes that overlap the mover now, itself included
 };
 
-/// Sets answers[i] to what the step changes in *blocks[i], for each of `count` blocks.
+/// Compares the mover with the boxes of `count` blocks, but for those of its own id: these become what it is
+/// now. One that is refiltered has those that it overlapped both before and now among the begun ones.
 template <int D>
-void find_toggles(const Mover<D>& mover, const Block<D>* const* blocks, std::size_t count,
-                  BlockToggles* answers);
+void take_step(const Mover<D>& mover, Block<D>* const* blocks, std::size_t count, StepEvents& events);
 
 }  // namespace broadside::kernels
