@@ -53,6 +53,7 @@ void GridCells<D>::start(const std::array<double, D>& sizes, int span, std::span
   span_ = static_cast<float>(span);
   references_ = 0;
   occupied_ = 0;
+  unfit_ = 0;
   more_.clear();
   free_ = none;
   used_ = 0;
@@ -186,10 +187,10 @@ template <int D>
 void GridCells<D>::insert(int number, const std::array<std::int32_t, D>& cell, const Box<D>& box, BoxId id) {
   Level& level = levels_[number];
   if (level.heads.empty()) make_table(level, 1);
-  if (level.references > crowded * boxes_per_block * level.heads.size()) fit_table(number);
   occupied_ |= 1U << number;
   ++references_;
   ++level.references;
+  if (level.references > crowded * boxes_per_block * level.heads.size()) unfit_ |= 1U << number;
   Block& first = head(level, cell);
   std::uint32_t count = filled(first);
   if (count == Block::capacity) {
@@ -239,7 +240,7 @@ void GridCells<D>::erase(int number, const std::array<std::int32_t, D>& cell, Bo
   // One that has emptied may fill again in the same frame.
   if (level.references != 0 && level.heads.size() > least_blocks &&
       level.references * deserted < boxes_per_block * level.heads.size())
-    fit_table(number);
+    unfit_ |= 1U << number;
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -89,6 +90,12 @@ class GridCells {
 
   void insert(const Place& place, const Box<D>& box, BoxId id);
   void erase(const Place& place, BoxId id);
+
+  /// To be called when every box that is filed is so in all its cells: makes the tables larger or smaller
+  /// where they have become many times too small or too large.
+  void fit_tables() {
+    for (; unfit_ != 0; unfit_ &= unfit_ - 1) fit_table(std::countr_zero(unfit_));
+  }
 
   /// A bit for each level that has boxes.
   std::uint32_t occupied() const noexcept { return occupied_; }
@@ -204,6 +211,7 @@ class GridCells {
   float span_ = 1;
   std::array<Level, levels> levels_;
   std::uint32_t occupied_ = 0;
+  std::uint32_t unfit_ = 0;  // a bit for each level whose table is to be made anew
   std::vector<Block> more_;  // the blocks that go on where one is full, and free ones
   std::uint32_t free_ = none;
   std::size_t used_ = 0;  // of them, those that are not free

@@ -142,6 +142,7 @@ class GridTracker final : public core::IncrementalTracker<D> {
       if (step.was_present) cells_.erase(step.before, step.id);
       if (step.is_present) cells_.insert(step.now, now, step.id);
     }
+    cells_.fit_tables();
   }
 
   void gather(const Step& step, int level) {
