@@ -5,6 +5,7 @@
 .PHONY: help setup setup-ci program compare bench test sanitize clang format check-format lint clean
 
 jobs := $(shell nproc)
+soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
 sources := find $(wildcard include src lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
@@ -13,8 +14,11 @@ help: ## List the targets
 compare: program ## Build the program and run the quick comparison
 	build/release/broadside compare
 
-bench: program ## The long comparison; its measurements also go to build/bench.json
+bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak
+	cmake --build --preset release --target motion $(soak)
 	build/release/broadside compare --long --json build/bench.json
+	build/release/bench/motion
+	$(addprefix build/release/bench/,$(soak))
 
 test: tests-release ## Build everything and run all tests
 
