@@ -61,7 +61,7 @@ struct StepEvents {
   std::uint32_t* ended;  ///< ... or the other way round: room for the boxes of all blocks, and one block more
   std::size_t begun_count = 0;
   std::size_t ended_count = 0;
-  std::uint64_t hits = 0;  ///< boxes that overlap the mover now, itself included
+  std::uint64_t hits = 0;  ///< boxes that overlap the mover now, the mover itself not
 };
 
 /// Compares the mover with the boxes of `count` blocks, but for those of its own id: these become what it is

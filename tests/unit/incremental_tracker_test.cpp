@@ -1,0 +1,145 @@
+// Trackers that keep a structure from frame to frame: what an update costs them, and what they keep.
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/allocation.hpp"
+
+namespace broadside {
+namespace {
+
+using testing::StartsWith;
+
+const std::vector<std::string> following = {
+    "brute_force:update=changed",       "grid:update=reinsert",          "grid:update=translate",
+    "grid:update=translate:span=8",     "sweep_and_prune:update=binary", "sweep_and_prune:update=merge",
+    "sweep_and_prune:update=insertion", "sweep_and_prune:update=heap"};
+
+/// Unit boxes in a square that has room for four times as many.
+std::vector<Box2> scattered(std::size_t count) {
+  std::mt19937 random(7);
+  float side = 1;
+  while (side * side < 4 * static_cast<float>(count)) side *= 2;
+  std::vector<Box2> boxes(count);
+  for (Box2& box : boxes) {
+    for (int axis = 0; axis < 2; ++axis) {
+      box.min[axis] = static_cast<float>(random() % 4096) * side / 4096;
+      box.max[axis] = box.min[axis] + 1;
+    }
+  }
+  return boxes;
+}
+
+void shift(Box2& box, float by) {
+  box.min[0] += by;
+  box.max[0] += by;
+}
+
+std::vector<BoxId> every_place(std::size_t count, std::size_t step) {
+  std::vector<BoxId> ids;
+  for (std::size_t i = 0; i < count; i += step) ids.push_back(BoxId(i));
+  return ids;
+}
+
+std::uint64_t update(PairTracker<2>& tracker, const std::vector<Box2>& boxes,
+                     const std::vector<BoxId>& changed) {
+  PairCounter events;
+  tracker.update({boxes, changed}, events, events);
+  return events.count();
+}
+
+TEST(IncrementalTracker, ComparesAMoverWithItsNeighbourhoodOnly) {
+  for (const std::string spec : {"grid:update=reinsert", "grid:update=translate", "grid",
+                                 "sweep_and_prune:update=binary", "sweep_and_prune"}) {
+    const auto tracker = make_tracker<2>(spec);
+    std::vector<Box2> boxes = scattered(20'000);
+    update(*tracker, boxes, {});
+    for (int frame = 0; frame < 4; ++frame) {
+      shift(boxes[77], 0.25F);
+      update(*tracker, boxes, {BoxId(77)});
+    }
+    ASSERT_TRUE(tracker->statistics()) << spec;
+    // Of a sweep, those that touch it on one axis: a window of the square's root.
+    EXPECT_LE(tracker->statistics()->tests, spec.starts_with("grid") ? 200U : 1500U) << spec;
+    EXPECT_GE(tracker->statistics()->tests, 1U) << spec;
+  }
+}
+
+TEST(IncrementalTracker, AllocatesNothingInASteadyState) {
+  if (!lab::AllocationMeter().read()) GTEST_SKIP() << "this build does not count allocations";
+  for (const std::string& spec : following) {
+    const auto tracker = make_tracker<2>(spec);
+    std::vector<Box2> boxes = scattered(2000);
+    const std::vector<BoxId> changed = every_place(boxes.size(), 10);
+    const auto follow = [&](int frames) {
+      for (int frame = 0; frame < frames; ++frame) {
+        const float by = frame % 8 < 4 ? 0.25F : -0.25F;
+        for (const BoxId id : changed) shift(boxes[index(id)], by);
+        update(*tracker, boxes, changed);
+      }
+    };
+    update(*tracker, boxes, {});
+    follow(16);
+    const lab::AllocationMeter meter;
+    follow(16);
+    EXPECT_EQ(meter.read()->peak, 0) << spec;
+  }
+}
+
+TEST(IncrementalTracker, GivesMemoryBackWhenBoxesHaveGone) {
+  for (const std::string spec : {"grid:update=reinsert", "grid:update=translate"}) {
+    const auto tracker = make_tracker<2>(spec);
+    std::vector<Box2> boxes = scattered(20'000);
+    update(*tracker, boxes, {});
+    const std::uint64_t cells = tracker->statistics()->cells;
+    boxes.resize(100);
+    update(*tracker, boxes, {});
+    EXPECT_LT(tracker->statistics()->cells, cells / 10) << spec;
+  }
+}
+
+TEST(IncrementalTracker, DoesNotGrowWhileEverythingDriftsFarAway) {
+  for (const std::string& spec : following) {
+    const auto tracker = make_tracker<2>(spec);
+    std::vector<Box2> boxes = scattered(500);
+    const std::vector<BoxId> changed = every_place(boxes.size(), 1);
+    update(*tracker, boxes, {});
+    std::uint64_t tests = 0;
+    std::size_t bytes = 0;
+    for (int frame = 0; frame < 200; ++frame) {
+      for (Box2& box : boxes) shift(box, 16);
+      update(*tracker, boxes, changed);
+      if (frame == 10) {
+        tests = tracker->statistics()->tests;
+        bytes = tracker->bytes();
+      }
+    }
+    EXPECT_LE(tracker->statistics()->tests, 2 * tests) << spec;
+    EXPECT_LE(tracker->bytes(), bytes + bytes / 4) << spec;
+  }
+}
+
+TEST(IncrementalTracker, FollowsFewChangesAndFindsAllPairsAnewWhereMostChange) {
+  for (const std::string spec : {"brute_force", "grid", "sweep_and_prune"}) {
+    const auto tracker = make_tracker<2>(spec);
+    std::vector<Box2> boxes = scattered(2000);
+    update(*tracker, boxes, {});
+    EXPECT_THAT(tracker->explanation(), StartsWith("all pairs anew: 2000 of 2000 boxes")) << spec;
+    shift(boxes[3], 1);
+    update(*tracker, boxes, {BoxId(3)});
+    EXPECT_THAT(tracker->explanation(), StartsWith("followed: 1 of 2000 boxes")) << spec;
+    for (Box2& box : boxes) shift(box, 1);
+    update(*tracker, boxes, every_place(boxes.size(), 1));
+    EXPECT_THAT(tracker->explanation(), StartsWith("all pairs anew")) << spec;
+  }
+}
+
+}  // namespace
+}  // namespace broadside
