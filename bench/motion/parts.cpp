@@ -62,22 +62,26 @@ double mean_of(const std::vector<double>& times) {
 }  // namespace
 
 void print_table(const Outcome& outcome) {
-  lab::Columns columns("<>>>>>>><");
-  columns.add({"algorithm", "us a frame", "mean", "p99", "worst", "ns a mover", "ratio", "build us", ""});
+  lab::Columns columns("<>>>>>>>><");
+  columns.add(
+      {"algorithm", "us a frame", "mean", "p99", "worst", "ns a mover", "ratio", "of means", "build us", ""});
   const double movers = std::max(outcome.mean_movers(), 1.0);
   double first = 0;
+  double first_mean = 0;
   for (const Runner& runner : outcome.runners) {
     if (!runner.ran()) {
-      columns.add({runner.algorithm, "-", "-", "-", "-", "-", "-", "-", runner.left_out});
+      columns.add({runner.algorithm, "-", "-", "-", "-", "-", "-", "-", "-", runner.left_out});
       continue;
     }
     const double median = lab::median(runner.frames_ms);
+    const double mean = mean_of(runner.frames_ms);
     if (first == 0) first = median;
-    columns.add({runner.algorithm, lab::rounded(median * 1e3), lab::rounded(mean_of(runner.frames_ms) * 1e3),
+    if (first_mean == 0) first_mean = mean;
+    columns.add({runner.algorithm, lab::rounded(median * 1e3), lab::rounded(mean * 1e3),
                  lab::rounded(lab::percentile(runner.frames_ms, 0.99) * 1e3),
                  lab::rounded(std::ranges::max(runner.frames_ms) * 1e3), lab::rounded(median * 1e6 / movers),
-                 fmt::format("{:.2f}", median / first), lab::rounded(runner.build_ms * 1e3),
-                 runner.explanation});
+                 fmt::format("{:.2f}", median / first), fmt::format("{:.2f}", mean / first_mean),
+                 lab::rounded(runner.build_ms * 1e3), runner.explanation});
   }
   fmt::print("{}", columns.text("  "));
   std::fflush(stdout);

@@ -1,0 +1,84 @@
+// What `broadside pairs` is told, and whether it makes sense together.
+#include "cli/pairs_arguments.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "lab/catalogue.hpp"
+#include "lab/numbers.hpp"
+#include "lab/pair_file.hpp"
+
+namespace broadside::cli {
+
+lab::MeshPart read_part(const std::string& option, const std::string& text) {
+  for (const lab::MeshPart part : {lab::MeshPart::vertices, lab::MeshPart::edges, lab::MeshPart::faces}) {
+    if (name(part) == text) return part;
+  }
+  throw Unusable(fmt::format("{} is '{}'; expected vertices, edges or faces", option, text));
+}
+
+namespace {
+
+void check_swept(const PairsArguments& arguments) {
+  const InputOptions& input = arguments.input;
+  if (!arguments.is_swept) {
+    if (!arguments.left.empty() || !arguments.right.empty() || arguments.excludes_shared)
+      throw Unusable("--left, --right or --exclude-shared without --swept; expected it, and two meshes");
+    return;
+  }
+  if (arguments.files.size() != 2)
+    throw Unusable(fmt::format("--swept with {}; expected two, a mesh and the same mesh later",
+                               lab::counted(arguments.files.size(), "file", "files")));
+  read_part("--left", arguments.left);
+  read_part("--right", arguments.right);
+  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
+      input.dimension != 0 || !arguments.frame.empty())
+    throw Unusable(
+        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
+        "them");
+}
+
+}  // namespace
+
+std::string spec_of(const PairsArguments& arguments) {
+  const lab::Catalogue catalogue;
+  std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
+  if (selected.size() != 1)
+    throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
+  const std::size_t threads = read_threads(arguments.threads);
+  if (threads == 1) return selected[0].spec.text();
+  std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
+  if (spec == selected[0].spec.text())
+    throw Unusable(
+        fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
+                    "does not say how many",
+                    threads, spec));
+  return spec;
+}
+
+void check(const PairsArguments& arguments) {
+  if (arguments.files.size() > 2)
+    throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
+                               arguments.files.size()));
+  if (std::ranges::count(arguments.files, "-") > 1)
+    throw Unusable("standard input twice; expected it to be one of the two files");
+  check_swept(arguments);
+  if (arguments.order != "sorted" && arguments.order != "found")
+    throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
+  // Known before the files are read.
+  spec_of(arguments);
+  if (arguments.counts) {
+    if (arguments.output != "-" || !arguments.to.empty())
+      throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
+    return;
+  }
+  lab::pair_format_of(arguments.output, arguments.to);
+  check_writable("-o", arguments.output);
+  for (const std::string& file : arguments.files) check_is_other_file("-o", arguments.output, file);
+}
+
+}  // namespace broadside::cli

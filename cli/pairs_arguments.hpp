@@ -1,0 +1,39 @@
+// What `broadside pairs` is told, and whether it makes sense together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+
+#include "cli/input_options.hpp"
+#include "lab/readers/swept_mesh.hpp"
+
+namespace broadside::cli {
+
+struct PairsArguments {
+  std::vector<std::string> files;
+  InputOptions input;
+  std::string algorithm{default_algorithm};
+  std::string threads = "1";
+  std::string frame;
+  std::string output = "-";
+  std::string to;
+  std::string order = "sorted";
+  bool counts = false;
+  bool is_swept = false;
+  std::string left;  // parts of a swept mesh
+  std::string right;
+  bool excludes_shared = false;
+};
+
+/// The part of a mesh that `text` is. Throws Unusable, naming `option`, if it is none.
+lab::MeshPart read_part(const std::string& option, const std::string& text);
+
+/// The algorithm's spec with its number of threads. Throws Unusable if it is not one, or cannot use several.
+std::string spec_of(const PairsArguments& arguments);
+
+/// Throws Unusable if the arguments contradict each other, as far as that is known before a file is read.
+void check(const PairsArguments& arguments);
+
+}  // namespace broadside::cli
