@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "filtered_frames.hpp"
 #include "generators.hpp"
 #include "hard_inputs.hpp"
 #include "lab/verify.hpp"
 #include "law_case.hpp"
 #include "strained_specs.hpp"
-#include "whole_frames.hpp"
 
 namespace broadside::laws {
 

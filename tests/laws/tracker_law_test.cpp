@@ -7,12 +7,12 @@
 
 #include "broadside/sinks.hpp"
 
+#include "filtered_frames.hpp"
 #include "harder_histories.hpp"
 #include "histories.hpp"
 #include "law_case.hpp"
 #include "smallest_failure.hpp"
 #include "strained_specs.hpp"
-#include "whole_frames.hpp"
 
 namespace broadside::laws {
 namespace {

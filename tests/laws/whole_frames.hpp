@@ -9,13 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
-#include "broadside/algorithm.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair_tracker.hpp"
-
-#include "lab/scenes/scene.hpp"
 
 namespace broadside::laws {
 
@@ -41,20 +36,5 @@ std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame);
 /// throws, but for what sinks threw.
 template <int D, typename Real>
 std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames);
-
-/// The history's frames.
-template <int D>
-std::vector<WholeFrame<D>> whole_frames(const lab::History<D>& history);
-
-/// The same frames with filters and ignored pairs that come, change and go, with and without changes of
-/// boxes, and sinks of which some fail.
-template <int D>
-std::vector<WholeFrame<D>> with_filters(std::vector<WholeFrame<D>> frames, std::uint64_t seed);
-
-/// Success if a tracker made from `spec` gives exactly the events of `frames`; otherwise what differs first,
-/// for few frames and boxes.
-template <int D>
-testing::AssertionResult tracks_the_frames(const Algorithm& algorithm, const Spec& spec,
-                                           std::vector<WholeFrame<D>> frames);
 
 }  // namespace broadside::laws
