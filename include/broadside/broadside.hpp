@@ -3,6 +3,7 @@
 
 // IWYU pragma: begin_exports
 #include "broadside/algorithm.hpp"
+#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"

@@ -25,13 +25,18 @@ struct BoxTraits<Box<Dimension, Coordinate>> {
 };
 
 template <typename Box>
-auto make_finder_of(std::string_view spec, Executor* executor) {
+auto make_finder_of(std::string_view spec, Executor* executor, const std::vector<BoxId>* quarantined) {
   using Traits = BoxTraits<Box>;
   auto finder = make_finder<Traits::dimension, typename Traits::Real>(spec);
   Workers workers = finder->workers();
   workers.executor = executor;
   finder->set_workers(workers);
+  if (quarantined != nullptr) finder->set_bad_input(BadInput::quarantine);
   return finder;
+}
+
+inline void list(std::span<const BoxId> ids, std::vector<BoxId>* quarantined) {
+  if (quarantined != nullptr) quarantined->assign(ids.begin(), ids.end());
 }
 }  // namespace detail
 
@@ -47,21 +52,24 @@ concept BoxArray = std::ranges::contiguous_range<const T> && std::ranges::sized_
 /// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
 /// first box with a NaN or with min > max, and InvalidSpec. Thread-safe. A finder kept from make_finder()
 /// saves the memory's allocation when calls are many. A spec such as "grid:threads=4" has several threads
-/// search: those of `executor` if there is one.
+/// search: those of `executor` if there is one. Where `quarantined` is given, invalid boxes count as absent
+/// and are listed there instead of being thrown about: see BadInput.
 template <BoxArray Boxes>
 void find_pairs(const Boxes& boxes, PairSink& pairs, std::string_view spec = default_algorithm,
-                Executor* executor = nullptr) {
+                Executor* executor = nullptr, std::vector<BoxId>* quarantined = nullptr) {
   using Box = std::ranges::range_value_t<Boxes>;
-  detail::make_finder_of<Box>(spec, executor)->find(std::span<const Box>(boxes), pairs);
+  const auto finder = detail::make_finder_of<Box>(spec, executor, quarantined);
+  finder->find(std::span<const Box>(boxes), pairs);
+  detail::list(finder->quarantined(), quarantined);
 }
 
 /// The same pairs in a vector.
 template <BoxArray Boxes>
 std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default_algorithm,
-                             Executor* executor = nullptr) {
+                             Executor* executor = nullptr, std::vector<BoxId>* quarantined = nullptr) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  find_pairs(boxes, collector, spec, executor);
+  find_pairs(boxes, collector, spec, executor, quarantined);
   return pairs;
 }
 
@@ -70,20 +78,22 @@ std::vector<Pair> find_pairs(const Boxes& boxes, std::string_view spec = default
 template <BoxArray Left, BoxArray Right>
 requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>>
 void find_pairs(const Left& left, const Right& right, PairSink& pairs,
-                std::string_view spec = default_algorithm, Executor* executor = nullptr) {
+                std::string_view spec = default_algorithm, Executor* executor = nullptr,
+                std::vector<BoxId>* quarantined = nullptr) {
   using Box = std::ranges::range_value_t<Left>;
-  detail::make_finder_of<Box>(spec, executor)
-      ->find_between(std::span<const Box>(left), std::span<const Box>(right), pairs);
+  const auto finder = detail::make_finder_of<Box>(spec, executor, quarantined);
+  finder->find_between(std::span<const Box>(left), std::span<const Box>(right), pairs);
+  detail::list(finder->quarantined(), quarantined);
 }
 
 /// The same pairs in a vector.
 template <BoxArray Left, BoxArray Right>
 requires std::is_same_v<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>> std::vector<Pair>
 find_pairs(const Left& left, const Right& right, std::string_view spec = default_algorithm,
-           Executor* executor = nullptr) {
+           Executor* executor = nullptr, std::vector<BoxId>* quarantined = nullptr) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  find_pairs(left, right, collector, spec, executor);
+  find_pairs(left, right, collector, spec, executor, quarantined);
   return pairs;
 }
 

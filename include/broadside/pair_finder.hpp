@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
@@ -30,7 +31,7 @@ class PairFinder {
   /// order is fixed by the algorithm and the boxes, whatever the workers. Absent boxes pair with nothing.
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
-  /// max without being absent; and what the sink throws.
+  /// max without being absent, unless bad_input() says otherwise; and what the sink throws.
   void find(std::span<const Box<D, Real>> boxes, PairSink& pairs);
 
   /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
@@ -41,6 +42,15 @@ class PairFinder {
   /// The same for two sets that lie one behind the other: the first `left_count` <= boxes.size() boxes are
   /// the left set. Where none is absent this saves copying them.
   void find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
+
+  /// What find() and find_between() do about invalid boxes: they throw, unless set_bad_input() says
+  /// otherwise.
+  BadInput bad_input() const noexcept { return bad_input_; }
+  void set_bad_input(BadInput bad_input) noexcept { bad_input_ = bad_input; }
+
+  /// The places of the last call's invalid boxes, ascending, where they are quarantined; those of a right set
+  /// are counted on from the end of the left one. Valid until the next call.
+  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
 
   /// What the last find() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
@@ -77,14 +87,19 @@ class PairFinder {
   /// Where a finder works through another one, it hands workers() on.
   virtual void workers_changed() {}
 
-  /// Checks the boxes, and returns how many are absent.
+  /// Checks the boxes, and returns how many are absent or quarantined.
   std::size_t check(std::span<const Box<D, Real>> boxes) const;
+
+  /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
+  void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first);
 
   /// Appends the present ones of `boxes` to present_ and their places to ids_.
   void take_present(std::span<const Box<D, Real>> boxes);
 
   std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
   std::vector<BoxId> ids_;             // and their places in the caller's array
+  std::vector<BoxId> quarantined_;
+  BadInput bad_input_ = BadInput::reject;
   std::size_t left_count_ = 0;
   std::optional<Statistics> statistics_;
   Workers workers_;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/filter.hpp"
@@ -37,8 +38,8 @@ struct Frame {
   /// The pairs that do not count, or null for none.
   const IgnoredPairs* ignored = nullptr;
 
-  /// Those that were put into `ignored` or taken from it since the frame before, as `changed` lists boxes. Not
-  /// needed where the frame before had no set.
+  /// Those that were put into `ignored` or taken from it since the frame before, as `changed` lists boxes.
+  /// Not needed where the frame before had no set.
   std::span<const Pair> ignored_changed{};
 };
 
@@ -94,11 +95,21 @@ class PairTracker {
   /// Takes the next frame; writes to `begun` the pairs that hold now and did not before, to `ended` those
   /// that did and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
   ///
-  /// Throws InvalidInput before anything has changed if a changed box is invalid, if an id in `changed` lies
-  /// beyond both this frame's array and the last one's, or if there are filters and not one for each box. If
+  /// Throws InvalidInput before anything has changed if a changed box is invalid (unless bad_input() says
+  /// otherwise), if an id in `changed` lies beyond both this frame's array and the last one's, or if there
+  /// are filters and not one for each box. If
   /// a sink throws, the frame counts as not taken: the next update rebuilds, takes every box for changed and
   /// delivers the events since the last whole update.
   void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+
+  /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
+  /// otherwise.
+  BadInput bad_input() const noexcept { return bad_input_; }
+  void set_bad_input(BadInput bad_input) noexcept { bad_input_ = bad_input; }
+
+  /// The places whose boxes have been invalid since they last changed, ascending, and so count as absent.
+  /// Valid until the next update.
+  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
 
   /// What the last update() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
@@ -138,7 +149,7 @@ class PairTracker {
   /// The bytes that the algorithm keeps from frame to frame.
   virtual std::size_t algorithm_bytes() const noexcept { return 0; }
 
-  std::size_t check(const Frame<D, Real>& frame) const;
+  void check(const Frame<D, Real>& frame) const;
   void take(const Frame<D, Real>& frame, bool rebuild);
   void take_ignored(const Frame<D, Real>& frame, bool rebuild);
   void drop_ignored(const Change<D, Real>& change);
@@ -153,6 +164,9 @@ class PairTracker {
   std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted
   std::vector<BoxId> changed_;
   std::vector<std::uint8_t> flags_;
+  std::vector<BoxId> invalid_;      // of the changed ones
+  std::vector<BoxId> quarantined_;  // those of the last whole update
+  BadInput bad_input_ = BadInput::reject;
   std::vector<Pair> begun_;
   std::vector<Pair> ended_;
   std::vector<Pair> sorting_;

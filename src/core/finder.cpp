@@ -106,6 +106,8 @@ template <int D, typename Real>
 void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
   core::check_count(boxes.size());
   const std::size_t absent = check(boxes);
+  quarantined_.clear();
+  if (absent > 0) list_invalid(boxes, 0);
   statistics_.reset();
   left_count_ = 0;
   deliver(pairs, [&] {
@@ -126,8 +128,11 @@ template <int D, typename Real>
 void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
                                        std::span<const Box<D, Real>> right, PairSink& pairs) {
   core::check_count(left.size() + right.size());
-  check_side("left", [&] { return check(left); });
-  check_side("right", [&] { return check(right); });
+  const std::size_t absent_left = check_side("left", [&] { return check(left); });
+  const std::size_t absent_right = check_side("right", [&] { return check(right); });
+  quarantined_.clear();
+  if (absent_left > 0) list_invalid(left, 0);
+  if (absent_right > 0) list_invalid(right, left.size());
   statistics_.reset();
   present_.clear();
   ids_.clear();
@@ -153,6 +158,7 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std:
     find_between(left, right, pairs);
     return;
   }
+  quarantined_.clear();
   statistics_.reset();
   left_count_ = left_count;
   deliver(pairs, [&] {
@@ -170,9 +176,18 @@ std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) cons
   std::atomic<std::size_t> absent = 0;
   // A range that throws names its first box at fault, and of ranges the first one's counts.
   parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin), std::memory_order_relaxed);
+    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input_),
+                     std::memory_order_relaxed);
   });
   return absent;
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
+  if (bad_input_ == BadInput::reject) return;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
+  }
 }
 
 template <int D, typename Real>

@@ -29,15 +29,15 @@ void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& n
 
 template <int D, typename Real>
 void check_box(const Box<D, Real>& box, std::size_t index) {
-  if (!is_present(box) && !is_absent(box)) refuse_box(box, index, "box " + std::to_string(index));
+  if (is_invalid(box)) refuse_box(box, index, "box " + std::to_string(index));
 }
 
 template <int D, typename Real>
-std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from) {
+std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, BadInput bad_input) {
   std::size_t absent = 0;
   for (std::size_t i = from; i < boxes.size(); ++i) {
     if (is_present(boxes[i])) continue;
-    check_box(boxes[i], i);
+    if (bad_input == BadInput::reject) check_box(boxes[i], i);
     ++absent;
   }
   return absent;
@@ -57,9 +57,9 @@ template void check_box(const Box<2>&, std::size_t);
 template void check_box(const Box<3>&, std::size_t);
 template void check_box(const DoubleBox2&, std::size_t);
 template void check_box(const DoubleBox3&, std::size_t);
-template std::size_t check_boxes(std::span<const Box<2>>, std::size_t);
-template std::size_t check_boxes(std::span<const Box<3>>, std::size_t);
-template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t);
-template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t);
+template std::size_t check_boxes(std::span<const Box<2>>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const Box<3>>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t, BadInput);
 
 }  // namespace broadside::core

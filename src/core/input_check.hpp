@@ -5,9 +5,16 @@
 #include <span>
 #include <string>
 
+#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 
 namespace broadside::core {
+
+/// Whether a box is neither present nor absent.
+template <int D, typename Real>
+constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
+  return !is_present(box) && !is_absent(box);
+}
 
 /// Throws InvalidInput with the box's values, which `name` goes before.
 template <int D, typename Real>
@@ -18,9 +25,10 @@ template <int D, typename Real>
 void check_box(const Box<D, Real>& box, std::size_t index);
 
 /// Checks the boxes from place `from` on as check_box does, in their order, and returns how many of them are
-/// absent. One pass.
+/// absent. One pass. Where invalid ones are quarantined they are counted with the absent ones.
 template <int D, typename Real>
-std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from = 0);
+std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from = 0,
+                        BadInput bad_input = BadInput::reject);
 
 /// Throws InvalidInput if there are more boxes than ids.
 void check_count(std::size_t count);

@@ -57,7 +57,7 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
 /// and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
 /// order of the list.
 template <int D, typename Real>
-std::size_t PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
+void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), before_.size());
   core::check_count(boxes.size());
@@ -73,12 +73,12 @@ std::size_t PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
                                         std::to_string(boxes.size()) +
                                         " boxes; expected a place in this frame or the last");
     }
-    if (index(id) < first && !is_present(boxes[index(id)]) && !is_absent(boxes[index(id)])) first = index(id);
+    if (index(id) < first && core::is_invalid(boxes[index(id)])) first = index(id);
   }
-  return core::check_boxes(boxes, first);
+  if (bad_input_ == BadInput::reject) core::check_boxes(boxes, first);
 }
 
-/// Sets now_, changed_ and flags_, and makes everything as long as the longer frame.
+/// Sets now_, changed_, invalid_ and flags_, and makes everything as long as the longer frame.
 template <int D, typename Real>
 void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
@@ -95,11 +95,16 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   if (rebuild) flags_.assign(size, 0);
   flags_.resize(size, 0);
   changed_.clear();
+  invalid_.clear();
   const auto take = [&](std::size_t i) {
     if (flags_[i] != 0) return;
     flags_[i] = 1;
     changed_.push_back(BoxId(i));
     now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
+    if (core::is_invalid(now_[i])) {
+      now_[i] = absent_box<D, Real>();
+      invalid_.push_back(BoxId(i));
+    }
     if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
   };
   if (rebuild || frame.filters.empty() == had_filters) {
@@ -153,6 +158,11 @@ void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
 template <int D, typename Real>
 void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
   const std::size_t size = frame.boxes.size();
+  if (!quarantined_.empty() || !invalid_.empty()) {
+    std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
+    quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
+    std::ranges::sort(quarantined_);
+  }
   for (const BoxId id : changed_) {
     before_[index(id)] = now_[index(id)];
     flags_[index(id)] = 0;
@@ -175,7 +185,8 @@ template <int D, typename Real>
 std::size_t PairTracker<D, Real>::bytes() const noexcept {
   return (before_.capacity() + now_.capacity()) * sizeof(Box<D, Real>) +
          (filters_before_.capacity() + filters_now_.capacity()) * sizeof(Filter) +
-         changed_.capacity() * sizeof(BoxId) + flags_.capacity() +
+         (changed_.capacity() + invalid_.capacity() + quarantined_.capacity()) * sizeof(BoxId) +
+         flags_.capacity() +
          (begun_.capacity() + ended_.capacity() + sorting_.capacity() + toggled_.capacity()) * sizeof(Pair) +
          ignored_.size() * ignored_pair_bytes + algorithm_bytes();
 }

@@ -54,5 +54,14 @@ TEST(FindPairs, RefusesABadBoxAndABadSpec) {
   EXPECT_THROW(find_pairs(boxes, "brute-force"), InvalidSpec);
 }
 
+TEST(FindPairs, ListsWhatItQuarantines) {
+  const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{1, 1}, {0, 0}}};
+  std::vector<BoxId> quarantined = {BoxId{7}};
+  EXPECT_EQ(find_pairs(boxes, "auto", nullptr, &quarantined), first_two);
+  EXPECT_EQ(quarantined, std::vector{BoxId{2}});
+  EXPECT_EQ(find_pairs(boxes, boxes, "auto", nullptr, &quarantined).size(), 4u);
+  EXPECT_EQ(quarantined, (std::vector{BoxId{2}, BoxId{5}}));
+}
+
 }  // namespace
 }  // namespace broadside
