@@ -6,11 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "broadside/box.hpp"
 #include "broadside/filter.hpp"
@@ -20,7 +19,7 @@ namespace broadside::fuzz {
 /// Ends the program, which is how a fuzzer learns of a fault.
 inline void expect(bool holds, const std::string& what) {
   if (holds) return;
-  fmt::print(stderr, "{}\n", what);
+  std::fprintf(stderr, "%s\n", what.c_str());
   std::abort();
 }
 

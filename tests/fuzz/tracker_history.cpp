@@ -10,8 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "broadside/algorithm.hpp"
 
 #include "tests/fuzz/history_bytes.hpp"
@@ -214,7 +212,7 @@ void play(const Algorithm& algorithm, const Spec& spec, Bytes bytes) {
   const auto tracker = make_tracker<D>(algorithm, spec);
   const std::vector<laws::WholeFrame<D>> frames = History<D>(bytes).frames();
   const std::string divergence = laws::divergence<D, float>(*tracker, frames);
-  expect(divergence.empty(), fmt::format("{} in {}D: {}", spec.text(), D, divergence));
+  expect(divergence.empty(), spec.text() + " in " + std::to_string(D) + "D: " + divergence);
 }
 
 }  // namespace

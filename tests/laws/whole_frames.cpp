@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "dice.hpp"
-#include "lab/verify.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -56,6 +57,17 @@ std::vector<Pair> symmetric_difference(const std::vector<Pair>& a, const std::ve
   return pairs;
 }
 
+/// What differs first between a list of events and what it should be.
+std::string first_difference(const std::vector<Pair>& found, const std::vector<Pair>& expected) {
+  const auto [at, should] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
+  const auto text = [](const std::vector<Pair>& pairs, std::vector<Pair>::const_iterator place) {
+    if (place == pairs.end()) return std::string("nothing");
+    return "(" + std::to_string(index(place->first)) + ", " + std::to_string(index(place->second)) + ")";
+  };
+  return ": event " + std::to_string(at - found.begin()) + " is " + text(found, at) + "; expected " +
+         text(expected, should);
+}
+
 /// The pairs as a caller may list them: in no order, with the boxes of each in either one, some twice.
 std::vector<Pair> listed_somehow(std::vector<Pair> pairs) {
   Dice dice(pairs.size());
@@ -71,7 +83,14 @@ std::vector<Pair> listed_somehow(std::vector<Pair> pairs) {
 
 template <int D, typename Real>
 std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame) {
-  std::vector<Pair> pairs = lab::reference_pairs<D, Real>(frame.boxes);
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+    if (!is_present(frame.boxes[i])) continue;
+    for (std::size_t j = i + 1; j < frame.boxes.size(); ++j) {
+      if (is_present(frame.boxes[j]) && overlap(frame.boxes[i], frame.boxes[j]))
+        pairs.push_back({BoxId(i), BoxId(j)});
+    }
+  }
   if (!frame.filters.empty()) {
     std::erase_if(pairs, [&](Pair pair) {
       return !accepts(frame.filters[index(pair.first)], frame.filters[index(pair.second)]);
@@ -109,9 +128,15 @@ std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame
       continue;
     }
     std::vector<Pair> now = pairs_of(frame);
-    if (const auto found = lab::check_events<D, Real>(begun.pairs(), ended.pairs(), held, now, "the tracker",
-                                                      i, frame.boxes))
-      return found->text;
+    std::vector<Pair> should_begin;
+    std::vector<Pair> should_end;
+    std::ranges::set_difference(now, held, std::back_inserter(should_begin));
+    std::ranges::set_difference(held, now, std::back_inserter(should_end));
+    for (const auto& [found, expected, what] : {std::tuple(&begun.pairs(), &should_begin, "begun"),
+                                                std::tuple(&ended.pairs(), &should_end, "ended")}) {
+      if (*found != *expected)
+        return "frame " + std::to_string(i) + ", " + what + first_difference(*found, *expected);
+    }
     held = std::move(now);
   }
   return "";
