@@ -4,17 +4,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 int main(int count, char** values) {
   if (count != 2) {
-    fmt::print(stderr, "{} arguments; expected the folder of the corpus\n", count - 1);
+    std::cerr << count - 1 << " arguments; expected the folder of the corpus\n";
     return 2;
   }
   std::vector<std::filesystem::path> paths;
@@ -22,11 +21,11 @@ int main(int count, char** values) {
   std::ranges::sort(paths);
   for (const std::filesystem::path& path : paths) {
     // The last line printed names the file whose bytes brought the body down.
-    fmt::print(stderr, "{}\n", path.filename().string());
+    std::cerr << path.filename().string() << std::endl;
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
-  if (paths.empty()) fmt::print(stderr, "{}: has no files; expected a corpus\n", values[1]);
+  if (paths.empty()) std::cerr << values[1] << ": has no files; expected a corpus\n";
   return paths.empty() ? 1 : 0;
 }
