@@ -68,6 +68,7 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
       margin(static_cast<Real>(its_options.margin)),
       is_own_tracker(is_own),
       tracker(std::move(its_tracker)),
+      first_generation(its_options.first_generation),
       is_refining(margin > 0) {
   if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
   if (!(margin >= 0) || !std::isfinite(margin)) {

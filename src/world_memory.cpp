@@ -82,13 +82,14 @@ void World<D, Real>::State::release() {
   is_current = true;
   current.shrink_to_fit();
   is_persisting = false;
-  persisting = {};
+  persisting.clear();
   graph.shrink_to_fit();
   ignored_edges.shrink_to_fit();
   free.shrink_to(slots.size());
   shrink(boxes, enlarged, generations, slots, filters, user_data);
   shrink(changed, moved, removed, reported, ignored_changed, refiltered, touched, questions, fresh);
   shrink(candidates.begun, candidates.ended, refined.begun, refined.ended, sorting, begun, ended);
+  shrink(persisting);
 }
 
 template <int D, typename Real>

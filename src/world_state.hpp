@@ -108,7 +108,7 @@ struct World<D, Real>::State {
   bool uses_filters = false;
   bool uses_user_data = false;
   core::SlotSet free;
-  std::uint32_t first_generation = 0;  // of slots that there are not yet: above that of any that was dropped
+  std::uint32_t first_generation;  // of slots that there are not yet: above that of any that was dropped
   std::size_t size = 0;
   std::size_t most_slots = 0;  // since memory was last given back
 

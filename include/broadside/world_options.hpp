@@ -33,6 +33,9 @@ struct WorldOptions {
   /// It pays where boxes jitter, or move slowly against their size, and the algorithm's cost a mover is high;
   /// each pair of enlarged boxes takes some 50 bytes, and is tested whenever one of its boxes moves.
   double margin = 0;
+
+  /// The generation of the first handles. Worlds that begin far apart refuse each other's handles.
+  std::uint32_t first_generation = 0;
 };
 
 /// Whether two boxes that overlap and whose filters accept each other are to count as a pair;

@@ -102,7 +102,8 @@ template <int D>
 void BoxTreePacker<D>::choose_axes(std::size_t boxes) {
   std::iota(axes_.begin(), axes_.end(), 0);
   const std::array<double, D> parts = parts_of(round_up(boxes) / fan_out, 1);
-  std::ranges::stable_sort(axes_, {}, [&parts](int axis) { return parts[axis]; });
+  // Not a stable sort, which takes memory.
+  std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
 }
 
 /// Buckets of which a few hold most boxes do not tell them apart.

@@ -48,7 +48,10 @@ class SweepAndPrune final : public PairFinder<D> {
     runs_.resize(std::max(runs_.size(), parallel_.lanes()));
     sample_.take(boxes);
     std::array<int, D> axes = sample_.axes_by_overlap();
-    std::ranges::stable_sort(axes, {}, [this](int axis) { return axis_ >= 0 && axis != axis_; });
+    if (axis_ >= 0) {
+      const auto chosen = std::ranges::find(axes, axis_);
+      std::rotate(axes.begin(), chosen, chosen + 1);
+    }
     choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
     if (borders_.empty())

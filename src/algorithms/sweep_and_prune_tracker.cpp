@@ -185,7 +185,10 @@ class SweepAndPruneTracker final : public core::IncrementalTracker<D> {
 
   std::array<int, D> best_axes() const {
     std::array<int, D> axes = sample_.axes_by_overlap();
-    std::ranges::stable_sort(axes, {}, [this](int axis) { return axis_ >= 0 && axis != axis_; });
+    if (axis_ >= 0) {
+      const auto chosen = std::ranges::find(axes, axis_);
+      std::rotate(axes.begin(), chosen, chosen + 1);
+    }
     return axes;
   }
 

@@ -123,8 +123,9 @@ void CurrentPairs::insert_begun(std::size_t count, Generations generations) {
 
 void CurrentPairs::shrink_to_fit() {
   pairs_.shrink_to_fit();
-  log_ = {};
-  scratch_ = {};
+  log_.shrink_to_fit();
+  scratch_.clear();
+  scratch_.shrink_to_fit();
 }
 
 }  // namespace broadside::core

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace broadside::core {
 namespace {
@@ -78,7 +79,8 @@ template <int D>
 std::array<int, D> Sample<D>::axes_by_overlap() const {
   std::array<int, D> axes;
   std::iota(axes.begin(), axes.end(), 0);
-  std::ranges::stable_sort(axes, {}, [this](int axis) { return axes_[axis].overlap; });
+  // Not a stable sort, which takes memory.
+  std::ranges::sort(axes, {}, [this](int axis) { return std::pair(axes_[axis].overlap, axis); });
   return axes;
 }
 
