@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
@@ -48,9 +49,8 @@ class SweepAndPrune final : public PairFinder<D> {
     runs_.resize(std::max(runs_.size(), parallel_.lanes()));
     sample_.take(boxes);
     std::array<int, D> axes = sample_.axes_by_overlap();
-    if (axis_ >= 0) {
-      const auto chosen = std::ranges::find(axes, axis_);
-      std::rotate(axes.begin(), chosen, chosen + 1);
+    for (int i = D - 1; i > 0; --i) {
+      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
     choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);

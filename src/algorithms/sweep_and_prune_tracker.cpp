@@ -185,9 +185,8 @@ class SweepAndPruneTracker final : public core::IncrementalTracker<D> {
 
   std::array<int, D> best_axes() const {
     std::array<int, D> axes = sample_.axes_by_overlap();
-    if (axis_ >= 0) {
-      const auto chosen = std::ranges::find(axes, axis_);
-      std::rotate(axes.begin(), chosen, chosen + 1);
+    for (int i = D - 1; i > 0; --i) {
+      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
     return axes;
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <ostream>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -173,6 +174,8 @@ struct SteadyCase {
   std::string name;
   WorldOptions options;
 };
+
+void PrintTo(const SteadyCase& steady, std::ostream* out) { *out << steady.name; }
 
 std::vector<SteadyCase> steady_cases() {
   std::vector<SteadyCase> cases;
