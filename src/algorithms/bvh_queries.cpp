@@ -48,7 +48,38 @@ float middle(const Box<D>& box, int axis) {
   return std::clamp(box.min[axis], -most, most) + std::clamp(box.max[axis], -most, most);
 }
 
+/// Orders children by their middles along an axis; the same everywhere, since no two have one number.
+struct BeforeAlong {
+  int axis;
+
+  template <typename Child>
+  bool operator()(const Child& a, const Child& b) const {
+    const float first = middle(a.box, axis);
+    const float second = middle(b.box, axis);
+    return first != second ? first < second : a.number < b.number;
+  }
+};
+
 }  // namespace
+
+/// The axis on which the middles lie farthest apart.
+template <int D>
+int DynamicBoxTree<D>::widest_axis(std::span<const Child> children) {
+  int widest = 0;
+  float greatest_spread = -1;
+  for (int axis = 0; axis < D; ++axis) {
+    float least = middle(children.front().box, axis);
+    float greatest = least;
+    for (const Child& child : children) {
+      least = std::min(least, middle(child.box, axis));
+      greatest = std::max(greatest, middle(child.box, axis));
+    }
+    if (!(greatest - least > greatest_spread)) continue;
+    widest = axis;
+    greatest_spread = greatest - least;
+  }
+  return widest;
+}
 
 template <int D>
 void DynamicBoxTree<D>::build(std::span<const Box<D>> boxes) {
@@ -58,55 +89,93 @@ void DynamicBoxTree<D>::build(std::span<const Box<D>> boxes) {
   places_.assign(boxes.size(), none);
   root_ = none;
   insertions_ = 0;
-  present_.clear();
+  packed_.clear();
   names_.clear();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!is_present(boxes[i])) continue;
-    present_.push_back(boxes[i]);
-    names_.push_back(BoxId(i));
+    packed_.push_back(boxes[i]);
+    names_.push_back(static_cast<std::uint32_t>(i));
   }
-  size_ = present_.size();
+  size_ = packed_.size();
   if (size_ == 0) return;
-  packer_.pack(present_);
-  const kernels::BoxTree<D>& packed = packer_.tree();
-  std::size_t count = 0;
-  for (std::size_t level = 0; level < packed.level_count; ++level)
-    count += (packed.levels[level].size + node_width - 1) / node_width;
   // With room for what splits add until the tree is worn.
-  nodes_.reserve(count + count / 4 + 16);
+  const std::size_t leaves = size_ / node_width;
+  nodes_.reserve(leaves + leaves / 3 + 16);
   info_.reserve(nodes_.capacity());
-  std::uint32_t below = 0;
-  for (std::size_t level = 0; level < packed.level_count; ++level) {
-    const auto first = static_cast<std::uint32_t>(nodes_.size());
-    take_level(level, below, names_);
-    below = first;
-    if (nodes_.size() - first == 1) break;
-  }
-  root_ = numbered(static_cast<std::uint32_t>(nodes_.size() - 1));
+  add_leaves();
+  arrange_all();
+  while (children_.size() > 1) add_level();
+  root_ = children_.front().number;
 }
 
-/// Appends the nodes whose children are the packed tree's boxes (level 0) or bounds; the latter are those of
-/// the nodes from `first_below` on.
+/// Puts the boxes into leaves as they are packed.
 template <int D>
-void DynamicBoxTree<D>::take_level(std::size_t level, std::uint32_t first_below,
-                                   std::span<const BoxId> names) {
-  const kernels::TreeLevel<D>& packed = packer_.tree().levels[level];
+void DynamicBoxTree<D>::add_leaves() {
+  packer_.pack(packed_);
+  const kernels::TreeLevel<D>& packed = packer_.tree().levels[0];
+  children_.clear();
   for (std::size_t begin = 0; begin < packed.size; begin += node_width) {
-    const std::uint32_t node = new_node(level == 0);
-    std::size_t to = 0;
+    const std::uint32_t leaf = new_node(true);
+    std::size_t count = 0;
     for (std::size_t at = begin; at < std::min(begin + node_width, packed.size); ++at) {
       if (!(packed.min[0][at] <= packed.max[0][at])) continue;  // no box
-      Box<D> box;
-      for (int axis = 0; axis < D; ++axis) {
-        box.min[axis] = packed.min[axis][at];
-        box.max[axis] = packed.max[axis][at];
-      }
-      const std::uint32_t number = level == 0 ? index(names[index(packer_.tree().id[at])])
-                                              : numbered(first_below + static_cast<std::uint32_t>(at));
-      write_child(node, to++, {box, number});
+      const std::size_t i = index(packer_.tree().id[at]);
+      write_child(leaf, count++, {packed_[i], names_[i]});
     }
-    info_[node].count = static_cast<std::uint8_t>(to);
+    info_[leaf].count = static_cast<std::uint8_t>(count);
+    children_.push_back({kernels::bounds_of(nodes_[leaf]), numbered(leaf)});
   }
+}
+
+/// Puts each sixteen of children_ into a node; these are then the children.
+template <int D>
+void DynamicBoxTree<D>::add_level() {
+  std::size_t to = 0;
+  for (std::size_t begin = 0; begin < children_.size(); begin += node_width) {
+    const std::uint32_t node = new_node(false);
+    const std::size_t count = std::min(node_width, children_.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) write_child(node, i, children_[begin + i]);
+    info_[node].count = static_cast<std::uint8_t>(count);
+    children_[to++] = {kernels::bounds_of(nodes_[node]), numbered(node)};
+  }
+  children_.resize(to);
+}
+
+/// Brings the leaves into an order in which each sixteen, and each sixteen of these, lie together: in the
+/// order in which they were packed, sixteen are a long row. Those far larger than most come last, since they
+/// would widen the bounds of all others they were with.
+template <int D>
+void DynamicBoxTree<D>::arrange_all() {
+  const auto size_of = [](const Child& child) {
+    float size = 0;
+    for (int axis = 0; axis < D; ++axis)
+      size = std::max(size, std::min(child.box.max[axis] - child.box.min[axis], 0x1p120f));
+    return size;
+  };
+  std::vector<float> sizes;
+  for (const Child& child : children_) sizes.push_back(size_of(child));
+  const auto median = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, median);
+  const float most = 4 * *median;
+  const auto large = std::stable_partition(children_.begin(), children_.end(),
+                                           [&](const Child& child) { return size_of(child) <= most; });
+  const auto common = static_cast<std::size_t>(large - children_.begin());
+  arrange(std::span(children_).first(common));
+  arrange(std::span(children_).subspan(common));
+}
+
+/// Halves by the middles along the axis on which these lie farthest apart, again and again. Halves are
+/// whole numbers of full subtrees.
+template <int D>
+void DynamicBoxTree<D>::arrange(std::span<Child> children) {
+  if (children.size() <= node_width) return;
+  std::size_t subtree = node_width;
+  while (subtree * node_width < children.size()) subtree *= node_width;
+  const std::size_t half = (children.size() / subtree + 1) / 2 * subtree;
+  const auto middle_at = static_cast<std::ptrdiff_t>(half);
+  std::ranges::nth_element(children, children.begin() + middle_at, BeforeAlong{widest_axis(children)});
+  arrange(children.first(half));
+  arrange(children.subspan(half));
 }
 
 template <int D>
@@ -165,23 +234,7 @@ void DynamicBoxTree<D>::split(std::uint32_t node, const Child& added) {
   for (std::uint32_t i = 0; i < node_width; ++i)
     children[i] = {box_at(node * node_width + i), nodes_[node].child[i]};
   children.back() = added;
-  int longest = 0;
-  float spread = -1;
-  for (int axis = 0; axis < D; ++axis) {
-    const auto by_middle = [axis](const Child& a, const Child& b) {
-      return middle(a.box, axis) < middle(b.box, axis);
-    };
-    const auto [least, most] = std::minmax_element(children.begin(), children.end(), by_middle);
-    const float range = middle(most->box, axis) - middle(least->box, axis);
-    if (!(range > spread)) continue;
-    longest = axis;
-    spread = range;
-  }
-  std::sort(children.begin(), children.end(), [longest](const Child& a, const Child& b) {
-    const float first = middle(a.box, longest);
-    const float second = middle(b.box, longest);
-    return first != second ? first < second : a.number < b.number;
-  });
+  std::ranges::sort(children, BeforeAlong{widest_axis(std::span<const Child>(children))});
 
   const std::uint32_t other = new_node(info_[node].is_leaf);
   constexpr std::size_t half = node_width / 2;
@@ -306,8 +359,8 @@ void DynamicBoxTree<D>::clear_from(std::uint32_t node, std::size_t count) noexce
 template <int D>
 std::size_t DynamicBoxTree<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
-  return packer_.bytes() + held(present_) + held(names_) + held(nodes_) + held(info_) + held(free_) +
-         held(places_);
+  return packer_.bytes() + held(packed_) + held(names_) + held(children_) + held(nodes_) + held(info_) +
+         held(free_) + held(places_);
 }
 
 template class DynamicBoxTree<2>;

@@ -58,7 +58,11 @@ class DynamicBoxTree {
     std::uint32_t number;
   };
 
-  void take_level(std::size_t level, std::uint32_t first_below, std::span<const BoxId> names);
+  void add_leaves();
+  void arrange_all();
+  static void arrange(std::span<Child> children);
+  static int widest_axis(std::span<const Child> children);
+  void add_level();
   std::uint32_t new_node(bool is_leaf);
   std::uint32_t numbered(std::uint32_t node) const noexcept {
     return info_[node].is_leaf ? node | kernels::leaf_bit : node;
@@ -74,8 +78,10 @@ class DynamicBoxTree {
   void refit(std::uint32_t node);
 
   BoxTreePacker<D> packer_;
-  std::vector<Box<D>> present_;
-  std::vector<BoxId> names_;
+  // While it is built: the boxes and their ids, and what the next level's nodes hold.
+  std::vector<Box<D>> packed_;
+  std::vector<std::uint32_t> names_;
+  std::vector<Child> children_;
   std::vector<kernels::QueryNode<D>> nodes_;
   std::vector<NodeInfo> info_;
   std::vector<std::uint32_t> free_;    // nodes

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -57,6 +58,13 @@ HWY_INLINE std::size_t append(const QueryNode<D>& node, std::size_t at, FloatMas
   const auto bits = hn::BitCast(Numbers(), values);
   hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), values_to);
   return append(node, at, mask, to);
+}
+
+/// Brings a node that will be looked at into the cache, while others are looked at.
+template <int D>
+HWY_INLINE void fetch(const QueryNode<D>& node) {
+  for (std::size_t line = 0; line < sizeof(node); line += 64)
+    hwy::Prefetch(reinterpret_cast<const char*>(&node) + line);
 }
 
 template <int D>
@@ -116,7 +124,8 @@ struct Cast {
       near_side[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
       far_side[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
       inverse[axis] = all(query.inverse[axis]);
-      backward[axis] = is_back;
+      near_bound_at[axis] = (is_back ? D + axis : axis) * node_width;
+      far_bound_at[axis] = (is_back ? axis : D + axis) * node_width;
     }
   }
 
@@ -178,10 +187,10 @@ struct Cast {
 
  private:
   HWY_INLINE FloatVector near_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
-    return load(backward[axis] ? node.max[axis] : node.min[axis], at);
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at[axis] + at);
   }
   HWY_INLINE FloatVector far_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
-    return load(backward[axis] ? node.min[axis] : node.max[axis], at);
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at[axis] + at);
   }
   HWY_INLINE FloatMask overlaps(const QueryNode<D>& node, int axis, std::size_t at) const {
     return hn::And(hn::Le(load(node.min[axis], at), near_side[axis]),
@@ -192,7 +201,10 @@ struct Cast {
   FloatVector near_side[D];
   FloatVector far_side[D];
   FloatVector inverse[D];
-  bool backward[D];
+  // Where in a node the bounds stand that a cast meets first and last, counted in floats: no branch on a
+  // direction.
+  std::size_t near_bound_at[D];
+  std::size_t far_bound_at[D];
 };
 
 template <int D>
@@ -219,19 +231,49 @@ bool met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found)
   return true;
 }
 
+/// A node that waits, and where it is entered, in the high half: bits of positive floats order as they do.
+using Waiting = std::uint64_t;
+
+HWY_INLINE float entry_of(Waiting waiting) {
+  const auto bits = static_cast<std::uint32_t>(waiting >> 32);
+  float value;
+  hwy::CopyBytes<sizeof(value)>(&bits, &value);
+  return value;
+}
+
+/// Sorts in descending order. Nearly always there are two or three, which no branch is to depend on.
+HWY_INLINE void sort_descending(Waiting* list, std::size_t count) {
+  const auto order = [list](std::size_t i, std::size_t j) HWY_ATTR {
+    const Waiting greater = std::max(list[i], list[j]);
+    list[j] = std::min(list[i], list[j]);
+    list[i] = greater;
+  };
+  if (count < 2) return;
+  order(0, 1);
+  if (count == 2) return;
+  order(1, 2);
+  order(0, 1);
+  for (std::size_t i = 3; i < count; ++i) {
+    const Waiting inserted = list[i];
+    std::size_t to = i;
+    for (; to > 0 && list[to - 1] < inserted; --to) list[to] = list[to - 1];
+    list[to] = inserted;
+  }
+}
+
 template <int D>
 void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   const Cast<D> cast(query);
   FloatVector limit = Cast<D>::limit(found.furthest);
-  std::uint32_t waiting[(longest_path + 1) * node_width];
-  float enters[(longest_path + 1) * node_width];
+  Waiting waiting[(longest_path + 1) * node_width];
+  std::uint32_t children[2 * node_width];
+  std::uint32_t entries[2 * node_width];
   std::size_t count = 1;
   waiting[0] = tree.root;
-  enters[0] = 0;
   while (count > 0) {
     --count;
-    if (!(enters[count] <= hn::GetLane(limit))) continue;
-    const std::uint32_t number = waiting[count];
+    if (!(entry_of(waiting[count]) <= hn::GetLane(limit))) continue;
+    const auto number = static_cast<std::uint32_t>(waiting[count]);
     const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
     if ((number & leaf_bit) != 0) {
       cast.leaf(node, found, limit);
@@ -240,24 +282,22 @@ void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& 
       limit = Cast<D>::limit(found.furthest);
       continue;
     }
-    const std::size_t begin = count;
+    std::size_t size = 0;
     for (std::size_t at = 0; at < node_width; at += lanes) {
       FloatVector enter;
-      const FloatMask hits = cast.may_meet(node, at, limit, enter);
-      count += append(node, at, hits, enter, waiting + count, enters + count);
+      const FloatMask mask = cast.may_meet(node, at, limit, enter);
+      const auto hits = hn::RebindMask(Numbers(), mask);
+      const auto bits = hn::BitCast(Numbers(), hn::Add(enter, hn::Zero(Floats())));  // no -0.0
+      hn::StoreU(compress(Numbers(), bits, hits), Numbers(), entries + size);
+      size += append(node, at, mask, children + size);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      waiting[count + i] = Waiting{entries[i]} << 32 | children[i];
+      fetch(tree.nodes[children[i] & ~leaf_bit]);
     }
     // The nearest one last, where it is taken from.
-    for (std::size_t i = begin + 1; i < count; ++i) {
-      const float enter = enters[i];
-      const std::uint32_t child = waiting[i];
-      std::size_t to = i;
-      for (; to > begin && enters[to - 1] < enter; --to) {
-        enters[to] = enters[to - 1];
-        waiting[to] = waiting[to - 1];
-      }
-      enters[to] = enter;
-      waiting[to] = child;
-    }
+    sort_descending(waiting + count, size);
+    count += size;
   }
 }
 

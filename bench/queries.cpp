@@ -1,0 +1,228 @@
+// Queries to an index of boxes, against other libraries': queries [BOXES [QUERIES [ROUNDS]]].
+//
+// All answer the same batches of queries in turns, in one thread, and must find the same, as a set, before
+// anything is timed. Building is not in the times of queries; it has a line of its own.
+#include "lab/peers/queries.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "broadside/broadside.hpp"
+
+#include "lab/measure/contest.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/machine.hpp"
+#include "lab/scenes/random.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::bench {
+namespace {
+
+using lab::peers::Answers;
+
+/// Somebody who answers a batch.
+struct Contestant {
+  std::string name;
+  std::function<Answers()> ask;
+  std::vector<double> samples{};  // ns a query
+};
+
+void race(const std::string& what, std::vector<Contestant> contestants, std::size_t queries,
+          std::size_t rounds) {
+  const Answers expected = contestants.front().ask();
+  for (const Contestant& contestant : contestants) {
+    const Answers found = contestant.ask();
+    if (found != expected)
+      throw std::runtime_error(fmt::format("{}: {} found {}; expected the {} that {} found, the same ones",
+                                           what, contestant.name, found.count, expected.count,
+                                           contestants.front().name));
+  }
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+      Contestant& contestant = contestants[(i + round) % contestants.size()];
+      const lab::Stopwatch watch;
+      const Answers found = contestant.ask();
+      contestant.samples.push_back(watch.milliseconds() * 1e6 / static_cast<double>(queries));
+      if (found != expected) throw std::runtime_error(contestant.name + " changed its answer");
+    }
+  }
+  const double own = lab::median(contestants.front().samples);
+  const auto count = static_cast<double>(queries);
+  fmt::print("{:<32}{:>9.1f}", what, static_cast<double>(expected.count) / count);
+  for (const Contestant& contestant : contestants) {
+    const double time = lab::median(contestant.samples);
+    fmt::print("  {} {:.0f}", contestant.name, time);
+    if (&contestant != &contestants.front()) fmt::print(" ({:.1f}x)", time / own);
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+template <int D>
+class Queries {
+ public:
+  Queries(std::size_t boxes, std::size_t queries, std::size_t rounds) : queries_(queries), rounds_(rounds) {
+    const lab::NamedScene uniform = lab::find_scene("uniform");
+    boxes_ = lab::make_history<D>(uniform.scene, uniform.spec, {.boxes = boxes}).boxes;
+    for (int axis = 0; axis < D; ++axis) {
+      low_[axis] = std::numeric_limits<float>::infinity();
+      high_[axis] = -low_[axis];
+      for (const Box<D>& box : boxes_) {
+        low_[axis] = std::min(low_[axis], box.min[axis]);
+        high_[axis] = std::max(high_[axis], box.max[axis]);
+      }
+    }
+    index_ = make_box_index<D>();
+    const lab::Stopwatch watch;
+    index_->update({.boxes = boxes_, .changed = {}});
+    fmt::print("{}D: built in {:.2f} ms, {:.0f} bytes a box\n", D, watch.milliseconds(),
+               static_cast<double>(index_->bytes()) / static_cast<double>(boxes));
+    peers_ = lab::peers::query_peers<D>(boxes_);
+  }
+
+  void run() {
+    boxes("box, about 4 hits", 1);
+    boxes("box, about 100 hits", D == 2 ? 9 : 5);
+    const std::vector<Ray<D>> rays = make_rays();
+    std::vector<Contestant> first = {{"broadside", [&] { return own_first_hits(rays); }}};
+    std::vector<Contestant> all = {{"broadside", [&] { return own_all_hits(rays); }}};
+    for (const auto& peer : peers_) {
+      if (!peer->has_rays()) continue;
+      first.push_back({peer->name(), [&rays, &peer] { return peer->first_hits(rays); }});
+      all.push_back({peer->name(), [&rays, &peer] { return peer->all_hits(rays); }});
+    }
+    race(fmt::format("{}D ray, first hit", D), first, rays.size(), rounds_);
+    race(fmt::format("{}D ray, all hits", D), all, rays.size(), rounds_);
+    move_one();
+  }
+
+ private:
+  std::array<float, D> any_point() {
+    std::array<float, D> point;
+    for (int axis = 0; axis < D; ++axis)
+      point[axis] = static_cast<float>(random_.between(low_[axis], high_[axis]));
+    return point;
+  }
+
+  /// Queries as large as some box, `times` as long on each axis.
+  void boxes(const std::string& what, float times) {
+    std::vector<Box<D>> queries(queries_);
+    for (Box<D>& query : queries) {
+      const Box<D>& like = boxes_[random_.below(boxes_.size())];
+      query.min = any_point();
+      for (int axis = 0; axis < D; ++axis)
+        query.max[axis] = query.min[axis] + times * (like.max[axis] - like.min[axis]);
+    }
+    std::vector<Contestant> contestants = {{"broadside", [&] { return own_overlapping(queries); }}};
+    for (const auto& peer : peers_) {
+      if (peer->has_boxes())
+        contestants.push_back({peer->name(), [&queries, &peer] { return peer->overlapping(queries); }});
+    }
+    race(fmt::format("{}D {}", D, what), contestants, queries.size(), rounds_);
+  }
+
+  /// From one place that is in no box to another place.
+  std::vector<Ray<D>> make_rays() {
+    std::vector<Ray<D>> rays(queries_);
+    for (Ray<D>& ray : rays) {
+      do {
+        ray.origin = any_point();
+      } while (!index_->holding(ray.origin, [](BoxId) { return false; }));
+      const std::array<float, D> to = any_point();
+      for (int axis = 0; axis < D; ++axis) ray.direction[axis] = to[axis] - ray.origin[axis];
+      ray.furthest = 1;
+    }
+    return rays;
+  }
+
+  Answers own_overlapping(std::span<const Box<D>> queries) const {
+    Answers answers;
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      index_->overlapping(queries[i], [&answers, i](BoxId id) { answers.add(i, id); });
+    return answers;
+  }
+
+  Answers own_first_hits(std::span<const Ray<D>> rays) const {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (const auto hit = index_->first_hit(rays[i])) answers.add(i, hit->box);
+    }
+    return answers;
+  }
+
+  Answers own_all_hits(std::span<const Ray<D>> rays) const {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      index_->hits(rays[i], [&answers, i](Hit<float> hit) { answers.add(i, hit.box); });
+    return answers;
+  }
+
+  /// What one mover costs the index, drifting a fifth of a box, and jumping anywhere.
+  void move_one() {
+    for (const bool jumps : {false, true}) {
+      std::vector<double> samples;
+      for (std::size_t round = 0; round < 20'000; ++round) {
+        const std::size_t i = random_.below(boxes_.size());
+        Box<D>& box = boxes_[i];
+        const std::array<float, D> to = any_point();
+        for (int axis = 0; axis < D; ++axis) {
+          const float extent = box.max[axis] - box.min[axis];
+          box.min[axis] =
+              jumps ? to[axis] : box.min[axis] + 0.2f * extent * static_cast<float>(random_.between(-1, 1));
+          box.max[axis] = box.min[axis] + extent;
+        }
+        const std::array changed = {BoxId(i)};
+        const lab::Stopwatch watch;
+        index_->update({.boxes = boxes_, .changed = changed});
+        samples.push_back(watch.milliseconds() * 1e6);
+      }
+      fmt::print("{:<32}{:>9}  broadside {:.0f} ns, the clock's included\n",
+                 fmt::format("{}D update, one that {}", D, jumps ? "jumps" : "drifts"), "",
+                 lab::median(samples));
+    }
+  }
+
+  std::size_t queries_;
+  std::size_t rounds_;
+  std::vector<Box<D>> boxes_;
+  std::array<float, D> low_;
+  std::array<float, D> high_;
+  std::unique_ptr<BoxIndex<D>> index_;
+  std::vector<std::unique_ptr<lab::peers::QueryPeer<D>>> peers_;
+  lab::Random random_{1};
+};
+
+void run(std::size_t boxes, std::size_t queries, std::size_t rounds) {
+  const lab::Machine machine = lab::this_machine();
+  fmt::print("uniform, {} boxes, batches of {}, {} rounds; {}, {} cores; {}\n", lab::grouped(boxes),
+             lab::grouped(queries), rounds, machine.cpu, machine.cores, lab::this_build().compiler);
+  fmt::print("{:<32}{:>9}  median ns a query\n", "", "hits");
+  Queries<2>(boxes, queries, rounds).run();
+  Queries<3>(boxes, queries, rounds).run();
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int argc, char** argv) {
+  try {
+    const auto argument = [&](int place, std::size_t standard) {
+      return argc > place ? std::stoul(argv[place]) : standard;
+    };
+    broadside::bench::run(argument(1, 100'000), argument(2, 10'000), argument(3, 21));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "queries: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,53 @@
+// Other libraries that answer queries about boxes, each behind one interface, for the benchmark of queries.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/ray.hpp"
+
+namespace broadside::lab::peers {
+
+/// What a batch of queries found, as a set: how many, and a hash of each with the number of its query.
+struct Answers {
+  std::uint64_t count = 0;
+  std::uint64_t hash = 0;
+
+  void add(std::size_t query, BoxId box) {
+    ++count;
+    hash += (std::uint64_t{index(box)} + 1) * 0x9e3779b97f4a7c15U ^ query * 0xff51afd7ed558ccdU;
+  }
+
+  friend bool operator==(const Answers&, const Answers&) = default;
+};
+
+/// An index of finite boxes that others made. Rays have a finite `furthest` and begin in no box.
+template <int D>
+class QueryPeer {
+ public:
+  virtual ~QueryPeer() = default;
+  virtual std::string name() const = 0;
+  virtual bool has_boxes() const { return false; }
+  virtual bool has_rays() const { return false; }
+  virtual Answers overlapping(std::span<const Box<D>>) { return {}; }
+  virtual Answers first_hits(std::span<const Ray<D>>) { return {}; }
+  virtual Answers all_hits(std::span<const Ray<D>>) { return {}; }
+};
+
+/// Those in this build, with an index over the boxes, which must outlive them.
+template <int D>
+std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes);
+
+// One for each file. What is not in the build is declared and not defined.
+
+template <int D>
+std::unique_ptr<QueryPeer<D>> boost_queries(std::span<const Box<D>> boxes);
+std::unique_ptr<QueryPeer<2>> box2d_queries(std::span<const Box2> boxes);
+std::unique_ptr<QueryPeer<3>> embree_queries(std::span<const Box3> boxes);
+
+}  // namespace broadside::lab::peers

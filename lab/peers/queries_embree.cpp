@@ -1,0 +1,147 @@
+// Rays through Embree's hierarchy, boxes being geometry of the user's: rtcIntersect1 with callbacks.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <type_traits>
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include "lab/peers/queries.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+
+template <typename Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+class EmbreeQueries final : public QueryPeer<3> {
+ public:
+  explicit EmbreeQueries(std::span<const Box3> boxes)
+      : boxes_(boxes), device_(rtcNewDevice("set_affinity=0")) {
+    if (!device_) throw std::runtime_error("Embree gave no device; expected one");
+    scene_.reset(rtcNewScene(device_.get()));
+    geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+    rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes.size()));
+    rtcSetGeometryUserData(geometry_.get(), this);
+    rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
+    rtcSetGeometryIntersectFunction(geometry_.get(), intersect);
+    rtcAttachGeometry(scene_.get(), geometry_.get());
+    tbb::task_arena(1).execute([this] {
+      rtcCommitGeometry(geometry_.get());
+      rtcCommitScene(scene_.get());
+    });
+    if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree reports an error; expected none");
+  }
+
+  std::string name() const override { return "embree"; }
+  bool has_rays() const override { return true; }
+
+  Answers first_hits(std::span<const Ray<3>> rays) override {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Search search(rays[i], nullptr, i);
+      RTCRayHit ray_hit = trace(search);
+      if (ray_hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) answers.add(i, BoxId{ray_hit.hit.primID});
+    }
+    return answers;
+  }
+
+  Answers all_hits(std::span<const Ray<3>> rays) override {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Search search(rays[i], &answers, i);
+      trace(search);
+    }
+    return answers;
+  }
+
+ private:
+  /// What the callback gets to see: Embree hands its context on.
+  struct Search {
+    Search(const Ray<3>& searched, Answers* found, std::size_t number)
+        : ray(searched), answers(found), query(number) {
+      rtcInitIntersectContext(&context);
+      for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = 1 / ray.direction[axis];
+    }
+
+    RTCIntersectContext context;  // first, so that its address is the search's
+    const Ray<3>& ray;
+    Answers* answers;  // of all hits; null for the first one
+    std::size_t query;
+    std::array<float, 3> inverse;
+  };
+
+  RTCRayHit trace(Search& search) const {
+    const Ray<3>& ray = search.ray;
+    RTCRayHit ray_hit{};
+    ray_hit.ray.org_x = ray.origin[0];
+    ray_hit.ray.org_y = ray.origin[1];
+    ray_hit.ray.org_z = ray.origin[2];
+    ray_hit.ray.dir_x = ray.direction[0];
+    ray_hit.ray.dir_y = ray.direction[1];
+    ray_hit.ray.dir_z = ray.direction[2];
+    ray_hit.ray.tnear = 0;
+    ray_hit.ray.tfar = ray.furthest;
+    ray_hit.ray.mask = 0xffffffffU;
+    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &search.context, &ray_hit);
+    return ray_hit;
+  }
+
+  static void bound(const RTCBoundsFunctionArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
+    const Box3& box = self.boxes_[arguments->primID];
+    RTCBounds& bounds = *arguments->bounds_o;
+    bounds.lower_x = box.min[0];
+    bounds.lower_y = box.min[1];
+    bounds.lower_z = box.min[2];
+    bounds.upper_x = box.max[0];
+    bounds.upper_y = box.max[1];
+    bounds.upper_z = box.max[2];
+  }
+
+  /// Slabs, with an inverse that was computed once a ray, as one who wants to be fast writes it.
+  static void intersect(const RTCIntersectFunctionNArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
+    const auto& search = *reinterpret_cast<const Search*>(arguments->context);
+    const Box3& box = self.boxes_[arguments->primID];
+    auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);  // of one ray
+    float enter = 0;
+    float leave = ray_hit.ray.tfar;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float a = (box.min[axis] - search.ray.origin[axis]) * search.inverse[axis];
+      const float b = (box.max[axis] - search.ray.origin[axis]) * search.inverse[axis];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (!(enter <= leave)) return;
+    if (search.answers != nullptr) {
+      search.answers->add(search.query, BoxId{arguments->primID});
+      return;
+    }
+    ray_hit.ray.tfar = enter;
+    ray_hit.hit.geomID = arguments->geomID;
+    ray_hit.hit.primID = arguments->primID;
+  }
+
+  std::span<const Box3> boxes_;
+  Owned<RTCDevice> device_;
+  Owned<RTCScene> scene_;
+  Owned<RTCGeometry> geometry_;
+};
+
+}  // namespace
+
+std::unique_ptr<QueryPeer<3>> embree_queries(std::span<const Box3> boxes) {
+  return std::make_unique<EmbreeQueries>(boxes);
+}
+
+}  // namespace broadside::lab::peers
