@@ -286,6 +286,7 @@ void World<D, Real>::State::remove_valid(std::uint32_t slot) noexcept {
 template <int D, typename Real>
 void World<D, Real>::State::mark_changed(std::uint32_t slot) noexcept {
   is_settled = false;
+  is_indexed.store(false, std::memory_order_relaxed);
   if (slots[slot].is_changed) return;
   slots[slot].is_changed = true;
   changed.push_back(BoxId{slot});

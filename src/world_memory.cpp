@@ -83,6 +83,7 @@ void World<D, Real>::State::release() {
   current.shrink_to_fit();
   is_persisting = false;
   persisting.clear();
+  drop_index();
   graph.shrink_to_fit();
   ignored_edges.shrink_to_fit();
   free.shrink_to(slots.size());

@@ -76,6 +76,11 @@ struct World<D, Real>::State {
   void mark_changed(std::uint32_t slot) noexcept;
   void mark_moved(std::uint32_t slot) noexcept;
 
+  // world_queries.cpp.
+  void bring_index_up_to_date() const;
+  void note_changes_for_index();
+  void drop_index() noexcept;
+
   // world_update.cpp.
   Frame<D, Real> frame() const noexcept;
   void ask_tracker();
@@ -151,6 +156,9 @@ struct World<D, Real>::State {
   mutable std::atomic<bool> is_current = true;
   mutable std::vector<HandlePair> persisting;
   mutable std::atomic<bool> is_persisting = false;
+  mutable std::unique_ptr<BoxIndex<D, Real>> queried;  // null until a query is asked
+  mutable std::vector<BoxId> unindexed;  // changes that updates have taken and the index has not
+  mutable std::atomic<bool> is_indexed = false;
 };
 
 /// Makes room for `extra` more elements, at least doubling, so that appending so many does not throw.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,10 +16,20 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/handle.hpp"
+#include "broadside/queries.hpp"
 #include "broadside/world_options.hpp"
 #include "broadside/world_statistics.hpp"
 
 namespace broadside {
+
+/// A box that a ray or a moved box meets, and the parameter at which it does so first.
+template <typename Real>
+struct HandleHit {
+  Handle handle;
+  Real entry;
+
+  friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
+};
 
 /// A set of boxes that changes, and its overlapping pairs.
 ///
@@ -102,6 +113,37 @@ class World {
   /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Cost:
   /// one search between two sets, which takes memory of its own.
   void join(const World& other, std::vector<HandlePair>& pairs) const;
+
+  /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
+  /// whose costs and exceptions they have. The first one builds an index, which follows the boxes from then
+  /// on; one after changes pays for what changed. `function` takes a Handle, or a Handle and where it is
+  /// entered; the search ends when it returns false. Rays and moved boxes are Ray and BoxCast.
+  template <typename Function>
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* asker = nullptr) const {
+    return box_index().overlapping(
+        box, [&](BoxId id) { return function(handle_of(id)); }, asker);
+  }
+  template <typename Function>
+  bool holding(const std::array<Real, D>& point, Function&& function, const Filter* asker = nullptr) const {
+    return box_index().holding(
+        point, [&](BoxId id) { return function(handle_of(id)); }, asker);
+  }
+  template <typename Shape, typename Function>
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* asker = nullptr) const {
+    const auto call = [&](const Hit<Real>& hit) { return function(handle_of(hit.box), hit.entry); };
+    return box_index().hits(ray_or_cast, call, asker);
+  }
+  template <typename Shape>
+  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* asker = nullptr) const {
+    const std::optional<Hit<Real>> hit = box_index().first_hit(ray_or_cast, asker);
+    if (!hit) return std::nullopt;
+    return HandleHit<Real>{handle_of(hit->box), hit->entry};
+  }
+
+  /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
+  /// the world changes.
+  const BoxIndex<D, Real>& box_index() const;
+  Handle handle_of(BoxId slot) const noexcept;
 
   /// Whether the box is in the world: added and not removed.
   bool contains(Handle handle) const noexcept;

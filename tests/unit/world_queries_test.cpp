@@ -1,0 +1,129 @@
+// World's queries: in terms of handles, about the boxes as they are now.
+#include <algorithm>
+#include <array>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/world.hpp"
+
+namespace broadside {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Box2 everywhere{{-1e6f, -1e6f}, {1e6f, 1e6f}};
+
+std::vector<Handle> overlapping(const World2& world, const Box2& box, const Filter* asker = nullptr) {
+  std::vector<Handle> found;
+  world.overlapping(
+      box, [&found](Handle handle) { found.push_back(handle); }, asker);
+  std::ranges::sort(found);
+  return found;
+}
+
+TEST(WorldQueries, SeeBoxesAsTheyAreBeforeAndAfterAnUpdate) {
+  World2 world;
+  EXPECT_THAT(overlapping(world, everywhere), IsEmpty());
+  const Handle a = world.add({{0, 0}, {1, 1}});
+  const Handle b = world.add({{5, 0}, {6, 1}});
+  EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
+  world.update();
+  EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
+  world.move(b, {{8, 0}, {9, 1}});
+  EXPECT_THAT(overlapping(world, {{5, 0}, {6, 1}}), IsEmpty());
+  EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(b));
+  world.remove(a);
+  EXPECT_THAT(overlapping(world, everywhere), ElementsAre(b));
+  world.update();
+  world.update();
+  const Handle c = world.add({{0, 0}, {1, 1}});
+  EXPECT_EQ(c.slot, a.slot);
+  EXPECT_THAT(overlapping(world, {{0, 0}, {1, 1}}), ElementsAre(c)) << "not the handle of who was there";
+}
+
+TEST(WorldQueries, CastAndHoldInTermsOfHandles) {
+  World2 world;
+  const Handle near = world.add({{2, 0}, {3, 1}});
+  const Handle far = world.add({{5, 0}, {6, 1}});
+  const Ray<2> ray{{0, 0.5f}, {1, 0}};
+  EXPECT_EQ(world.first_hit(ray), (HandleHit<float>{near, 2}));
+  EXPECT_EQ(world.first_hit(BoxCast<2>{{{0, 0}, {1, 1}}, {0.5f, 0}}), (HandleHit<float>{near, 2}));
+  std::vector<HandleHit<float>> hits;
+  world.hits(ray, [&hits](Handle handle, float entry) { hits.push_back({handle, entry}); });
+  EXPECT_THAT(hits, testing::UnorderedElementsAre(HandleHit<float>{near, 2}, HandleHit<float>{far, 5}));
+  int calls = 0;
+  EXPECT_FALSE(world.hits(ray, [&calls](Handle, float) { return ++calls > 5; }));
+  EXPECT_EQ(calls, 1);
+  EXPECT_FALSE(world.holding({5.5f, 0.5f}, [far](Handle handle) { return handle != far; }));
+}
+
+TEST(WorldQueries, HeedFiltersAndNotTheMargin) {
+  WorldOptions options;
+  options.margin = 2;
+  World2 world(options);
+  const Handle a = world.add({{0, 0}, {1, 1}});
+  const Handle b = world.add({{2, 0}, {3, 1}});
+  world.update();
+  EXPECT_THAT(overlapping(world, {{0, 0}, {1, 1}}), ElementsAre(a));
+  const Filter asker{.category = 2, .mask = 4};
+  EXPECT_THAT(overlapping(world, everywhere, &asker), IsEmpty());
+  world.set_filter(b, {.category = 4});
+  EXPECT_THAT(overlapping(world, everywhere, &asker), ElementsAre(b));
+}
+
+TEST(WorldQueries, FollowChurn) {
+  World2 world;
+  std::vector<Handle> handles;
+  for (int i = 0; i < 3000; ++i) {
+    const auto at = static_cast<float>(i);
+    handles.push_back(world.add({{at, 0}, {at + 0.5f, 1}}));
+  }
+  for (int frame = 0; frame < 60; ++frame) {
+    for (int k = 0; k < 40; ++k) {
+      const auto i = static_cast<std::size_t>((frame * 40 + k) * 37 % 3000);
+      if (world.contains(handles[i])) world.remove(handles[i]);
+      const auto at = static_cast<float>((frame * 7919 + k * 104729) % 5000);
+      if (k % 3 != 0) handles[i] = world.add({{at, 0}, {at + 0.5f, 1}});
+    }
+    world.update();
+    if (frame % 4 == 1) continue;  // changes of several updates at once
+    std::vector<Handle> expected;
+    const Box2 asked{{1000, 0}, {3000, 1}};
+    for (const Handle handle : handles) {
+      if (world.contains(handle) && overlap(world.box(handle), asked)) expected.push_back(handle);
+    }
+    std::ranges::sort(expected);
+    ASSERT_EQ(overlapping(world, asked), expected) << "frame " << frame;
+  }
+  for (const Handle handle : handles) {
+    if (world.contains(handle)) world.remove(handle);
+  }
+  world.update();
+  world.update();
+  EXPECT_THAT(overlapping(world, everywhere), IsEmpty());
+}
+
+TEST(WorldQueriesThreads, MayAllAskFirst) {
+  World2 world;
+  for (int i = 0; i < 2000; ++i) {
+    const auto at = static_cast<float>(i);
+    world.add({{at, 0}, {at + 0.5f, 1}});
+  }
+  for (int frame = 0; frame < 3; ++frame) {
+    world.add({{-1, 0}, {0, 1}});
+    world.update();
+    std::array<std::size_t, 4> found{};
+    std::vector<std::thread> threads;
+    for (std::size_t& count : found)
+      threads.emplace_back([&world, &count] { count = overlapping(world, everywhere).size(); });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_THAT(found, testing::Each(2001U + static_cast<std::size_t>(frame)));
+  }
+}
+
+}  // namespace
+}  // namespace broadside
