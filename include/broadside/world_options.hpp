@@ -30,8 +30,9 @@ struct WorldOptions {
   /// when the box has left the enlarged one. The pairs reported are those of the boxes themselves all the
   /// same, exactly and in the same update.
   ///
-  /// It pays where boxes jitter, or move slowly against their size, and the algorithm's cost a mover is high;
-  /// each pair of enlarged boxes takes some 50 bytes, and is tested whenever one of its boxes moves.
+  /// Each pair of enlarged boxes takes some 50 bytes and is tested whenever one of its boxes moves, which
+  /// costs about a microsecond a mover. So it pays over a tracker of your own for which a mover is dearer
+  /// than that, and not over the library's own, which took 0.3 (n = 100,000 in 2D).
   double margin = 0;
 
   /// The generation of the first handles. Worlds that begin far apart refuse each other's handles.
