@@ -1,5 +1,6 @@
 // World: its index for queries, built when the first one is asked.
 #include <mutex>
+#include <vector>
 
 #include "broadside/queries.hpp"
 #include "broadside/world.hpp"
@@ -16,6 +17,15 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
     if (!state.is_indexed.load(std::memory_order_relaxed)) state.bring_index_up_to_date();
   }
   return *state.queried;
+}
+
+template <int D, typename Real>
+void World<D, Real>::nearest(const std::array<Real, D>& point, std::size_t count,
+                             std::vector<HandleNeighbour<Real>>& found, const Filter* asker) const {
+  std::vector<Neighbour<Real>> neighbours;
+  box_index().nearest(point, count, neighbours, asker);
+  found.clear();
+  for (const Neighbour<Real>& one : neighbours) found.push_back({handle_of(one.box), one.distance_squared});
 }
 
 template <int D, typename Real>

@@ -31,6 +31,15 @@ struct HandleHit {
   friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
 };
 
+/// A box and the square of its distance from a point.
+template <typename Real>
+struct HandleNeighbour {
+  Handle handle;
+  Real distance_squared;
+
+  friend constexpr bool operator==(const HandleNeighbour&, const HandleNeighbour&) = default;
+};
+
 /// A set of boxes that changes, and its overlapping pairs.
 ///
 /// Of boxes of floats or of doubles. What is done to boxes and filters shows its effect on pairs at the next
@@ -139,6 +148,10 @@ class World {
     if (!hit) return std::nullopt;
     return HandleHit<Real>{handle_of(hit->box), hit->entry};
   }
+
+  /// Sets `found` to the nearest boxes, as BoxIndex::nearest() does; equally distant ones by slot.
+  void nearest(const std::array<Real, D>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
+               const Filter* asker = nullptr) const;
 
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
   /// the world changes.

@@ -61,6 +61,18 @@ TEST(WorldQueries, CastAndHoldInTermsOfHandles) {
   EXPECT_FALSE(world.holding({5.5f, 0.5f}, [far](Handle handle) { return handle != far; }));
 }
 
+TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
+  World2 world;
+  const Handle far = world.add({{5, 0}, {6, 1}});
+  const Handle near = world.add({{2, 0}, {3, 1}});
+  const Handle as_near = world.add({{-3, 0}, {-2, 1}});
+  std::vector<HandleNeighbour<float>> found;
+  world.nearest({0, 0}, 2, found);
+  EXPECT_THAT(found, ElementsAre(HandleNeighbour<float>{near, 4}, HandleNeighbour<float>{as_near, 4}));
+  world.nearest({0, 0}, 9, found);
+  EXPECT_EQ(found.back(), (HandleNeighbour<float>{far, 25}));
+}
+
 TEST(WorldQueries, HeedFiltersAndNotTheMargin) {
   WorldOptions options;
   options.margin = 2;
