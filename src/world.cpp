@@ -80,7 +80,7 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
-  if (!is_present(added)) State::refuse_box(added, state_->next_slot(), "for slot");
+  state_->check_box(added, state_->next_slot(), "for slot");
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
   return state_->add_valid(added, options);
 }
@@ -88,7 +88,7 @@ Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
 template <int D, typename Real>
 void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
   const std::uint32_t slot = state_->live_slot(handle, "move");
-  if (!is_present(box)) State::refuse_box(box, slot, "for slot");
+  state_->check_box(box, slot, "for slot");
   make_room(state_->changed, 1);
   make_room(state_->moved, 1);
   state_->set_box(slot, box);
@@ -184,9 +184,11 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
                       "; expected a box in the world");
 }
 
-/// What is no box for add() and move(): an absent one is what remove() is for.
+/// Refuses what is no box for add() and move(): an absent one is what remove() is for.
 template <int D, typename Real>
-void World<D, Real>::State::refuse_box(const Box<D, Real>& box, std::size_t place, const char* whose) {
+void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const {
+  if (is_present(box)) return;
+  if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
   const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
   if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
   core::refuse_box(box, place, name);
@@ -244,8 +246,9 @@ Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOption
 
 /// There is room in `changed` and `moved`.
 template <int D, typename Real>
-void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& box) noexcept {
+void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given) noexcept {
   mark_changed(slot);
+  const Box<D, Real> box = kept(given);
   boxes[slot] = box;
   if (!has_margin()) return;
   Box<D, Real>& seen = enlarged[slot];

@@ -25,7 +25,7 @@ void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> 
   check_lengths(handles.size(), "handles", boxes.size());
   if (!options.empty()) check_lengths(options.size(), "options", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!is_present(boxes[i])) State::refuse_box(boxes[i], i, "to be added, number");
+    state_->check_box(boxes[i], i, "to be added, number");
   }
   bool has_filters = false;
   bool has_user_data = false;
@@ -43,7 +43,7 @@ void World<D, Real>::move(std::span<const Handle> handles, std::span<const Box<D
   check_lengths(handles.size(), "handles", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!state_->is_live(handles[i])) state_->refuse(handles[i], "move");
-    if (!is_present(boxes[i])) State::refuse_box(boxes[i], i, "to be moved to, number");
+    state_->check_box(boxes[i], i, "to be moved to, number");
   }
   make_room(state_->changed, boxes.size());
   make_room(state_->moved, boxes.size());
@@ -64,6 +64,17 @@ void World<D, Real>::remove(std::span<const Handle> handles) {
     state_->refuse(handles[i], state_->is_live(handles[i]) ? "remove twice" : "remove");
   }
   for (const Handle handle : handles) state_->remove_valid(handle.slot);
+}
+
+template <int D, typename Real>
+std::vector<Handle> World<D, Real>::quarantined() const {
+  const State& state = *state_;
+  std::vector<Handle> handles;
+  for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
+    if (state.slots[slot].state == State::SlotState::live && is_absent(state.boxes[slot]))
+      handles.push_back({slot, state.generations[slot]});
+  }
+  return handles;
 }
 
 template <int D, typename Real>

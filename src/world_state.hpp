@@ -66,7 +66,10 @@ struct World<D, Real>::State {
   std::uint32_t live_slot(Handle handle, const char* action) const;
   std::uint32_t readable_slot(Handle handle) const;
   [[noreturn]] void refuse(Handle handle, const char* action) const;
-  [[noreturn]] static void refuse_box(const Box<D, Real>& box, std::size_t place, const char* whose);
+  void check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const;
+  Box<D, Real> kept(const Box<D, Real>& box) const noexcept {
+    return is_present(box) ? box : absent_box<D, Real>();
+  }
   void reserve(std::size_t boxes, bool with_filters, bool with_user_data);
   std::uint32_t next_slot() const noexcept;
   Handle add_valid(const Box<D, Real>& box, const BoxOptions& options) noexcept;

@@ -169,6 +169,10 @@ class World {
   std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);
 
+  /// The boxes whose values were invalid when they were last set, by slot: where WorldOptions::bad_input is
+  /// to quarantine them. box() gives the absent box for them. O(slots).
+  std::vector<Handle> quarantined() const;
+
   /// The number of boxes in the world.
   std::size_t size() const noexcept;
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/bad_input.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/handle.hpp"
 
@@ -37,6 +38,10 @@ struct WorldOptions {
 
   /// The generation of the first handles. Worlds that begin far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
+
+  /// What add() and move() do about invalid boxes: they throw, or take them in as absent ones, which pair
+  /// with nothing until they are moved to valid ones, and which quarantined() names.
+  BadInput bad_input = BadInput::reject;
 };
 
 /// Whether two boxes that overlap and whose filters accept each other are to count as a pair;
