@@ -5,6 +5,7 @@
 
 #include "broadside/broad_phase.hpp"
 
+#include "algorithms/bvh_tracker.hpp"
 #include "algorithms/bvh_tree.hpp"
 #include "algorithms/descriptions.hpp"
 #include "kernels/box_tree.hpp"
@@ -24,6 +25,11 @@ class Bvh final : public PairFinder<D> {
   BoxTreePacker<D> packer_;
 };
 
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_bvh_tracker<D>(settings, std::make_unique<Bvh<D>>());
+}
+
 }  // namespace
 
 Algorithm bvh() {
@@ -31,8 +37,11 @@ Algorithm bvh() {
       .name = "bvh",
       .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
       .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
+      .tunables = bvh_tracking(),
       .finder_2d = [](const Settings&) { return std::make_unique<Bvh<2>>(); },
       .finder_3d = [](const Settings&) { return std::make_unique<Bvh<3>>(); },
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
   };
 }
 
