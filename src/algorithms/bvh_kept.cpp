@@ -2,7 +2,7 @@
 #include "algorithms/bvh_kept.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <utility>
 
 namespace broadside::own {
 namespace {
