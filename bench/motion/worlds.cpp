@@ -55,48 +55,18 @@ void spikes_in(const Wishes& wishes) {
   fmt::print("\n");
 }
 
-/// Frames of drift, then one in which every box jumps to where another seed puts one; again and again.
 constexpr std::size_t between_jumps = 9;
-
-template <int D>
-StartMotion<D> jumping(const std::string& scene, std::size_t boxes, const lab::SceneRequest& request) {
-  struct State {
-    std::vector<Box<D>> boxes;
-    std::unique_ptr<lab::MovingBoxes<D>> drifting;
-    std::size_t frame = 0;
-  };
-  return [=]() -> Motion<D> {
-    const auto state = std::make_shared<State>();
-    state->boxes = boxes_of<D>(scene, boxes, request.seed);
-    return {state->boxes, [=] {
-              const std::size_t cycle = state->frame / (between_jumps + 1);
-              const std::size_t place = state->frame++ % (between_jumps + 1);
-              if (place == 0)
-                state->drifting = std::make_unique<lab::MovingBoxes<D>>(state->boxes, request, false);
-              lab::Step<D> step{boxes, {}, {}};
-              if (place < between_jumps) {
-                step = state->drifting->next();
-              } else {
-                step.boxes = boxes_of<D>(scene, boxes, request.seed + cycle + 1);
-                for (std::size_t i = 0; i < step.boxes.size(); ++i) step.changed.push_back(BoxId(i));
-              }
-              lab::apply(step, state->boxes);
-              return step;
-            }};
-  };
-}
 
 template <int D>
 void jumps_in(const Wishes& wishes) {
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(5 * (between_jumps + 1), 5);
   const lab::Catalogue catalogue;
-  const Outcome outcome = race<D>(
-      catalogue.select(wishes.algorithms_or("auto,auto:way=rebuild")),
-      jumping<D>(scene_of(wishes), boxes,
-                 {.boxes = boxes, .seed = wishes.seed, .moving = moving_of(wishes), .drift = wishes.drift}),
-      turns);
-  print_heading(fmt::format("all jump in each tenth frame, {}", scene_of(wishes)), D, boxes, turns);
+  const std::string scene = fmt::format("jumps:every={}", between_jumps + 1);
+  const Outcome outcome =
+      race<D>(catalogue.select(wishes.algorithms_or("auto,auto:way=rebuild")),
+              motion_of<D>(scene, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames}), turns);
+  print_heading(scene, D, boxes, turns);
   lab::Columns columns("<>>>>");
   columns.add({"algorithm", "jump us", "the frame after", "others", "first frame"});
   std::vector<std::pair<std::string, double>> jumps;

@@ -16,6 +16,7 @@ Scene integers();
 Scene thin();
 Scene terdiman();
 Scene churn();
+Scene jumps();
 Scene bunny();
 Scene counties();
 Scene coastlines();

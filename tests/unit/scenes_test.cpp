@@ -212,5 +212,15 @@ TEST(MakeHistory, RefusesADimensionThatTheSceneDoesNotHave) {
   EXPECT_THROW(make_history<3>(flat, Spec{flat.name, {}}, {}), InvalidSpec);
 }
 
+TEST(JumpsScene, PutsEveryBoxElsewhereInOneFrameAndATenthOnALittleInOthers) {
+  const NamedScene named = find_scene("jumps:every=3");
+  const History<2> history = make_history<2>(named.scene, named.spec, {.boxes = 200, .seed = 5, .frames = 7});
+  ASSERT_EQ(history.steps.size(), 7u);
+  for (std::size_t i = 0; i < 7; ++i)
+    EXPECT_EQ(history.steps[i].changed.size(), (i + 1) % 3 == 0 ? 200u : 20u) << i;
+  EXPECT_NE(history.steps[2].boxes, history.boxes);
+  EXPECT_NE(history.steps[5].boxes, history.steps[2].boxes);
+}
+
 }  // namespace
 }  // namespace broadside::lab

@@ -1,0 +1,66 @@
+// Motion with a jolt: boxes that drift, and now and then a frame in which every one is put elsewhere.
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/motion.hpp"
+
+namespace broadside::lab::generated {
+namespace {
+
+template <int D>
+std::vector<Box<D>> uniform_boxes(const SceneRequest& request, std::uint64_t seed) {
+  static const Scene scene = uniform();
+  const Settings standard(Spec{scene.name, {}}, scene.tunables);
+  if constexpr (D == 2)
+    return scene.boxes_2d(standard, request.boxes, seed);
+  else
+    return scene.boxes_3d(standard, request.boxes, seed);
+}
+
+template <int D>
+History<D> make(const Settings& settings, const SceneRequest& request) {
+  const auto every = static_cast<std::size_t>(settings.integer("every"));
+  History<D> history{uniform_boxes<D>(request, request.seed), {}};
+  std::vector<Box<D>> boxes = history.boxes;
+  std::unique_ptr<MovingBoxes<D>> drifting;
+  for (std::size_t frame = 1; frame <= request.frames; ++frame) {
+    Step<D> step{boxes.size(), {}, {}};
+    if (frame % every == 0) {
+      drifting.reset();
+      // Another seed's boxes, which no other seed of a few starts from.
+      step.boxes = uniform_boxes<D>(request, request.seed + (frame << 32));
+      for (std::size_t i = 0; i < boxes.size(); ++i) step.changed.push_back(BoxId(i));
+    } else {
+      constexpr bool whole_steps = false;
+      if (drifting == nullptr)
+        drifting = std::make_unique<MovingBoxes<D>>(
+            boxes, SceneRequest{.boxes = boxes.size(), .seed = request.seed + frame}, whole_steps);
+      step = drifting->next();
+    }
+    lab::apply(step, boxes);
+    history.steps.push_back(std::move(step));
+  }
+  return history;
+}
+
+}  // namespace
+
+Scene jumps() {
+  return {
+      .name = "jumps",
+      .summary = "even boxes of which a tenth drifts, until all of them jump in one frame",
+      .source = "Broadside",
+      .tunables = {{.name = "every",
+                    .summary = "frames from one jump of all boxes to the next",
+                    .standard = "10",
+                    .type = Tunable::Type::integer,
+                    .least = 1,
+                    .most = 1e9}},
+      .history_2d = make<2>,
+      .history_3d = make<3>,
+  };
+}
+
+}  // namespace broadside::lab::generated
