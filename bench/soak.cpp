@@ -1,0 +1,112 @@
+// Whether a World grows: soak [FRAMES [SPEC]], of 100,000 boxes of which 1 % are replaced in each frame.
+//
+// Prints what the world holds and what the process does, over what they were after the first frames, when
+// slots are in use again; and compares the pairs now and then with those of a search from nothing, through
+// another algorithm.
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "broadside/broadside.hpp"
+
+namespace broadside::bench {
+namespace {
+
+constexpr std::size_t count = 100'000;
+constexpr std::size_t replaced = count / 100;
+
+/// The bytes of the process that are in memory; 0 where the system does not say.
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double total = 0;
+  double resident = 0;
+  file >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+class Boxes {
+ public:
+  Box2 next() {
+    const float x = unit() * 1000;
+    const float y = unit() * 1000;
+    return {{x, y}, {x + 1 + unit(), y + 1 + unit()}};
+  }
+
+  std::size_t below(std::size_t end) { return random_() % end; }
+
+ private:
+  float unit() { return static_cast<float>(random_() >> 40) * 0x1p-24F; }
+
+  std::mt19937_64 random_{1};
+};
+
+void verify(const World2& world, const std::vector<Handle>& handles, std::uint64_t frame) {
+  std::vector<Box2> boxes;
+  boxes.reserve(handles.size());
+  for (const Handle handle : handles) boxes.push_back(world.box(handle));
+  const std::size_t expected = find_pairs(boxes, "sweep_and_prune").size();
+  for (const HandlePair pair : world.pairs()) {
+    if (!overlap(world.box(pair.first), world.box(pair.second)))
+      throw std::runtime_error("frame " + std::to_string(frame) + ": a pair that does not overlap");
+  }
+  if (world.pairs().size() != expected) {
+    throw std::runtime_error("frame " + std::to_string(frame) + ": " + std::to_string(world.pairs().size()) +
+                             " pairs; expected " + std::to_string(expected));
+  }
+}
+
+void run(std::uint64_t frames, const std::string& spec) {
+  Boxes boxes;
+  World2 world(spec);
+  std::vector<Handle> handles;
+  for (std::size_t i = 0; i < count; ++i) handles.push_back(world.add(boxes.next()));
+  world.update();
+  verify(world, handles, 0);
+  const auto fresh = static_cast<double>(world.statistics().bytes.total());
+  const double fresh_resident = resident_bytes();
+  std::printf("%zu boxes, %zu replaced a frame, %s\n", count, replaced, spec.c_str());
+  std::printf("%10s %12s %10s %12s %10s %8s\n", "frame", "own MiB", "over new", "RSS MiB", "over new", "s");
+  const auto begin = std::chrono::steady_clock::now();
+  const std::uint64_t step = frames < 10 ? 1 : frames / 10;
+  for (std::uint64_t frame = 1; frame <= frames; ++frame) {
+    for (std::size_t i = 0; i < replaced; ++i) {
+      Handle& handle = handles[boxes.below(count)];
+      world.remove(handle);
+      handle = world.add(boxes.next());
+    }
+    world.update();
+    if (frame % step != 0 && frame != frames) continue;
+    verify(world, handles, frame);
+    const auto own = static_cast<double>(world.statistics().bytes.total());
+    const double resident = resident_bytes();
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    std::printf("%10llu %12.1f %10.3f %12.1f %10.3f %8.1f\n", static_cast<unsigned long long>(frame),
+                own / 1048576, own / fresh, resident / 1048576, resident / fresh_resident, seconds.count());
+    std::fflush(stdout);
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  std::printf("1,000,000 frames take about %.1f hours\n",
+              seconds.count() / static_cast<double>(frames) * 1e6 / 3600);
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int argument_count, char** arguments) {
+  try {
+    broadside::bench::run(argument_count > 1 ? std::stoull(arguments[1]) : 20'000,
+                          argument_count > 2 ? arguments[2] : "auto");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "soak: %s\n", error.what());
+    return 1;
+  }
+}
