@@ -8,9 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "broadside/minimise.hpp"
+
 #include "lab/measure/contest.hpp"
 #include "lab/measure/reference.hpp"
-#include "lab/minimise.hpp"
 #include "lab/verify.hpp"
 
 namespace broadside::lab {

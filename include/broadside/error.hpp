@@ -32,4 +32,9 @@ class InvalidHandle : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// Bytes that are no snapshot of a world, or not of one like this.
+class InvalidSnapshot : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
 }  // namespace broadside

@@ -59,6 +59,10 @@ struct Change {
   std::span<const Filter> filters_before{};  ///< likewise; both empty where there are no filters
   std::span<const Filter> filters_now{};     ///<
 
+  /// The frame as the caller gave it: for who checks callers, since what is not listed is not in `now`. Null
+  /// where there is none.
+  const Frame<D, Real>* frame = nullptr;
+
   /// Whether the pair held in the frame before, and whether it holds in this one.
   bool held(BoxId a, BoxId b) const noexcept { return holds(before, filters_before, a, b); }
   bool holds(BoxId a, BoxId b) const noexcept { return holds(now, filters_now, a, b); }
@@ -110,6 +114,12 @@ class PairTracker {
   /// The places whose boxes have been invalid since they last changed, ascending, and so count as absent.
   /// Valid until the next update.
   std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+
+  /// The frame that the last whole update() took, with nothing listed: what the next one's events start from.
+  /// Without boxes before the first. Valid until the next update().
+  Frame<D, Real> last_frame() const noexcept {
+    return {before_, {}, filters_before_, had_ignored_ ? &ignored_ : nullptr, {}};
+  }
 
   /// What the last update() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }

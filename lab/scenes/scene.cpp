@@ -70,14 +70,6 @@ std::string_view name(SceneKind kind) noexcept {
   return names[static_cast<std::size_t>(kind)];
 }
 
-template <int D, typename Real>
-void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes) {
-  boxes.resize(step.size, absent_box<D, Real>());
-  for (std::size_t i = 0; i < step.changed.size(); ++i) {
-    if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
-  }
-}
-
 std::span<const Scene> scenes() { return std::span(scene_list().scenes).first(scene_list().there); }
 
 std::span<const Scene> missing_scenes() { return std::span(scene_list().scenes).subspan(scene_list().there); }
@@ -126,10 +118,5 @@ template <>
 History<3> make_history(const Scene& scene, const Spec& spec, const SceneRequest& request) {
   return make<3>(scene.boxes_3d, scene.history_3d, scene, spec, request);
 }
-
-template void apply(const Step<2>&, std::vector<Box<2>>&);
-template void apply(const Step<3>&, std::vector<Box<3>>&);
-template void apply(const Step<2, double>&, std::vector<DoubleBox2>&);
-template void apply(const Step<3, double>&, std::vector<DoubleBox3>&);
 
 }  // namespace broadside::lab

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/history.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/spec.hpp"
 
@@ -18,32 +19,11 @@ namespace broadside::lab {
 
 struct ReadOptions;  // lab/readers/format.hpp
 
-/// What changes from one frame to the next.
-template <int D, typename Real = float>
-struct Step {
-  std::size_t size;                 ///< the number of boxes from this frame on
-  std::vector<BoxId> changed;       ///< places whose boxes change, each once
-  std::vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
-};
-
-/// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
-template <int D, typename Real = float>
-struct History {
-  std::vector<Box<D, Real>> boxes;
-  std::vector<Step<D, Real>> steps;
-};
-
-/// Turns the boxes of one frame into those of the next.
-template <int D, typename Real>
-void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
-
-/// How many places there are in the frame that has the most.
-template <int D, typename Real>
-std::size_t places_of(const History<D, Real>& history) {
-  std::size_t places = history.boxes.size();
-  for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
-  return places;
-}
+// The library's, under the names that the lab has always called them by.
+using broadside::apply;
+using broadside::History;
+using broadside::places_of;
+using broadside::Step;
 
 /// How many boxes, from which seed, and how they move; the last three concern only scenes that do not move on
 /// their own.

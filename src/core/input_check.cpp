@@ -3,28 +3,18 @@
 
 #include <cstdint>
 #include <limits>
-#include <locale>
-#include <sstream>
 
 #include "broadside/error.hpp"
+
+#include "core/box_text.hpp"
 
 namespace broadside::core {
 
 template <int D, typename Real>
 void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name) {
-  std::ostringstream message;
-  message.imbue(std::locale::classic());  // whatever the program has made of the global one
-  message.precision(std::numeric_limits<Real>::max_digits10);
-  const auto print = [&message](const std::array<Real, D>& point) {
-    for (int axis = 0; axis < D; ++axis) message << (axis == 0 ? "(" : ", ") << point[axis];
-    message << ')';
-  };
-  message << name << " has min ";
-  print(box.min);
-  message << " and max ";
-  print(box.max);
-  message << "; expected numbers with min <= max on every axis, or the absent box (min = +inf, max = -inf)";
-  throw InvalidInput(index, message.str());
+  throw InvalidInput(index, name + " has " + text_of(box) +
+                                "; expected numbers with min <= max on every axis, or the absent box (min = "
+                                "+inf, max = -inf)");
 }
 
 template <int D, typename Real>

@@ -30,7 +30,8 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   begun_.clear();
   ended_.clear();
   statistics_.reset();
-  const Change<D, Real> change{before_, now_, changed_, flags_, rebuild, filters_before_, filters_now_};
+  const Change<D, Real> change{before_,         now_,         changed_, flags_, rebuild,
+                               filters_before_, filters_now_, &frame};
   {
     PairCollector begun_pairs(begun_);
     PairCollector ended_pairs(ended_);

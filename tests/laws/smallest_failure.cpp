@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <fmt/format.h>
+#include "broadside/history.hpp"
+#include "broadside/minimise.hpp"
 
-#include "lab/minimise.hpp"
 #include "lab/verify.hpp"
 
 namespace broadside::laws {
@@ -27,15 +27,6 @@ Failure failure_of(Check check) {
   }
 }
 
-template <int D>
-std::string text_of(std::span<const Box<D>> boxes) {
-  std::string text;
-  for (const Box<D>& box : boxes.first(std::min<std::size_t>(boxes.size(), 20)))
-    text += fmt::format("\n  {{{{{}}}, {{{}}}}}", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
-  if (boxes.size() > 20) text += fmt::format("\n  ... {} in all", boxes.size());
-  return text;
-}
-
 }  // namespace
 
 template <int D>
@@ -49,8 +40,8 @@ testing::AssertionResult finds_the_pairs(const Algorithm& algorithm, const Spec&
     return !found.empty();
   };
   if (!fails(boxes)) return testing::AssertionSuccess();
-  lab::minimise(boxes, fails);
-  return testing::AssertionFailure() << failure << "\nboxes:" << text_of<D>(boxes);
+  minimise(boxes, fails);
+  return testing::AssertionFailure() << failure << "\n" << text_of(History<D>{boxes, {}});
 }
 
 template <int D>
@@ -64,14 +55,8 @@ testing::AssertionResult tracks_the_pairs(const Algorithm& algorithm, const Spec
     return !found.empty();
   };
   if (!fails(history)) return testing::AssertionSuccess();
-  lab::minimise(history, fails);
-  std::string text = failure + "\nfirst frame:" + text_of<D>(history.boxes);
-  for (const lab::Step<D>& step : history.steps) {
-    text += fmt::format("\nthen {} boxes, changed:", step.size);
-    for (const BoxId id : step.changed) text += fmt::format(" {}", index(id));
-    text += ", to:" + text_of<D>(step.boxes);
-  }
-  return testing::AssertionFailure() << text;
+  minimise(history, fails);
+  return testing::AssertionFailure() << failure << "\n" << text_of(history);
 }
 
 template testing::AssertionResult finds_the_pairs(const Algorithm&, const Spec&, std::vector<Box<2>>);

@@ -19,7 +19,8 @@ FrameReader<D, Real>& as(AnyFrameReader& frames) {
 /// Two frames of doubles in 3D; the second one has a box more and one that is gone.
 AnyFrameReader doubles() {
   const DoubleBox3 box{{0.1, 16777217, -1e300}, {0.2, 16777219, 1e300}};
-  History<3, double> history{{box, box}, {{3, {BoxId{1}, BoxId{2}}, {absent_box<3, double>(), box}}}};
+  History<3, double> history{{box, box}, {}};
+  history.steps.push_back({3, {BoxId{1}, BoxId{2}}, {absent_box<3, double>(), box}});
   return std::make_unique<HistoryReader<3, double>>(std::move(history));
 }
 

@@ -1,5 +1,5 @@
 // Failing inputs made small.
-#include "lab/minimise.hpp"
+#include "broadside/minimise.hpp"
 
 #include <algorithm>
 #include <span>

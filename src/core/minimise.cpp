@@ -1,11 +1,11 @@
 // Failing inputs made small by delta debugging.
-#include "lab/minimise.hpp"
+#include "broadside/minimise.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-namespace broadside::lab {
+namespace broadside {
 namespace {
 
 /// Drops from `items` what `still_fails` does without.
@@ -38,29 +38,6 @@ bool is_valid(const History<D, Real>& history) {
   return true;
 }
 
-/// The history of the places in `kept`, which are ascending, alone.
-template <int D, typename Real>
-History<D, Real> only(const std::vector<std::size_t>& kept, const History<D, Real>& history) {
-  const auto below = [&kept](std::size_t place) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(kept, place) - kept.begin());
-  };
-  History<D, Real> rest;
-  for (const std::size_t place : kept) {
-    if (place < history.boxes.size()) rest.boxes.push_back(history.boxes[place]);
-  }
-  for (const Step<D, Real>& step : history.steps) {
-    Step<D, Real> less{below(step.size), {}, {}};
-    for (std::size_t i = 0; i < step.changed.size(); ++i) {
-      const std::size_t place = below(index(step.changed[i]));
-      if (place == kept.size() || kept[place] != index(step.changed[i])) continue;
-      less.changed.push_back(BoxId(place));
-      less.boxes.push_back(step.boxes[i]);
-    }
-    rest.steps.push_back(std::move(less));
-  }
-  return rest;
-}
-
 /// Drops the places of the array that can go.
 template <int D, typename Real>
 void drop_places(History<D, Real>& history, const HistoryFails<D, Real>& fails,
@@ -69,8 +46,8 @@ void drop_places(History<D, Real>& history, const HistoryFails<D, Real>& fails,
   std::vector<std::size_t> kept(places_of(whole));
   std::iota(kept.begin(), kept.end(), std::size_t{0});
   drop_what_can_go(
-      kept, [&] { return fails(only(kept, whole)); }, stop);
-  history = only(kept, whole);
+      kept, [&] { return fails(only<D, Real>(kept, whole)); }, stop);
+  history = only<D, Real>(kept, whole);
 }
 
 /// Drops the changes of a step that can go.
@@ -83,9 +60,11 @@ void drop_changes(Step<D, Real>& step, const std::function<bool()>& still_fails,
   const auto take_kept = [&] {
     step.changed.clear();
     step.boxes.clear();
+    step.filters.clear();
     for (const std::size_t i : kept) {
       step.changed.push_back(whole.changed[i]);
       step.boxes.push_back(whole.boxes[i]);
+      if (!whole.filters.empty()) step.filters.push_back(whole.filters[i]);
     }
   };
   drop_what_can_go(
@@ -99,6 +78,39 @@ void drop_changes(Step<D, Real>& step, const std::function<bool()>& still_fails,
 }
 
 }  // namespace
+
+template <int D, typename Real>
+History<D, Real> only(std::span<const std::size_t> kept, const History<D, Real>& history) {
+  const auto below = [kept](std::size_t place) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(kept, place) - kept.begin());
+  };
+  const auto has = [&](BoxId id) { return std::ranges::binary_search(kept, std::size_t{index(id)}); };
+  const auto place_of = [&](BoxId id) { return BoxId(below(index(id))); };
+  const auto only_pairs = [&](const std::vector<Pair>& pairs) {
+    std::vector<Pair> left;
+    for (const Pair pair : pairs) {
+      if (has(pair.first) && has(pair.second)) left.push_back({place_of(pair.first), place_of(pair.second)});
+    }
+    return left;
+  };
+  History<D, Real> rest;
+  for (const std::size_t place : kept) {
+    if (place < history.boxes.size()) rest.boxes.push_back(history.boxes[place]);
+    if (place < history.filters.size()) rest.filters.push_back(history.filters[place]);
+  }
+  rest.ignored = only_pairs(history.ignored);
+  for (const Step<D, Real>& step : history.steps) {
+    Step<D, Real> less{below(step.size), {}, {}, {}, only_pairs(step.toggled)};
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      if (!has(step.changed[i])) continue;
+      less.changed.push_back(place_of(step.changed[i]));
+      less.boxes.push_back(step.boxes[i]);
+      if (!step.filters.empty()) less.filters.push_back(step.filters[i]);
+    }
+    rest.steps.push_back(std::move(less));
+  }
+  return rest;
+}
 
 template <int D, typename Real>
 void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
@@ -116,8 +128,14 @@ void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
   // Where boxes are gone, more frames can go.
   drop_what_can_go(history.steps, still_fails, stop);
   for (Step<D, Real>& step : history.steps) drop_changes(step, still_fails, stop);
+  drop_what_can_go(history.ignored, still_fails, stop);
+  for (Step<D, Real>& step : history.steps) drop_what_can_go(step.toggled, still_fails, stop);
 }
 
+template History<2> only(std::span<const std::size_t>, const History<2>&);
+template History<3> only(std::span<const std::size_t>, const History<3>&);
+template History<2, double> only(std::span<const std::size_t>, const History<2, double>&);
+template History<3, double> only(std::span<const std::size_t>, const History<3, double>&);
 template void minimise(std::vector<Box2>&, const BoxesFail<2, float>&, const std::function<bool()>&);
 template void minimise(std::vector<Box3>&, const BoxesFail<3, float>&, const std::function<bool()>&);
 template void minimise(std::vector<DoubleBox2>&, const BoxesFail<2, double>&, const std::function<bool()>&);
@@ -127,4 +145,4 @@ template void minimise(History<3>&, const HistoryFails<3, float>&, const std::fu
 template void minimise(History<2, double>&, const HistoryFails<2, double>&, const std::function<bool()>&);
 template void minimise(History<3, double>&, const HistoryFails<3, double>&, const std::function<bool()>&);
 
-}  // namespace broadside::lab
+}  // namespace broadside

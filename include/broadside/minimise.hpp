@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/history.hpp"
 
-#include "lab/scenes/scene.hpp"
-
-namespace broadside::lab {
+namespace broadside {
 
 /// Whether boxes, or a history of them, still fail. What it throws ends the search.
 template <int D, typename Real>
@@ -27,9 +26,13 @@ template <int D, typename Real>
 void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
               const std::function<bool()>& stop = {});
 
-/// Likewise a history: drops frames, places of the array (those behind move up), and changes.
+/// Likewise a history: drops frames, places of the array (those behind move up), changes, and ignored pairs.
 template <int D, typename Real>
 void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
               const std::function<bool()>& stop = {});
 
-}  // namespace broadside::lab
+/// The history of these places, which are ascending, alone; they are counted anew.
+template <int D, typename Real>
+History<D, Real> only(std::span<const std::size_t> places, const History<D, Real>& history);
+
+}  // namespace broadside

@@ -1,0 +1,113 @@
+// ShadowTracker: any tracker with brute force beside it, which says where the two first differ.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "broadside/filter.hpp"
+#include "broadside/history.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/pair_tracker.hpp"
+
+namespace broadside {
+
+/// A tracker whose events are not those that the definition demands. The text names the pair, the frame and
+/// both boxes, says what was expected, and ends with a short history that shows the fault.
+class Divergence : public std::logic_error {
+ public:
+  Divergence(const std::string& message, Pair pair, std::size_t frame, bool holds)
+      : std::logic_error(message), pair_(pair), frame_(frame), holds_(holds) {}
+
+  /// The first pair, by ids, that was reported wrongly.
+  Pair pair() const noexcept { return pair_; }
+
+  /// In which frame, counted from 0, which is the ShadowTracker's first.
+  std::size_t frame() const noexcept { return frame_; }
+
+  /// Whether the pair holds in that frame, by the definition.
+  bool holds() const noexcept { return holds_; }
+
+ private:
+  Pair pair_;
+  std::size_t frame_;
+  bool holds_;
+};
+
+/// A Divergence with its history, which tracks wrongly in its last frame.
+template <int D, typename Real = float>
+class DivergenceOf final : public Divergence {
+ public:
+  DivergenceOf(const Divergence& divergence, History<D, Real> history, bool reproduced)
+      : Divergence(divergence),
+        history_(std::make_shared<const History<D, Real>>(std::move(history))),
+        reproduced_(reproduced) {}
+
+  /// If reproduced(): the smallest history found on which a new tracker fails. Boxes are counted anew.
+  /// Otherwise what the two boxes of the pair, now 0 and 1, did in the frames that were kept.
+  const History<D, Real>& history() const noexcept { return *history_; }
+
+  bool reproduced() const noexcept { return reproduced_; }
+
+ private:
+  std::shared_ptr<const History<D, Real>> history_;  // shared, so that a copy does not throw
+  bool reproduced_;
+};
+
+/// What a ShadowTracker spends.
+struct ShadowOptions {
+  std::size_t frames = 256;                   ///< it can go back by so many, to show how a fault came about,
+  std::size_t bytes = std::size_t{64} << 20;  ///< as long as their changes take no more than this, or by one
+  std::uint64_t tests =
+      2'000'000'000;  ///< about how many pairs of boxes are compared to make a history small
+};
+
+/// Runs a tracker and compares its events with those of brute force, by the definition, in every frame; the
+/// first difference is thrown as a DivergenceOf<D, Real>. For looking for faults, in the tracker and in the
+/// caller's list of what changed.
+///
+/// update() throws, besides what every tracker's does: DivergenceOf, and from then on the same each time;
+/// InvalidInput, before the tracker is asked, if a box, a filter or an ignored pair has changed and is not
+/// listed.
+///
+/// Cost a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
+/// frames of ShadowOptions.
+template <int D, typename Real = float>
+class ShadowTracker final : public PairTracker<D, Real> {
+ public:
+  using Make = std::function<std::unique_ptr<PairTracker<D, Real>>()>;
+
+  /// Shadows a tracker of the library's. Throws InvalidSpec.
+  explicit ShadowTracker(std::string_view spec, const ShadowOptions& options = {});
+
+  /// Shadows what `make` makes; it is called again to make a history small.
+  explicit ShadowTracker(Make make, const ShadowOptions& options = {});
+
+  /// Shadows the one tracker that there is: a history is not made small.
+  explicit ShadowTracker(std::unique_ptr<PairTracker<D, Real>> tracker, const ShadowOptions& options = {});
+
+  ~ShadowTracker() override;
+
+  std::string explanation() const override;
+
+ private:
+  struct State;
+
+  ShadowTracker(std::unique_ptr<PairTracker<D, Real>> tracker, Make make, std::string name,
+                const ShadowOptions& options);
+
+  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
+  void workers_changed() override;
+  std::size_t algorithm_bytes() const noexcept override;
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace broadside

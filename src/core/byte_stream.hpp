@@ -1,0 +1,108 @@
+// Bytes written and read in little-endian order, with a checksum at the end: see docs/snapshot-format.md.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "broadside/error.hpp"
+#include "broadside/recorder.hpp"
+
+namespace broadside::core {
+
+/// The unsigned number with the same bits.
+template <typename T>
+using Bits = std::conditional_t<
+    sizeof(T) == 1, std::uint8_t,
+    std::conditional_t<sizeof(T) == 2, std::uint16_t,
+                       std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
+
+/// Appends numbers to bytes.
+class ByteWriter {
+ public:
+  template <typename T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void put(T value) {
+    const auto bits = std::bit_cast<Bits<T>>(value);
+    std::array<std::byte, sizeof(T)> bytes;
+    for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
+  std::size_t size() const noexcept { return bytes_.size(); }
+
+  /// Writes a number over the bytes at `at`.
+  void put_at(std::size_t at, std::uint64_t value) {
+    for (std::size_t i = 0; i < 8; ++i) bytes_[at + i] = static_cast<std::byte>(value >> 8 * i & 0xff);
+  }
+
+  /// Ends with the checksum of all bytes, and hands them out.
+  std::vector<std::byte> sealed() && {
+    put(checksum_of(bytes_));
+    return std::move(bytes_);
+  }
+
+  static std::uint32_t checksum_of(std::span<const std::byte> bytes) noexcept {
+    trace::Checksum checksum;
+    checksum.add(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    return checksum.value();
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Takes numbers from bytes. Throws InvalidSnapshot where there are no more.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  std::size_t left() const noexcept { return bytes_.size() - at_; }
+
+  template <typename T>
+    requires std::is_arithmetic_v<T>
+  T get() {
+    need(sizeof(T), 1, "a number");
+    Bits<T> bits = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bits = static_cast<Bits<T>>(bits | static_cast<Bits<T>>(static_cast<Bits<T>>(bytes_[at_ + i]) << 8 * i));
+    at_ += sizeof(T);
+    return std::bit_cast<T>(bits);
+  }
+
+  /// A count of things that take at least so many bytes each, which must be there: no claim takes more memory
+  /// than its bytes justify.
+  std::size_t count(std::size_t bytes_each, const char* things) {
+    const auto count = get<std::uint64_t>();
+    need(bytes_each, count, things);
+    return static_cast<std::size_t>(count);
+  }
+
+  std::string text(std::size_t size) {
+    need(1, size, "characters");
+    std::string text(reinterpret_cast<const char*>(bytes_.data()) + at_, size);
+    at_ += size;
+    return text;
+  }
+
+  void need(std::size_t bytes_each, std::uint64_t count, std::string_view things) const {
+    if (count <= left() / bytes_each) return;
+    throw InvalidSnapshot("a snapshot claims " + std::to_string(count) + " of " + std::string(things) +
+                          " at byte " + std::to_string(at_) + ", where " + std::to_string(left()) +
+                          " bytes are left; expected " + std::to_string(bytes_each) + " bytes for each");
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace broadside::core

@@ -1,0 +1,46 @@
+// FrameLog: the last frames of a history, in bounded memory.
+#include "core/frame_log.hpp"
+
+#include <utility>
+
+namespace broadside::core {
+
+template <int D, typename Real>
+void FrameLog<D, Real>::add(const Frame<D, Real>& frame, const std::vector<Pair>& toggled) {
+  Step<D, Real> step{frame.boxes.size(), {frame.changed.begin(), frame.changed.end()}, {}, {}, toggled};
+  for (const BoxId id : step.changed) {
+    const bool is_there = index(id) < frame.boxes.size();
+    step.boxes.push_back(is_there ? frame.boxes[index(id)] : absent_box<D, Real>());
+    if (!frame.filters.empty()) step.filters.push_back(is_there ? frame.filters[index(id)] : Filter{});
+  }
+  if (++count_ == 1) {
+    first_.next(step);
+    return;
+  }
+  bytes_ += bytes_of(step);
+  steps_.push_back(std::move(step));
+  while (steps_.size() > 1 && (steps_.size() > most_frames_ || bytes_ > most_bytes_)) {
+    bytes_ -= bytes_of(steps_.front());
+    first_.next(steps_.front());
+    steps_.pop_front();
+  }
+}
+
+template <int D, typename Real>
+History<D, Real> FrameLog<D, Real>::history() const {
+  return history_of(first_.frame(), {steps_.begin(), steps_.end()});
+}
+
+template <int D, typename Real>
+std::size_t FrameLog<D, Real>::bytes_of(const Step<D, Real>& step) noexcept {
+  return sizeof step + step.changed.capacity() * sizeof(BoxId) +
+         step.boxes.capacity() * sizeof(Box<D, Real>) + step.filters.capacity() * sizeof(Filter) +
+         step.toggled.capacity() * sizeof(Pair);
+}
+
+template class FrameLog<2, float>;
+template class FrameLog<2, double>;
+template class FrameLog<3, float>;
+template class FrameLog<3, double>;
+
+}  // namespace broadside::core

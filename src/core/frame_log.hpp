@@ -1,0 +1,43 @@
+// FrameLog: the last frames of a history, in bounded memory.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "broadside/history.hpp"
+
+namespace broadside::core {
+
+/// Keeps the frame so many frames ago whole, and what changed since. The oldest changes become a part of the
+/// whole frame when there are more than so many, or when they take more bytes than allowed.
+template <int D, typename Real>
+class FrameLog {
+ public:
+  FrameLog(std::size_t most_frames, std::size_t most_bytes)
+      : most_frames_(most_frames), most_bytes_(most_bytes) {}
+
+  /// Takes the next frame, in which `frame.changed` says what changed, and `toggled` which pairs became
+  /// ignored or no longer are.
+  void add(const Frame<D, Real>& frame, const std::vector<Pair>& toggled);
+
+  /// The frames that are kept.
+  History<D, Real> history() const;
+
+  /// The number of frames taken.
+  std::size_t count() const noexcept { return count_; }
+
+  std::size_t bytes() const noexcept { return bytes_; }
+
+ private:
+  static std::size_t bytes_of(const Step<D, Real>& step) noexcept;
+
+  std::size_t most_frames_;
+  std::size_t most_bytes_;
+  Replay<D, Real> first_;
+  std::deque<Step<D, Real>> steps_;
+  std::size_t bytes_ = 0;  // of the steps
+  std::size_t count_ = 0;
+};
+
+}  // namespace broadside::core
