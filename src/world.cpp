@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "broadside/error.hpp"
+#include "broadside/shadow.hpp"
 
 #include "core/input_check.hpp"
 #include "world_state.hpp"
@@ -48,7 +49,7 @@ World<D, Real>::World(std::string_view spec) : World(with_algorithm(spec)) {}
 
 template <int D, typename Real>
 World<D, Real>::World(const WorldOptions& options)
-    : state_(std::make_unique<State>(make_tracker<D, Real>(options.algorithm), options, true)) {}
+    : state_(std::make_unique<State>(State::make_own_tracker(options), options, true)) {}
 
 template <int D, typename Real>
 World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options)
@@ -67,7 +68,9 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
     : options(its_options),
       margin(static_cast<Real>(its_options.margin)),
       is_own_tracker(is_own),
-      tracker(std::move(its_tracker)),
+      tracker(is_own || !its_tracker || !its_options.shadow
+                  ? std::move(its_tracker)
+                  : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
       first_generation(its_options.first_generation),
       is_refining(margin > 0) {
   if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
@@ -75,6 +78,12 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
     throw std::invalid_argument("the margin of a world is " + std::to_string(options.margin) +
                                 "; expected a finite number of at least 0");
   }
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> World<D, Real>::State::make_own_tracker(const WorldOptions& options) {
+  if (options.shadow) return std::make_unique<ShadowTracker<D, Real>>(options.algorithm);
+  return make_tracker<D, Real>(options.algorithm);
 }
 
 template <int D, typename Real>

@@ -72,7 +72,7 @@ void World<D, Real>::State::release() {
   wants_release = false;
   most_slots = slots.size();
   if (is_own_tracker && has_updated) {
-    std::unique_ptr<PairTracker<D, Real>> fresh_tracker = make_tracker<D, Real>(options.algorithm);
+    std::unique_ptr<PairTracker<D, Real>> fresh_tracker = make_own_tracker(options);
     fresh_tracker->set_workers(tracker->workers());
     PairCounter known;
     fresh_tracker->update(frame(), known, known);

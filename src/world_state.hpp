@@ -1,5 +1,5 @@
 // What a World keeps. Its members are in world.cpp (boxes), world_batch.cpp, world_filters.cpp,
-// world_update.cpp and world_layers.cpp.
+// world_update.cpp, world_memory.cpp, world_pairs.cpp and world_snapshot.cpp.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +18,10 @@
 #include "core/slot_set.hpp"
 
 namespace broadside {
+namespace core {
+class ByteReader;
+class ByteWriter;
+}  // namespace core
 
 /// Arrays by slot are all as long as `slots`; filters, user data and enlarged boxes are empty until needed.
 template <int D, typename Real>
@@ -61,6 +65,9 @@ struct World<D, Real>::State {
 
   State(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options, bool is_own_tracker);
 
+  /// The tracker that these options ask for.
+  static std::unique_ptr<PairTracker<D, Real>> make_own_tracker(const WorldOptions& options);
+
   // world.cpp: slots and boxes.
   bool is_live(Handle handle) const noexcept;
   std::uint32_t live_slot(Handle handle, const char* action) const;
@@ -94,6 +101,29 @@ struct World<D, Real>::State {
   void recycle() noexcept;
   void settle() noexcept;
   Handle handle(BoxId id) const noexcept { return {index(id), generations[index(id)]}; }
+
+  /// A frame that a tracker has taken.
+  struct LastFrame {
+    std::vector<Box<D, Real>> boxes{};
+    std::vector<Filter> filters{};
+    IgnoredPairs ignored{};
+    bool has_ignored = false;
+
+    Frame<D, Real> frame() const noexcept;
+    void get(core::ByteReader& in, const Frame<D, Real>& now);
+  };
+
+  // world_snapshot.cpp and world_snapshot_restore.cpp.
+  void put(core::ByteWriter& out, std::span<const HandlePair> pairs_now) const;
+  static std::unique_ptr<State> get(core::ByteReader& in, const State& like, LastFrame& last);
+  void get_slots(core::ByteReader& in);
+  void get_lists(core::ByteReader& in);
+  void get_pairs_and_events(core::ByteReader& in);
+  std::vector<Pair> graph_pairs(bool (*is_wanted)(const core::PairGraph::Mark&)) const;
+  bool knows_candidates() const noexcept;
+  std::vector<Pair> known_candidates() const;
+  static std::vector<Pair> lead(PairTracker<D, Real>& tracker, const LastFrame& to);
+  void take_tracker(State& other, const LastFrame& last);
 
   // world_memory.cpp.
   void trim() noexcept;

@@ -183,6 +183,20 @@ class World {
   /// when some three quarters of the slots are gone. A tracker of the caller's keeps what it has.
   void shrink_to_fit();
 
+  /// The world as bytes: all that its future depends on but the predicate, the workers and a tracker of the
+  /// caller's. At any time, also between changes and the update that tells of them. O(slots + pairs).
+  /// docs/snapshot-format.md describes the bytes, which are the same on every machine.
+  std::vector<std::byte> snapshot() const;
+
+  /// Makes the world what it was when the snapshot was taken, of this world or of another one; from then on,
+  /// the same calls bring the same handles, events and pairs. Spans and references handed out end. Throws
+  /// InvalidSnapshot, and changes nothing, if the bytes are not a whole snapshot of the same dimension, type
+  /// of coordinate and version, or if just one of the two worlds has a predicate.
+  ///
+  /// Cost: O(slots + pairs) for reading, and the tracker's for an update from the boxes it has now to those
+  /// it had then: little for a rollback of few frames, and one build where the worlds have nothing in common.
+  void restore(std::span<const std::byte> snapshot);
+
   /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
   const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);

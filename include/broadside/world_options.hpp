@@ -42,6 +42,10 @@ struct WorldOptions {
   /// What add() and move() do about invalid boxes: they throw, or take them in as absent ones, which pair
   /// with nothing until they are moved to valid ones, and which quarantined() names.
   BadInput bad_input = BadInput::reject;
+
+  /// Whether brute force runs beside the tracker: update() then throws a DivergenceOf<D, Real> where the two
+  /// first differ. For looking for faults; n^2 / 2 tests an update. See ShadowTracker.
+  bool shadow = false;
 };
 
 /// Whether two boxes that overlap and whose filters accept each other are to count as a pair;

@@ -19,16 +19,16 @@ namespace broadside::core {
 
 /// The unsigned number with the same bits.
 template <typename T>
-using Bits = std::conditional_t<
-    sizeof(T) == 1, std::uint8_t,
-    std::conditional_t<sizeof(T) == 2, std::uint16_t,
-                       std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
+using Bits =
+    std::conditional_t<sizeof(T) == 1, std::uint8_t,
+                       std::conditional_t<sizeof(T) == 2, std::uint16_t,
+                                          std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
 
 /// Appends numbers to bytes.
 class ByteWriter {
  public:
   template <typename T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void put(T value) {
     const auto bits = std::bit_cast<Bits<T>>(value);
     std::array<std::byte, sizeof(T)> bytes;
@@ -68,12 +68,12 @@ class ByteReader {
   std::size_t left() const noexcept { return bytes_.size() - at_; }
 
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  T get() {
+  requires std::is_arithmetic_v<T> T get() {
     need(sizeof(T), 1, "a number");
     Bits<T> bits = 0;
     for (std::size_t i = 0; i < sizeof(T); ++i)
-      bits = static_cast<Bits<T>>(bits | static_cast<Bits<T>>(static_cast<Bits<T>>(bytes_[at_ + i]) << 8 * i));
+      bits =
+          static_cast<Bits<T>>(bits | static_cast<Bits<T>>(static_cast<Bits<T>>(bytes_[at_ + i]) << 8 * i));
     at_ += sizeof(T);
     return std::bit_cast<T>(bits);
   }

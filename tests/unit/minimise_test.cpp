@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace broadside::lab {
+namespace broadside {
 namespace {
 
 Box2 point(float x) { return {{x, 0}, {x, 0}}; }
@@ -56,7 +56,7 @@ TEST(Minimise, KeepsTheFramesPlacesAndChangesOfAHistoryThatTheFailureNeeds) {
   minimise(history, [](const History<2>& some) {
     std::vector<Box2> boxes = some.boxes;
     for (const Step<2>& step : some.steps) {
-      lab::apply(step, boxes);
+      apply(step, boxes);
       if (holds(boxes, 3) && holds(boxes, 1231)) return true;
     }
     return false;
@@ -69,4 +69,4 @@ TEST(Minimise, KeepsTheFramesPlacesAndChangesOfAHistoryThatTheFailureNeeds) {
 }
 
 }  // namespace
-}  // namespace broadside::lab
+}  // namespace broadside

@@ -1,0 +1,76 @@
+// Rollback, as in networked games: the game runs on with a guess of what the other player does, and when the
+// truth arrives, late, it goes back to the frame it is about and plays those after it once more.
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <vector>
+
+#include <broadside/broadside.hpp>
+
+namespace {
+
+constexpr std::size_t frames = 60;
+constexpr std::size_t delay = 7;  // frames until the other player's move is known
+
+/// What the other player does in a frame; -1 or 1.
+int truth(std::size_t frame) { return frame / 10 % 2 == 0 ? 1 : -1; }
+
+/// Two boxes on a line, and walls to touch.
+struct Game {
+  broadside::World2 world;
+  std::array<broadside::Handle, 2> players;
+
+  Game() {
+    for (int i = 0; i <= 10; ++i)
+      world.add({{4.0F * i, 0}, {4.0F * i + 0.5F, 1}}, {.filter = {.is_static = true}});
+    for (broadside::Handle& player : players) player = world.add({{20, 0}, {21, 1}});
+    world.update();
+  }
+
+  void move(broadside::Handle player, int way) {
+    broadside::Box2 box = world.box(player);
+    box.min[0] += 0.25F * static_cast<float>(way);
+    box.max[0] += 0.25F * static_cast<float>(way);
+    world.move(player, box);
+  }
+
+  /// One frame; returns how many pairs began.
+  std::size_t step(std::size_t frame, int others_way) {
+    move(players[0], frame % 3 == 0 ? 1 : -1);
+    move(players[1], others_way);
+    return world.update().begun.size();
+  }
+};
+
+}  // namespace
+
+int main() {
+  Game game;
+  std::vector<std::vector<std::byte>> before;  // each frame
+  std::vector<int> played;                     // what the other player was thought to do in it
+  std::size_t rollbacks = 0;
+  for (std::size_t frame = 0; frame < frames + delay; ++frame) {
+    if (frame >= delay && played[frame - delay] != truth(frame - delay)) {
+      ++rollbacks;
+      game.world.restore(before[frame - delay]);
+      const int known = truth(frame - delay);
+      for (std::size_t again = frame - delay; again < played.size(); ++again) {
+        before[again] = game.world.snapshot();
+        played[again] = known;  // and that it goes on so is the next guess
+        game.step(again, known);
+      }
+    }
+    if (frame >= frames) continue;
+    before.push_back(game.world.snapshot());
+    played.push_back(played.empty() ? 1 : played.back());
+    game.step(frame, played.back());
+  }
+
+  // Who had known it all along is where we are.
+  Game known;
+  for (std::size_t frame = 0; frame < frames; ++frame) known.step(frame, truth(frame));
+  const bool same = known.world.snapshot() == game.world.snapshot();
+  std::printf("%zu frames, %zu rollbacks: %s\n", frames, rollbacks,
+              same ? "the same world" : "another world");
+  return same ? 0 : 1;
+}

@@ -1,0 +1,373 @@
+// World: what a snapshot says, checked, and the way from what its tracker knows to what it knew then.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "broadside/error.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "core/snapshot_parts.hpp"
+#include "world_snapshot.hpp"
+#include "world_state.hpp"
+
+namespace broadside {
+namespace {
+
+using core::ByteReader;
+using core::get_all;
+using core::get_list;
+using Pairs = std::vector<Pair>;
+
+void expect(bool holds, const char* what) {
+  if (!holds) throw InvalidSnapshot(std::string("a snapshot contradicts itself: ") + what);
+}
+
+void expect_place(std::size_t place, std::size_t count, const char* what) {
+  if (place < count) return;
+  throw InvalidSnapshot(std::string("a snapshot names ") + what + " " + std::to_string(place) +
+                        "; expected one below " + std::to_string(count));
+}
+
+/// Pairs of places below `count`.
+Pairs get_pairs(ByteReader& in, std::size_t count, const char* things) {
+  Pairs pairs = get_list<Pair>(in, things);
+  for (const Pair pair : pairs) {
+    expect(pair.first < pair.second, "a pair's first place is not below its second");
+    expect_place(index(pair.second), count, "a pair of place");
+  }
+  return pairs;
+}
+
+/// Sorted ones, each once.
+Pairs get_sorted_pairs(ByteReader& in, std::size_t count, const char* things) {
+  Pairs pairs = get_pairs(in, count, things);
+  expect(std::ranges::adjacent_find(pairs, std::ranges::greater_equal{}) == pairs.end(),
+         "pairs that must be sorted are not");
+  return pairs;
+}
+
+/// Places below `count`, ascending, each once.
+std::vector<BoxId> get_places(ByteReader& in, std::uint64_t count, const char* things) {
+  std::vector<BoxId> places = get_list<BoxId>(in, things);
+  expect(std::ranges::adjacent_find(places, std::ranges::greater_equal{}) == places.end(),
+         "places that must ascend do not");
+  if (!places.empty()) expect_place(index(places.back()), count, "place");
+  return places;
+}
+
+/// The pairs that are in one of the two and not in the other; all sorted.
+Pairs difference(const Pairs& a, const Pairs& b) {
+  Pairs pairs;
+  std::ranges::set_symmetric_difference(a, b, std::back_inserter(pairs));
+  return pairs;
+}
+
+}  // namespace
+
+template <int D, typename Real>
+Frame<D, Real> World<D, Real>::State::LastFrame::frame() const noexcept {
+  return {boxes, {}, filters, has_ignored ? &ignored : nullptr, {}};
+}
+
+/// Reads the frame that the tracker took last. `now` is the one it would be shown, in which whatever is not
+/// in `listed` is as it was.
+template <int D, typename Real>
+void World<D, Real>::State::LastFrame::get(ByteReader& in, const Frame<D, Real>& now) {
+  const auto flags = in.get<std::uint8_t>();
+  expect((flags & ~(snapshot::last_has_filters | snapshot::last_has_ignored)) == 0,
+         "the last frame has flags that there are none of");
+  const auto size = in.get<std::uint64_t>();
+  const std::vector<BoxId> places = get_places(in, size, "boxes that changed");
+  // Each place that there is no more is among them: no claim takes more memory than its bytes justify.
+  expect(size <= now.boxes.size() + places.size(), "the last frame has more boxes than it says");
+  boxes.assign(now.boxes.begin(), now.boxes.end());
+  boxes.resize(static_cast<std::size_t>(size), absent_box<D, Real>());
+  for (const BoxId id : places) boxes[index(id)] = core::Part<Box<D, Real>>::get(in);
+  const bool has_filters = (flags & snapshot::last_has_filters) != 0;
+  const std::vector<BoxId> filtered = get_places(in, has_filters ? size : 0, "filters that changed");
+  if (has_filters) {
+    filters.assign(now.filters.begin(), now.filters.end());
+    filters.resize(static_cast<std::size_t>(size));
+  }
+  for (const BoxId id : filtered) filters[index(id)] = core::Part<Filter>::get(in);
+  has_ignored = (flags & snapshot::last_has_ignored) != 0;
+  for (const Pair pair : get_sorted_pairs(in, std::size_t{1} << 32, "ignored pairs")) ignored.insert(pair);
+  expect(has_ignored || ignored.empty(), "the last frame has ignored pairs and no set of them");
+
+  const auto is_listed = [&](BoxId id) { return std::ranges::binary_search(now.changed, id); };
+  for (std::uint32_t i = 0; i < now.boxes.size(); ++i) {
+    if (i < boxes.size() && boxes[i] == now.boxes[i]) continue;
+    expect((i >= boxes.size() && is_absent(now.boxes[i])) || is_listed(BoxId{i}),
+           "a box changed and is not in the list of those that did");
+  }
+  if (now.filters.empty() || !has_filters) return;
+  for (std::uint32_t i = 0; i < std::min(filters.size(), now.filters.size()); ++i)
+    expect(filters[i] == now.filters[i] || is_listed(BoxId{i}),
+           "a filter changed and is not in the list of boxes that did");
+}
+
+template <int D, typename Real>
+std::unique_ptr<typename World<D, Real>::State> World<D, Real>::State::get(ByteReader& in, const State& like,
+                                                                           LastFrame& last) {
+  using namespace snapshot;
+  const auto flags = in.get<std::uint32_t>();
+  expect((flags & ~all_flags) == 0, "the world has flags that there are none of");
+  const auto is_set = [flags](std::uint32_t bit) { return (flags & bit) != 0; };
+  if (is_set(has_predicate) != static_cast<bool>(like.predicate)) {
+    throw InvalidSnapshot(std::string("a snapshot was taken of a world with") +
+                          (is_set(has_predicate) ? "" : "out") + " a predicate and this one has " +
+                          (like.predicate ? "one" : "none") +
+                          "; expected the same, since none is in a snapshot");
+  }
+  WorldOptions options = like.options;
+  options.keep_pairs = is_set(keeps_pairs);
+  options.margin = in.get<double>();
+  const std::string algorithm = in.text(in.count(1, "characters of a spec"));
+  if (is_set(has_own_tracker) && like.is_own_tracker) options.algorithm = algorithm;
+  const Real margin = static_cast<Real>(options.margin);
+  expect(margin >= 0 && std::isfinite(margin), "its margin is negative or no finite number");
+  std::unique_ptr<State> state;
+  try {
+    WorldOptions unshadowed = options;
+    unshadowed.shadow = false;
+    state = std::make_unique<State>(make_own_tracker(unshadowed), options, true);
+  } catch (const InvalidSpec& error) {
+    throw InvalidSnapshot(std::string("a snapshot's algorithm cannot be made: ") + error.what());
+  }
+  state->is_own_tracker = like.is_own_tracker;
+  state->is_refining = is_set(refines);
+  expect(state->is_refining || (!state->has_margin() && !is_set(has_predicate)),
+         "it has a margin or a predicate and does not refine pairs");
+  state->uses_filters = is_set(has_filters);
+  state->uses_user_data = is_set(has_user_data);
+  state->has_updated = is_set(was_updated);
+  state->is_settled = is_set(was_settled);
+  state->refilters_all = is_set(refilters);
+  state->first_generation = in.get<std::uint32_t>();
+  state->pair_count = static_cast<std::size_t>(in.get<std::uint64_t>());
+  state->get_slots(in);
+  state->get_lists(in);
+  Frame<D, Real> shown = state->frame();
+  std::vector<BoxId> listed(shown.changed.begin(), shown.changed.end());
+  std::ranges::sort(listed);
+  shown.changed = listed;
+  last.get(in, shown);
+  state->get_pairs_and_events(in);
+  return state;
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::get_slots(ByteReader& in) {
+  const std::size_t count = in.count(core::Part<Box<D, Real>>::bytes, "slots");
+  boxes = get_all<Box<D, Real>>(in, count, "boxes");
+  generations = get_all<std::uint32_t>(in, count, "generations");
+  in.need(1, count, "states of slots");
+  slots.resize(count);
+  free.reserve(count);
+  for (std::uint32_t slot = 0; slot < count; ++slot) {
+    const auto found = in.get<std::uint8_t>();
+    expect(found <= static_cast<std::uint8_t>(SlotState::retired), "a slot is in no state that there is");
+    slots[slot].state = static_cast<SlotState>(found);
+    if (slots[slot].state == SlotState::free) free.insert(slot);
+    if (slots[slot].state == SlotState::live) ++size;
+    expect(is_present(boxes[slot]) == (slots[slot].state == SlotState::live),
+           "a slot is not live and has a box, or the other way round");
+  }
+  most_slots = count;
+  if (has_margin()) {
+    enlarged = get_all<Box<D, Real>>(in, count, "enlarged boxes");
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+      bool encloses = is_present(enlarged[slot]) == is_present(boxes[slot]);
+      for (int axis = 0; axis < D && is_present(boxes[slot]); ++axis) {
+        encloses &= enlarged[slot].min[axis] <= boxes[slot].min[axis] &&
+                    boxes[slot].max[axis] <= enlarged[slot].max[axis];
+      }
+      expect(encloses, "a box is not within its enlarged one");
+    }
+  }
+  if (uses_filters) filters = get_all<Filter>(in, count, "filters");
+  if (uses_user_data) user_data = get_all<std::uint64_t>(in, count, "user data");
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::get_lists(ByteReader& in) {
+  const auto get_removed = [&](std::vector<Removed>& list, SlotState its_state, const char* things) {
+    const std::size_t count = in.count(4 + core::Part<Box<D, Real>>::bytes, things);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto slot = in.get<std::uint32_t>();
+      expect_place(slot, slots.size(), "slot");
+      const Removed old{slot, core::Part<Box<D, Real>>::get(in)};
+      expect(slots[slot].state == its_state && is_present(old.box),
+             "a slot whose box was removed is in another state");
+      slots[slot].place = static_cast<std::uint32_t>(i);
+      list.push_back(old);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      expect(slots[list[i].slot].place == i, "the box of a slot was removed twice");
+    const auto there = std::ranges::count(slots, its_state, &Slot::state);
+    expect(static_cast<std::size_t>(there) == count, "a slot whose box was removed is not listed");
+  };
+  get_removed(removed, SlotState::removed, "removed boxes");
+  get_removed(reported, SlotState::reported, "boxes whose removal was told");
+  const auto get_marked = [&](auto& list, bool Slot::*mark, const char* things) {
+    using Place = typename std::decay_t<decltype(list)>::value_type;
+    list = get_list<Place>(in, things);
+    for (const Place place : list) {
+      const auto slot = static_cast<std::uint32_t>(place);
+      expect_place(slot, slots.size(), "slot");
+      expect(!(slots[slot].*mark), "a slot is listed twice");
+      slots[slot].*mark = true;
+    }
+  };
+  get_marked(changed, &Slot::is_changed, "changed boxes");
+  get_marked(moved, &Slot::is_moved, "moved boxes");
+  expect(has_margin() || moved.empty(), "it has no margin and boxes that left theirs");
+  get_marked(refiltered, &Slot::is_refilter, "boxes to be asked about");
+
+  const Pairs pairs = get_sorted_pairs(in, slots.size(), "ignored pairs");
+  ignored_edges.reserve(pairs.size(), slots.size());
+  for (const Pair pair : pairs) {
+    expect(slots[index(pair.first)].state == SlotState::live &&
+               slots[index(pair.second)].state == SlotState::live,
+           "a pair is ignored whose boxes are not both there");
+    ignored.insert(pair);
+    ignored_edges.insert(pair);
+  }
+  ignored_changed = get_pairs(in, slots.size(), "pairs ignored anew");
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::get_pairs_and_events(ByteReader& in) {
+  const std::size_t count = slots.size();
+  const Pairs pairs = get_sorted_pairs(in, count, "pairs");
+  expect(options.keep_pairs || pairs.empty(), "it keeps no pairs and has some");
+  expect(!options.keep_pairs || pairs.size() == pair_count, "it counts other pairs than it has");
+  current.add(pairs, {}, generations);
+  current.merge(generations);
+  for (std::vector<HandlePair>* const list : {&begun, &ended}) {
+    for (const Pair pair : get_sorted_pairs(in, count, "events"))
+      list->push_back({handle(pair.first), handle(pair.second)});
+  }
+
+  const Pairs edges = get_sorted_pairs(in, count, "pairs of enlarged boxes");
+  expect(is_refining || edges.empty(), "it refines no pairs and has some to refine");
+  in.need(1, edges.size(), "marks");
+  graph.reserve(edges.size(), count);
+  Pairs held;
+  for (const Pair pair : edges) {
+    const int marks = in.get<std::uint8_t>();
+    expect((marks & ~(snapshot::edge_overlaps | snapshot::edge_accepted)) == 0,
+           "a pair has no marks like these");
+    const bool overlaps = (marks & snapshot::edge_overlaps) != 0;
+    const bool accepted = (marks & snapshot::edge_accepted) != 0;
+    graph.mark(graph.insert(pair)) = {overlaps, accepted, 0};
+    if (overlaps && accepted) held.push_back(pair);
+  }
+  candidates.begun = get_sorted_pairs(in, count, "candidates that began");
+  candidates.ended = get_sorted_pairs(in, count, "candidates that ended");
+  refined.begun = get_sorted_pairs(in, count, "pairs that began");
+  refined.ended = get_sorted_pairs(in, count, "pairs that ended");
+  fresh = get_pairs(in, count, "new candidates");
+  expect(is_refining || (refined.empty() && fresh.empty()), "it refines no pairs and has refined some");
+  if (!options.keep_pairs || !is_refining) return;
+  // What an update that failed has refined is not among the pairs yet.
+  expect(difference(difference(pairs, refined.begun), refined.ended) == held,
+         "its pairs are not those that its enlarged boxes and its predicate have");
+}
+
+/// Whether it can tell the pairs that its tracker has found.
+template <int D, typename Real>
+bool World<D, Real>::State::knows_candidates() const noexcept {
+  return is_refining || options.keep_pairs;
+}
+
+/// Those pairs, sorted.
+template <int D, typename Real>
+std::vector<Pair> World<D, Real>::State::known_candidates() const {
+  Pairs pairs;
+  if (is_refining) {
+    pairs = graph_pairs([](const core::PairGraph::Mark&) { return true; });
+  } else {
+    const std::lock_guard lock(reading);
+    current.merge(generations);
+    is_current = true;
+    for (const HandlePair& pair : current.pairs())
+      pairs.push_back({BoxId{pair.first.slot}, BoxId{pair.second.slot}});
+  }
+  return difference(difference(pairs, candidates.begun), candidates.ended);
+}
+
+/// Hands the tracker a frame in which only what differs from its last one is listed. Returns the events: the
+/// pairs that hold in one of the two, sorted.
+template <int D, typename Real>
+std::vector<Pair> World<D, Real>::State::lead(PairTracker<D, Real>& tracker, const LastFrame& to) {
+  const Frame<D, Real> from = tracker.last_frame();
+  Frame<D, Real> frame = to.frame();
+  std::vector<BoxId> places;
+  for (std::uint32_t i = 0; i < std::min(from.boxes.size(), frame.boxes.size()); ++i) {
+    const bool filters_differ =
+        !from.filters.empty() && !frame.filters.empty() && from.filters[i] != frame.filters[i];
+    if (from.boxes[i] != frame.boxes[i] || filters_differ) places.push_back(BoxId{i});
+  }
+  frame.changed = places;
+  Pairs toggled;
+  const auto add_missing = [&toggled](const IgnoredPairs* set, const IgnoredPairs* other) {
+    if (set == nullptr || other == nullptr) return;
+    set->for_each([&](Pair pair) {
+      if (!other->contains(pair)) toggled.push_back(pair);
+    });
+  };
+  add_missing(from.ignored, frame.ignored);
+  add_missing(frame.ignored, from.ignored);
+  frame.ignored_changed = toggled;
+  Pairs begun_pairs;
+  Pairs ended_pairs;
+  PairCollector begun_sink(begun_pairs);
+  PairCollector ended_sink(ended_pairs);
+  tracker.update(frame, begun_sink, ended_sink);
+  return difference(begun_pairs, ended_pairs);
+}
+
+/// Takes over the other world's tracker and leads it to the frame that this one's had taken last, or leaves
+/// it as it is and throws.
+template <int D, typename Real>
+void World<D, Real>::State::take_tracker(State& other, const LastFrame& last) {
+  const auto check = [&](const Pairs& pairs) {
+    expect(!knows_candidates() || known_candidates() == pairs, "its pairs are not those of its boxes");
+  };
+  if (is_own_tracker && options.algorithm != other.options.algorithm) {
+    std::unique_ptr<PairTracker<D, Real>> made = make_own_tracker(options);
+    made->set_workers(other.tracker->workers());
+    check(lead(*made, last));
+    tracker = std::move(made);
+    return;
+  }
+  const Frame<D, Real> was = other.tracker->last_frame();
+  LastFrame before;
+  before.boxes.assign(was.boxes.begin(), was.boxes.end());
+  before.filters.assign(was.filters.begin(), was.filters.end());
+  before.has_ignored = was.ignored != nullptr;
+  if (before.has_ignored) before.ignored = *was.ignored;
+  try {
+    Pairs known;
+    if (other.knows_candidates())
+      known = other.known_candidates();
+    else
+      lead(*other.tracker, LastFrame{});
+    check(difference(known, lead(*other.tracker, last)));
+  } catch (...) {
+    lead(*other.tracker, before);
+    throw;
+  }
+  tracker = std::move(other.tracker);
+}
+
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
+
+}  // namespace broadside

@@ -1,0 +1,445 @@
+// Snapshots of worlds: the future after restore() is the one there was; and bytes that are none are refused.
+#include <array>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+#include "broadside/recorder.hpp"
+#include "broadside/world.hpp"
+
+#include "lab/scenes/random.hpp"
+#include "message.hpp"
+
+namespace broadside {
+namespace {
+
+using lab::Random;
+using testing::HasSubstr;
+using Bytes = std::vector<std::byte>;
+
+Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
+
+/// All that an update tells, and what holds after it.
+struct Told {
+  std::vector<HandlePair> begun;
+  std::vector<HandlePair> ended;
+  std::vector<HandlePair> pairs;
+  std::vector<HandlePair> persisting;
+
+  friend bool operator==(const Told&, const Told&) = default;
+};
+
+template <int D, typename Real>
+Told update(World<D, Real>& world) {
+  const Events events = world.update();
+  Told told{{events.begun.begin(), events.begun.end()}, {events.ended.begin(), events.ended.end()}, {}, {}};
+  told.pairs.assign(world.pairs().begin(), world.pairs().end());
+  told.persisting.assign(world.persisting().begin(), world.persisting().end());
+  return told;
+}
+
+/// A game of which the next move depends on the dice alone, and on the handles that it was given.
+template <int D, typename Real = float>
+struct Game {
+  Random dice{1};
+  std::vector<Handle> handles{};
+
+  Box<D, Real> any_box() {
+    Box<D, Real> box;
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = static_cast<Real>(dice.below(20));
+      box.max[axis] = box.min[axis] + static_cast<Real>(dice.below(5));
+    }
+    return box;
+  }
+
+  Filter any_filter() {
+    Filter filter;
+    filter.category = static_cast<std::uint32_t>(1 + dice.below(3));
+    filter.mask = static_cast<std::uint32_t>(dice.below(8));
+    filter.group = static_cast<std::int32_t>(dice.below(5)) - 2;
+    filter.is_static = dice.chance(0.2);
+    return filter;
+  }
+
+  void step(World<D, Real>& world, bool with_filters) {
+    const std::size_t place = handles.empty() ? 0 : static_cast<std::size_t>(dice.below(handles.size()));
+    const double what = dice.fraction();
+    if (what < 0.3 || handles.size() < 2) {
+      handles.push_back(world.add(any_box(), {with_filters ? any_filter() : Filter{}, dice.below(3)}));
+    } else if (what < 0.7) {
+      world.move(handles[place], any_box());
+    } else if (what < 0.85) {
+      world.remove(handles[place]);
+      handles.erase(handles.begin() + static_cast<std::ptrdiff_t>(place));
+    } else if (with_filters && what < 0.9) {
+      world.set_filter(handles[place], any_filter());
+    } else if (with_filters && what < 0.97) {
+      const Handle other = handles[(place + 1) % handles.size()];
+      if (dice.chance(0.7))
+        world.ignore(handles[place], other);
+      else
+        world.unignore(handles[place], other);
+    } else if (with_filters) {
+      world.shift_origin({});
+    }
+  }
+};
+
+struct Way {
+  std::string name;
+  WorldOptions options;
+  bool with_filters;
+  bool with_predicate;
+};
+
+std::vector<Way> ways() {
+  std::vector<Way> ways;
+  for (const char* const algorithm : {"auto", "brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"}) {
+    for (const bool with_filters : {false, true}) {
+      for (const double margin : {0.0, 1.0}) {
+        Way way{fmt::format("{}, filters {}, margin {}", algorithm, with_filters, margin),
+                {},
+                with_filters,
+                false};
+        way.options.algorithm = algorithm;
+        way.options.margin = margin;
+        ways.push_back(way);
+      }
+    }
+  }
+  ways.push_back({"predicate", {}, true, true});
+  ways.push_back({"predicate and margin", {}, true, true});
+  ways.back().options.margin = 0.5;
+  return ways;
+}
+
+template <int D, typename Real = float>
+World<D, Real> world_of(const Way& way) {
+  World<D, Real> world(way.options);
+  if (way.with_predicate)
+    world.set_predicate([](Handle a, Handle b) { return (a.slot + b.slot + a.generation) % 3 != 0; });
+  return world;
+}
+
+template <int D, typename Real = float>
+void check_the_future(const Way& way, std::uint64_t seed) {
+  World<D, Real> world = world_of<D, Real>(way);
+  Game<D, Real> game{Random(seed), {}};
+  for (int frame = 0; frame < 12; ++frame) {
+    for (std::uint64_t i = game.dice.below(12); i > 0; --i) game.step(world, way.with_filters);
+    const Bytes bytes = world.snapshot();  // between changes and the update
+    World<D, Real> other = world_of<D, Real>(way);
+    other.restore(bytes);
+    ASSERT_EQ(other.snapshot(), bytes) << way.name << ", frame " << frame;
+    Game<D, Real> same = game;
+    for (int then = 0; then < 3; ++then) {
+      ASSERT_EQ(update(other), update(world)) << way.name << ", frame " << frame;
+      for (int i = 0; i < 5; ++i) {
+        game.step(world, way.with_filters);
+        same.step(other, way.with_filters);
+      }
+      ASSERT_EQ(same.handles, game.handles) << way.name << ", frame " << frame;
+    }
+    ASSERT_EQ(other.snapshot(), world.snapshot()) << way.name << ", frame " << frame;
+    if (frame % 3 == 2) {  // the same world goes back
+      world.restore(bytes);
+      ASSERT_EQ(world.snapshot(), bytes) << way.name << ", frame " << frame;
+      world.update();
+      other.restore(bytes);
+      other.update();
+      ASSERT_EQ(other.snapshot(), world.snapshot());
+      world.restore(bytes);
+      game = same = Game<D, Real>{Random(seed + 100), {}};
+    }
+  }
+}
+
+TEST(Snapshot, IsFollowedByTheSameFuture) {
+  for (const Way& way : ways()) {
+    check_the_future<2>(way, 1);
+    check_the_future<3>(way, 2);
+  }
+}
+
+TEST(Snapshot, IsFollowedByTheSameFutureInDouble) {
+  for (const Way& way : ways()) check_the_future<2, double>(way, 3);
+}
+
+TEST(Snapshot, KeepsWhatCanBeReadOfBoxes) {
+  World2 world;
+  BoxOptions options;
+  options.filter.group = -3;
+  options.user_data = 0xfeedU;
+  const Handle kept = world.add(at(0), options);
+  const Handle gone = world.add(at(0.5F), options);
+  world.update();
+  world.remove(gone);
+  World2 other;
+  other.restore(world.snapshot());
+  EXPECT_EQ(other.size(), 1u);
+  EXPECT_EQ(other.box(kept), at(0));
+  EXPECT_EQ(other.box(gone), at(0.5F));
+  EXPECT_EQ(other.user_data(gone), 0xfeedU);
+  EXPECT_EQ(other.filter(kept), options.filter);
+  EXPECT_FALSE(other.contains(gone));
+}
+
+TEST(Snapshot, GivesBackTheHandlesThatWereFree) {
+  World2 world;
+  std::vector<Handle> handles;
+  for (int i = 0; i < 5; ++i) handles.push_back(world.add(at(0)));
+  world.update();
+  world.remove(handles[3]);
+  world.remove(handles[1]);
+  world.update();
+  world.update();
+  World2 other;
+  other.restore(world.snapshot());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(other.add(at(0)), world.add(at(0)));
+  EXPECT_THROW(other.move(handles[3], at(1)), InvalidHandle);
+}
+
+TEST(Snapshot, BringsItsAlgorithmAndMargin) {
+  WorldOptions options;
+  options.algorithm = "grid";
+  options.margin = 2;
+  World2 world(options);
+  world.add(at(0));
+  World2 other("bvh");
+  other.restore(world.snapshot());
+  EXPECT_EQ(other.snapshot(), world.snapshot());
+}
+
+/// Counts what it is shown.
+class Watcher final : public PairTracker<2> {
+ public:
+  explicit Watcher(std::vector<std::size_t>& seen) : seen_(&seen) {}
+
+ private:
+  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    seen_->push_back(change.changed.size());
+    for (std::uint32_t a = 0; a < change.now.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < change.now.size(); ++b)
+        change.report(BoxId{a}, BoxId{b}, begun, ended);
+    }
+  }
+
+  std::vector<std::size_t>* seen_;
+};
+
+TEST(Snapshot, IsReturnedToByShowingTheTrackerOnlyWhatDiffers) {
+  std::vector<std::size_t> seen;
+  World2 world(std::make_unique<Watcher>(seen));
+  std::vector<Handle> handles;
+  for (int i = 0; i < 100; ++i) handles.push_back(world.add(at(static_cast<float>(2 * i))));
+  world.update();
+  const Bytes bytes = world.snapshot();
+  world.move(handles[7], at(500));
+  world.move(handles[8], at(500));
+  world.update();
+  world.restore(bytes);
+  EXPECT_EQ(seen, (std::vector<std::size_t>{100, 2, 2}));
+  EXPECT_TRUE(world.update().begun.empty());
+  EXPECT_EQ(world.box(handles[7]), at(14));
+}
+
+TEST(Snapshot, CanBeTakenAfterAnUpdateThatFailed) {
+  bool fails = true;
+  const auto predicate = [&](Handle, Handle) {
+    if (fails) throw std::runtime_error("not now");
+    return true;
+  };
+  World2 world;
+  world.set_predicate(predicate);
+  world.add(at(0));
+  world.add(at(0));
+  EXPECT_THROW(world.update(), std::runtime_error);
+  World2 other;
+  other.set_predicate(predicate);
+  other.restore(world.snapshot());
+  fails = false;
+  EXPECT_EQ(update(other), update(world));
+  EXPECT_EQ(world.pairs().size(), 1u);
+}
+
+/// A world with a bit of everything, in the middle of a frame.
+World2 full_world() {
+  WorldOptions options;
+  options.algorithm = "brute_force";
+  options.margin = 1;
+  World2 world(options);
+  Game<2> game{Random(7), {}};
+  for (int i = 0; i < 40; ++i) game.step(world, true);
+  world.update();
+  for (int i = 0; i < 20; ++i) game.step(world, true);
+  world.update();
+  for (int i = 0; i < 10; ++i) game.step(world, true);
+  return world;
+}
+
+TEST(Snapshot, IsRefusedWithAnyBitWrong) {
+  Bytes bytes = full_world().snapshot();
+  World2 world;
+  const Handle handle = world.add(at(3));
+  world.update();
+  const Bytes before = world.snapshot();
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += 3) {
+    bytes[bit / 8] ^= std::byte{1} << bit % 8;
+    ASSERT_THROW(world.restore(bytes), InvalidSnapshot) << "bit " << bit;
+    bytes[bit / 8] ^= std::byte{1} << bit % 8;
+  }
+  EXPECT_EQ(world.snapshot(), before);
+  EXPECT_EQ(world.box(handle), at(3));
+}
+
+TEST(Snapshot, IsRefusedWithAnyBytesMissingOrTooMany) {
+  const Bytes bytes = full_world().snapshot();
+  World2 world;
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    ASSERT_THROW(world.restore(std::span(bytes).first(size)), InvalidSnapshot) << size;
+  Bytes longer = bytes;
+  longer.push_back({});
+  EXPECT_THROW(world.restore(longer), InvalidSnapshot);
+}
+
+TEST(Snapshot, SaysWhatItIsNotASnapshotOf) {
+  World2 world;
+  const Bytes bytes = world.snapshot();
+  DoubleWorld2 precise;
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { precise.restore(bytes); }),
+              HasSubstr("the size of a coordinate of a snapshot is 4; expected 8"));
+  World3 deep;
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { deep.restore(bytes); }),
+              HasSubstr("the dimension of a snapshot is 2; expected 3"));
+  Bytes newer = bytes;
+  newer[8] = std::byte{2};
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(newer); }),
+              HasSubstr("the version of a snapshot is 2; expected 1"));
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(std::span(bytes).first(3)); }),
+              HasSubstr("expected"));
+  World2 choosy;
+  choosy.set_predicate([](Handle, Handle) { return true; });
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { choosy.restore(bytes); }),
+              HasSubstr("a world without a predicate and this one has one"));
+}
+
+/// Makes the checksum and the length right.
+void seal(Bytes& bytes) {
+  const std::uint64_t size = bytes.size();
+  for (std::size_t i = 0; i < 8; ++i) bytes[16 + i] = static_cast<std::byte>(size >> 8 * i);
+  trace::Checksum checksum;
+  checksum.add(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size() - 4);
+  for (std::size_t i = 0; i < 4; ++i)
+    bytes[bytes.size() - 4 + i] = static_cast<std::byte>(checksum.value() >> 8 * i);
+}
+
+TEST(Snapshot, ThatLiesUnderARightChecksumDoesNoHarm) {
+  const Bytes right = full_world().snapshot();
+  std::size_t refused = 0;
+  for (std::size_t bit = 8 * 24; bit < 8 * (right.size() - 4); ++bit) {
+    Bytes bytes = right;
+    bytes[bit / 8] ^= std::byte{1} << bit % 8;
+    seal(bytes);
+    World2 world;
+    try {
+      world.restore(bytes);
+    } catch (const InvalidSnapshot&) {
+      ++refused;
+      EXPECT_EQ(world.size(), 0u);
+    }
+    world.add(at(0));
+    update(world);
+  }
+  EXPECT_GT(refused, right.size());
+}
+
+TEST(Snapshot, LeavesTheWorldAsItWasWhenItsPairsAreNotThoseOfItsBoxes) {
+  World2 lying;
+  lying.add(at(0));
+  lying.add(at(0));
+  lying.update();
+  Bytes bytes = lying.snapshot();
+  World2 world;
+  const Handle handle = world.add(at(7));
+  world.add(at(7));
+  world.update();
+  const Bytes before = world.snapshot();
+  // The first box, which follows the slots' number: there it lies apart from the other.
+  const std::array<float, 4> apart = {100, 0, 101, 1};
+  const std::size_t place = 24 + 4 + 8 + 8 + 4 + 4 + 8 + 8;
+  ASSERT_EQ(std::memcmp(bytes.data() + place, std::array<float, 4>{0, 0, 1, 1}.data(), 16), 0);
+  std::memcpy(bytes.data() + place, apart.data(), 16);
+  seal(bytes);
+  EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(bytes); }), HasSubstr("contradicts itself"));
+  EXPECT_EQ(world.snapshot(), before);
+  world.move(handle, at(8));
+  EXPECT_TRUE(update(world).ended.empty());
+  world.move(handle, at(80));
+  EXPECT_EQ(update(world).ended.size(), 1u);
+}
+
+TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {
+  World2 world("brute_force");
+  const Handle first = world.add(at(0));
+  const Handle second = world.add(at(1));
+  world.add(at(9));
+  world.update();
+  world.remove(second);
+  world.move(first, at(2));
+  std::string text;
+  for (const std::byte byte : world.snapshot()) text += fmt::format("{:02x}", static_cast<unsigned>(byte));
+  // One part a line; docs/snapshot-format.md has the same. A change of these bytes is a new version.
+  EXPECT_EQ(text,
+            "894257530d0a1a0a"                  // magic number
+            "01000000"                          // version 1
+            "02040201"                          // 2D, coordinates of 4 bytes, byte order
+            "8301000000000000"                  // length: 387
+            "43000000"                          // flags: keeps pairs, own algorithm, has had an update
+            "0000000000000000"                  // margin 0
+            "0b00000000000000"                  // 11 characters
+            "62727574655f666f726365"            // brute_force
+            "00000000"                          // generation of new slots: 0
+            "0100000000000000"                  // 1 pair
+            "0300000000000000"                  // 3 slots
+            "0000004000000000000040400000803f"  // slot 0: (2, 0) to (3, 1)
+            "0000807f0000807f000080ff000080ff"  // slot 1: absent
+            "0000104100000000000020410000803f"  // slot 2: (9, 0) to (10, 1)
+            "000000000000000000000000"          // generations
+            "010201"                            // live, removed, live
+            "0100000000000000"                  // 1 removed box
+            "010000000000803f00000000000000400000803f"  // slot 1: (1, 0) to (2, 1)
+            "0000000000000000"                          // no removal was told
+            "0200000000000000"                          // 2 changed slots
+            "0100000000000000"                          // 1, 0
+            "0000000000000000"                          // no box left its enlarged one
+            "0000000000000000"                          // no pair is to be asked about again
+            "0000000000000000"                          // no ignored pairs
+            "0000000000000000"                          // none that changed
+            "02"                                        // last frame: no filters, a set of ignored pairs
+            "0300000000000000"                          // of 3 boxes
+            "0200000000000000"                          // 2 of them otherwise than now
+            "0000000001000000"                          // 0, 1
+            "00000000000000000000803f0000803f"          // box 0: (0, 0) to (1, 1)
+            "0000803f00000000000000400000803f"          // box 1: (1, 0) to (2, 1)
+            "0000000000000000"                          // no other filters
+            "0000000000000000"                          // no ignored pairs
+            "0100000000000000"                          // 1 pair
+            "0000000001000000"                          // (0, 1)
+            "0100000000000000"                          // 1 began
+            "0000000001000000"                          // (0, 1)
+            "0000000000000000"                          // none ended
+            "0000000000000000"                          // no pairs of enlarged boxes
+            "0000000000000000000000000000000000000000"  // no events of a failed update: five lists
+            "0000000000000000000000000000000000000000"
+            "f4c1f97f");  // checksum
+}
+
+}  // namespace
+}  // namespace broadside
