@@ -79,18 +79,18 @@ void World<D, Real>::State::LastFrame::get(ByteReader& in, const Frame<D, Real>&
   const auto flags = in.get<std::uint8_t>();
   expect((flags & ~(snapshot::last_has_filters | snapshot::last_has_ignored)) == 0,
          "the last frame has flags that there are none of");
-  const auto size = in.get<std::uint64_t>();
-  const std::vector<BoxId> places = get_places(in, size, "boxes that changed");
+  const auto count = in.get<std::uint64_t>();
+  const std::vector<BoxId> places = get_places(in, count, "boxes that changed");
   // Each place that there is no more is among them: no claim takes more memory than its bytes justify.
-  expect(size <= now.boxes.size() + places.size(), "the last frame has more boxes than it says");
+  expect(count <= now.boxes.size() + places.size(), "the last frame has more boxes than it says");
   boxes.assign(now.boxes.begin(), now.boxes.end());
-  boxes.resize(static_cast<std::size_t>(size), absent_box<D, Real>());
+  boxes.resize(static_cast<std::size_t>(count), absent_box<D, Real>());
   for (const BoxId id : places) boxes[index(id)] = core::Part<Box<D, Real>>::get(in);
   const bool has_filters = (flags & snapshot::last_has_filters) != 0;
-  const std::vector<BoxId> filtered = get_places(in, has_filters ? size : 0, "filters that changed");
+  const std::vector<BoxId> filtered = get_places(in, has_filters ? count : 0, "filters that changed");
   if (has_filters) {
     filters.assign(now.filters.begin(), now.filters.end());
-    filters.resize(static_cast<std::size_t>(size));
+    filters.resize(static_cast<std::size_t>(count));
   }
   for (const BoxId id : filtered) filters[index(id)] = core::Part<Filter>::get(in);
   has_ignored = (flags & snapshot::last_has_ignored) != 0;
