@@ -1,5 +1,4 @@
 // World: snapshots. What stands in their bytes is described in docs/snapshot-format.md.
-#include "world_snapshot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "core/snapshot_format.hpp"
 #include "core/snapshot_parts.hpp"
 #include "world_state.hpp"
 

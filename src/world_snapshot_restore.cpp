@@ -9,8 +9,8 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
+#include "core/snapshot_format.hpp"
 #include "core/snapshot_parts.hpp"
-#include "world_snapshot.hpp"
 #include "world_state.hpp"
 
 namespace broadside {
