@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,8 +16,10 @@
 
 #include "algorithms/descriptions.hpp"
 #include "auto_tracker.hpp"
+#include "core/double_finder.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "double_follower.hpp"
 
 namespace broadside::own {
 namespace {
@@ -155,14 +158,24 @@ std::unique_ptr<PairFinder<D>> make(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
+Way way_of(const Settings& settings) {
+  const std::string& way = settings.text("way");
+  if (way == "rebuild") return Way::rebuild;
+  return way == "incremental" ? Way::incremental : Way::automatic;
+}
+
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
-  const std::string& way = settings.text("way");
-  return std::make_unique<AutoTracker<D>>(std::make_unique<Auto<D>>(),
-                                          make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}),
-                                          way == "rebuild"       ? Way::rebuild
-                                          : way == "incremental" ? Way::incremental
-                                                                 : Way::automatic);
+  return std::make_unique<AutoTracker<D, float>>(
+      std::make_unique<Auto<D>>(), make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}),
+      [](std::span<const Box<D>>) { return true; }, way_of(settings));
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
+  return std::make_unique<AutoTracker<D, double>>(
+      std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
+      std::make_unique<DoubleFollower<D>>(), floats_suffice<D>, way_of(settings));
 }
 
 }  // namespace
@@ -184,6 +197,8 @@ Algorithm automatic() {
       .finder_3d = make<3>,
       .tracker_2d = make_tracking<2>,
       .tracker_3d = make_tracking<3>,
+      .double_tracker_2d = make_double_tracking<2>,
+      .double_tracker_3d = make_double_tracking<3>,
   };
 }
 

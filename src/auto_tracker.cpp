@@ -26,23 +26,25 @@ constexpr double cost_of_a_test_of_a_mover = 1.8;
 template <int D>
 constexpr double cost_of_finding = D == 2 ? 40 : 65;  // a box, but for its pairs
 constexpr double cost_of_a_pair = 7;
+constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide
 
 /// Below so many boxes that moved nobody needs to think.
 constexpr std::size_t few = 8;
 
 }  // namespace
 
-template <int D>
-AutoTracker<D>::AutoTracker(std::unique_ptr<PairFinder<D>> finder, std::unique_ptr<PairTracker<D>> follower,
-                            Way way)
+template <int D, typename Real>
+AutoTracker<D, Real>::AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder,
+                                  std::unique_ptr<PairTracker<D, Real>> follower, Suits suits, Way way)
     : finder_(std::move(finder)),
       follower_(std::move(follower)),
+      suits_(suits),
       way_(way),
       cost_of_mover_(cost_of_moving<D>),
       cost_of_box_(cost_of_finding<D>) {}
 
-template <int D>
-void AutoTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
+template <int D, typename Real>
+void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
   changed_ = change.changed.size();
   was_incremental_ = is_incremental(change);
   if (was_incremental_) {
@@ -51,14 +53,14 @@ void AutoTracker<D>::update_valid(const Change<D>& change, PairSink& begun, Pair
     rebuild(change, begun, ended);
     // After a first frame come others, most often with few changes: what follows them is made ready with it,
     // so that the second frame does not take longer than those after it.
-    if (change.rebuild && way_ == Way::automatic) start_following(change.now);
+    if (change.rebuild && way_ == Way::automatic && suits_(change.now)) start_following(change.now);
   }
 }
 
-template <int D>
-void AutoTracker<D>::start_following(std::span<const Box<D>> boxes) {
+template <int D, typename Real>
+void AutoTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) {
   flags_.assign(boxes.size(), 0);
-  Change<D> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = flags_, .rebuild = true};
+  Change<D, Real> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = flags_, .rebuild = true};
   PairCounter none;
   const std::optional<Statistics> statistics = this->statistics();
   this->update_with(*follower_, nothing, none, none);
@@ -66,8 +68,8 @@ void AutoTracker<D>::start_following(std::span<const Box<D>> boxes) {
   followed_ = true;
 }
 
-template <int D>
-bool AutoTracker<D>::is_incremental(const Change<D>& change) {
+template <int D, typename Real>
+bool AutoTracker<D, Real>::is_incremental(const Change<D, Real>& change) {
   const auto boxes = static_cast<double>(change.now.size());
   const auto movers = static_cast<double>(change.changed.size());
   break_even_ = static_cast<std::size_t>(boxes * cost_of_box_ / cost_of_mover_);
@@ -81,19 +83,21 @@ bool AutoTracker<D>::is_incremental(const Change<D>& change) {
   // To start following costs something as well. It is done at once where the frame is no dearer for it, and
   // else as soon as it would have paid: so nobody loses much who moves few boxes and many by turns.
   saved_ += saving;
-  return saved_ >= boxes * cost_of_filing<D>;
+  if (saved_ < boxes * cost_of_filing<D>) return false;
+  saved_ = 0;
+  return suits_(change.now);
 }
 
-template <int D>
-void AutoTracker<D>::rebuild(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  const auto find = [this](std::span<const Box<D>> boxes, std::vector<Pair>& pairs) {
+template <int D, typename Real>
+void AutoTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  const auto find = [this](std::span<const Box<D, Real>> boxes, std::vector<Pair>& pairs) {
     pairs.clear();
     PairCollector collector(pairs);
     finder_->find(boxes, collector);
   };
   if (change.rebuild || !has_pairs_) find(change.before, pairs_);
   find(change.now, found_);
-  core::report_differences<D, float>(change, found_, pairs_, begun, ended);
+  core::report_differences<D, Real>(change, found_, pairs_, begun, ended);
   std::swap(pairs_, found_);
   has_pairs_ = true;
   followed_ = false;
@@ -102,9 +106,9 @@ void AutoTracker<D>::rebuild(const Change<D>& change, PairSink& begun, PairSink&
   cost_of_box_ = cost_of_finding<D> + cost_of_a_pair * pairs;
 }
 
-template <int D>
-void AutoTracker<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  Change<D> followed = change;
+template <int D, typename Real>
+void AutoTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  Change<D, Real> followed = change;
   followed.rebuild = !followed_ || change.rebuild;
   this->update_with(*follower_, followed, begun, ended);
   followed_ = true;
@@ -114,11 +118,12 @@ void AutoTracker<D>::follow(const Change<D>& change, PairSink& begun, PairSink& 
   constexpr std::size_t telling = 64;
   if (changed_ < telling || !this->statistics()) return;
   const double tests = static_cast<double>(this->statistics()->tests) / static_cast<double>(changed_);
-  cost_of_mover_ = cost_of_moving<D> + cost_of_a_test_of_a_mover * tests;
+  const double hits = static_cast<double>(this->statistics()->hits) / static_cast<double>(changed_);
+  cost_of_mover_ = cost_of_moving<D> + cost_of_a_test_of_a_mover * tests + cost_of_a_candidate * hits;
 }
 
-template <int D>
-std::string AutoTracker<D>::explanation() const {
+template <int D, typename Real>
+std::string AutoTracker<D, Real>::explanation() const {
   const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
   if (was_incremental_) {
     const std::string why = way_ == Way::incremental ? std::string(", as asked for")
@@ -131,12 +136,14 @@ std::string AutoTracker<D>::explanation() const {
   return found + "; " + changed + ", and it pays to follow boxes up to " + std::to_string(break_even_);
 }
 
-template <int D>
-std::size_t AutoTracker<D>::algorithm_bytes() const noexcept {
+template <int D, typename Real>
+std::size_t AutoTracker<D, Real>::algorithm_bytes() const noexcept {
   return this->kept_bytes(*follower_) + (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
 }
 
-template class AutoTracker<2>;
-template class AutoTracker<3>;
+template class AutoTracker<2, float>;
+template class AutoTracker<3, float>;
+template class AutoTracker<2, double>;
+template class AutoTracker<3, double>;
 
 }  // namespace broadside::own

@@ -19,26 +19,31 @@ enum class Way { automatic, rebuild, incremental };
 
 /// Decides by counts alone, of boxes, of changes and of tests, so that the same history always goes the same
 /// way. Cost of an update: near the lesser of the two ways', and never much more than finding all pairs anew.
-template <int D>
-class AutoTracker final : public PairTracker<D> {
+template <int D, typename Real>
+class AutoTracker final : public PairTracker<D, Real> {
  public:
-  /// Both are of the library: what finds all pairs, and what follows boxes that move.
-  AutoTracker(std::unique_ptr<PairFinder<D>> finder, std::unique_ptr<PairTracker<D>> follower, Way way);
+  /// Whether boxes suit the follower.
+  using Suits = bool (*)(std::span<const Box<D, Real>> boxes);
+
+  /// Both are of the library: what finds all pairs, and what follows boxes that move, where they suit it.
+  AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder, std::unique_ptr<PairTracker<D, Real>> follower,
+              Suits suits, Way way);
 
   std::string explanation() const override;
 
  private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }
   std::size_t algorithm_bytes() const noexcept override;
 
-  bool is_incremental(const Change<D>& change);
-  void rebuild(const Change<D>& change, PairSink& begun, PairSink& ended);
-  void start_following(std::span<const Box<D>> boxes);
-  void follow(const Change<D>& change, PairSink& begun, PairSink& ended);
+  bool is_incremental(const Change<D, Real>& change);
+  void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void start_following(std::span<const Box<D, Real>> boxes);
+  void follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
 
-  std::unique_ptr<PairFinder<D>> finder_;
-  std::unique_ptr<PairTracker<D>> follower_;
+  std::unique_ptr<PairFinder<D, Real>> finder_;
+  std::unique_ptr<PairTracker<D, Real>> follower_;
+  Suits suits_;
   Way way_;
 
   bool followed_ = false;  // whether the follower has the boxes of the last frame

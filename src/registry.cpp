@@ -99,11 +99,13 @@ std::unique_ptr<PairFinder<3, double>> make_finder(const Algorithm& algorithm, c
 
 template <>
 std::unique_ptr<PairTracker<2, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.double_tracker_2d) return make<2>(algorithm.double_tracker_2d, algorithm, spec);
   return std::make_unique<DiffTracker<2, double>>(make_finder<2, double>(algorithm, spec));
 }
 
 template <>
 std::unique_ptr<PairTracker<3, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.double_tracker_3d) return make<3>(algorithm.double_tracker_3d, algorithm, spec);
   return std::make_unique<DiffTracker<3, double>>(make_finder<3, double>(algorithm, spec));
 }
 

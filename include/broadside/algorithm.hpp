@@ -28,8 +28,8 @@ std::string_view name(AlgorithmKind kind) noexcept;
 
 template <int D>
 using MakeFinder = std::function<std::unique_ptr<PairFinder<D>>(const Settings&)>;
-template <int D>
-using MakeTracker = std::function<std::unique_ptr<PairTracker<D>>(const Settings&)>;
+template <int D, typename Real = float>
+using MakeTracker = std::function<std::unique_ptr<PairTracker<D, Real>>(const Settings&)>;
 
 /// A broad-phase algorithm, described. One's own is made the same way as the library's: see
 /// examples/own_algorithm.
@@ -45,6 +45,10 @@ struct Algorithm {
   MakeFinder<3> finder_3d{};
   MakeTracker<2> tracker_2d{};  ///< empty where a DiffTracker over the finder is what tracks
   MakeTracker<3> tracker_3d{};
+
+  /// Empty where a DiffTracker over a finder of doubles is what tracks boxes of doubles.
+  MakeTracker<2, double> double_tracker_2d{};
+  MakeTracker<3, double> double_tracker_3d{};
 
   bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
 

@@ -35,26 +35,41 @@ constexpr Box<D> nowhere() {
 
 template <int D>
 void HierarchicalGridTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
+  core::CandidateSink<D> open(change, begun, ended);
+  // Without filters, what overlaps a box at rest is all there is to ask.
+  const bool by_boxes = change.filters_now.empty();
+  const Statistics statistics = follow(change,
+                                       {.begun = by_boxes ? begun : open,
+                                        .ended = by_boxes ? ended : open,
+                                        .candidates = open,
+                                        .moves = change.flags.data()},
+                                       false);
+  open.flush();
+  this->count(statistics);
+}
+
+template <int D>
+Statistics HierarchicalGridTracker<D>::candidates(const Change<D>& change, PairSink& pairs) {
+  return follow(change, {.begun = pairs, .ended = pairs, .candidates = pairs, .moves = change.flags.data()},
+                true);
+}
+
+template <int D>
+Statistics HierarchicalGridTracker<D>::follow(const Change<D>& change, const kernels::CellSinks& sinks,
+                                              bool all) {
   if (change.rebuild || !suits(change)) build(change);
   cells_.reserve(change.now.size());
   moving_.clear();
   for (const BoxId id : moved_) {
     if (change.flags[index(id)] == 0) cells_.settle(id, change.now[index(id)]);
   }
-  core::CandidateSink<D> candidates(change, begun, ended);
-  // Without filters, what overlaps a box at rest is all there is to ask.
-  const kernels::CellSinks sinks =
-      change.filters_now.empty()
-          ? kernels::CellSinks{begun, ended, candidates, change.flags.data()}
-          : kernels::CellSinks{candidates, candidates, candidates, change.flags.data()};
   kernels::CellWork work;
   std::array<kernels::CellQuery<D>, batch> queries;
-  const std::span<const BoxId> changed = change.changed;
-  for (std::size_t at = 0; at < changed.size();) {
-    const std::size_t end = std::min(at + batch, changed.size());
+  for (std::size_t at = 0; at < change.changed.size();) {
+    const std::size_t end = std::min(at + batch, change.changed.size());
     std::size_t count = 0;
     for (; at < end; ++at) {
-      const kernels::CellQuery<D> query = file(change, changed[at]);
+      const kernels::CellQuery<D> query = file(change, change.changed[at], all);
       if (is_present(query.bounds)) queries[count++] = query;
     }
     const kernels::CellWork done =
@@ -62,16 +77,15 @@ void HierarchicalGridTracker<D>::update_valid(const Change<D>& change, PairSink&
     work.tests += done.tests;
     work.blocks += done.blocks;
   }
-  candidates.flush();
   cells_.drop_stale();
   std::swap(moved_, moving_);
   weigh(work, change.changed.size());
-  this->count(Statistics{.tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells()});
+  return {.tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells()};
 }
 
 /// Files one box, and says what is to be asked for it; bounds that are not present if nothing.
 template <int D>
-kernels::CellQuery<D> HierarchicalGridTracker<D>::file(const Change<D>& change, BoxId id) {
+kernels::CellQuery<D> HierarchicalGridTracker<D>::file(const Change<D>& change, BoxId id, bool all) {
   const Box<D>& before = change.before[index(id)];
   const Box<D>& now = change.now[index(id)];
   const bool was = is_present(before);
@@ -88,8 +102,8 @@ kernels::CellQuery<D> HierarchicalGridTracker<D>::file(const Change<D>& change, 
       query.bounds.max[axis] = std::max(before.max[axis], now.max[axis]);
       query.is_far |= query.bounds.max[axis] - query.bounds.min[axis] - both > cells_.smallest_cell()[axis];
     }
-    query.all =
-        !change.filters_now.empty() && change.filters_now[index(id)] != change.filters_before[index(id)];
+    query.all = all || (!change.filters_now.empty() &&
+                        change.filters_now[index(id)] != change.filters_before[index(id)]);
     cells_.move(id, before, now, query.bounds);
   } else if (is) {
     cells_.add(id, now);

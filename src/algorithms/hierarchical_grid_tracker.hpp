@@ -18,13 +18,22 @@ namespace broadside::own {
 /// longer suit the boxes: not before searching has cost that much too much.
 template <int D>
 class HierarchicalGridTracker final : public PairTracker<D> {
+ public:
+  /// As an update, but writes the pair of each changed box with every other one that overlaps where it was or
+  /// where it is, perhaps more than once: for who judges pairs by more than these boxes.
+  Statistics candidates(const Change<D>& change, PairSink& pairs);
+
+  /// The bytes that it keeps.
+  std::size_t kept_bytes() const noexcept { return algorithm_bytes(); }
+
  private:
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
   std::size_t algorithm_bytes() const noexcept override;
 
+  Statistics follow(const Change<D>& change, const kernels::CellSinks& sinks, bool all);
   bool suits(const Change<D>& change) const;
   void build(const Change<D>& change);
-  kernels::CellQuery<D> file(const Change<D>& change, BoxId id);
+  kernels::CellQuery<D> file(const Change<D>& change, BoxId id, bool all);
   void weigh(const kernels::CellWork& work, std::size_t queries);
 
   HierarchicalGridCells<D> cells_;

@@ -31,8 +31,9 @@ const std::vector<Rule>& rules() {
        standard + R"(|"broadside/(box|pair|instruction_set)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
       {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
+      {"src/double_follower", inner + R"(|"(double_follower|algorithms/hierarchical_grid_tracker)\.hpp")"},
       {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")" +
-                   R"(|"(auto_tracker|world_state)\.hpp")"},
+                   R"(|"(auto_tracker|double_follower|world_state)\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/readers/", lab + "|<assimp/.*>"},

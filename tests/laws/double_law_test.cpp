@@ -199,6 +199,52 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
   });
 }
 
+/// Tracks boxes that rest, creep, jump, come, go and grow beyond all bounds, some in each frame.
+template <int D>
+void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double where) {
+  Dice dice(24);
+  Boxes<D> boxes = boxes_at<D>(dice, 300, {where}, 0.05, 1e-3);
+  const Boxes<D> first = boxes;
+  const auto tracker = make_tracker<D, double>(algorithm, spec);
+  std::vector<Pair> current;
+  for (int frame = 0; frame < 30; ++frame) {
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (frame > 0 && dice.unit() > 0.1) continue;
+      changed.push_back(BoxId(i));
+      const double kind = dice.unit();
+      const double step = (kind < 0.6 ? 1e-4 : 1e-2) * (dice.unit() - 0.5);
+      if (!is_present(boxes[i])) boxes[i] = first[i];
+      for (int axis = 0; axis < D; ++axis) {
+        boxes[i].min[axis] += step;
+        boxes[i].max[axis] += step;
+      }
+      if (kind > 0.95) boxes[i] = absent_box<D, double>();
+      if (kind < 0.02 && algorithm.infinite_boxes) boxes[i].max.fill(std::numeric_limits<double>::infinity());
+    }
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    PairCollector begun_pairs(begun);
+    PairCollector ended_pairs(ended);
+    tracker->update({boxes, changed}, begun_pairs, ended_pairs);
+    std::vector<Pair> kept;
+    std::ranges::set_difference(current, ended, std::back_inserter(kept));
+    current.clear();
+    std::ranges::merge(kept, begun, std::back_inserter(current));
+    ASSERT_EQ(current, reference<D>(boxes)) << spec.text() << ", frame " << frame << ", at " << where;
+  }
+}
+
+TEST_P(DoubleLaw, TracksBoxesThatRestCreepJumpComeAndGo) {
+  in_dimension([&]<int D>() {
+    for (const double where : {0.0, 5e6}) {
+      track_restless_boxes<D>(algorithm(), spec(), where);
+      if (algorithm().name == "auto")
+        track_restless_boxes<D>(algorithm(), Spec::parse("auto:way=incremental"), where);
+    }
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Catalogue, DoubleLaw, testing::ValuesIn(law_cases()), case_name);
 
 TEST(Doubles, TakeSeveralOriginsWhereOneWouldMakeEverythingTouch) {
