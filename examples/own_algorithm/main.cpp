@@ -58,7 +58,7 @@ bool keeps_the_law(const broadside::Algorithm& algorithm) {
     if (!scene.has_dimension(D)) continue;
     const auto history = make_history<D>(scene, {scene.name, {}}, {.boxes = 300, .frames = 5});
     const auto tracker = make_tracker<D>(algorithm, {algorithm.name, {}});
-    if (const auto divergence = check_tracker<D>(*tracker, history, algorithm.name)) {
+    if (const auto divergence = broadside::lab::check_tracker<D>(*tracker, history, algorithm.name)) {
       std::printf("%s: %s\n", scene.name.c_str(), divergence->text.c_str());
       kept = false;
     }
