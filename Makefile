@@ -61,6 +61,12 @@ tests-tsan: build/tsan/build.ninja
 	cmake --build --preset tsan --target laws_tests unit_tests
 	ctest --preset tsan --parallel $(jobs) --tests-regex 'Thread|Parallel|Executor'
 
+# The other libraries were compiled by Debian, whoever compiles what drives them.
+tests-clang: build/clang/build.ninja
+	cmake --build --preset clang
+	ctest --preset clang --parallel $(jobs) \
+	  --exclude-regex '/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
+
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
 
