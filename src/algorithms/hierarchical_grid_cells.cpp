@@ -82,8 +82,7 @@ void HierarchicalGridCells<D>::file(std::span<const Box<D>> boxes) {
   // there, and the one that need not be full.
   std::size_t blocks = 0;
   for (const std::uint32_t count : counts_) blocks += (count + block_size - 1) / block_size;
-  heads_.reserve(blocks);
-  blocks_.reserve(blocks);
+  reserve_blocks(blocks);
   for (std::uint32_t cell = 0; cell < counts_.size(); ++cell) {
     for (std::uint32_t count = 0; count < counts_[cell]; count += block_size) new_block(cell);
     if (first_[cell] != no_block)
@@ -299,10 +298,20 @@ void HierarchicalGridCells<D>::widen(Level& level, std::size_t index_of_level, c
   }
 }
 
+/// Memory for an eighth more blocks than `count`. They are the most of what is kept: twice as many, as a
+/// vector takes by itself, would be too many.
+template <int D>
+void HierarchicalGridCells<D>::reserve_blocks(std::size_t count) {
+  constexpr std::size_t spare = 16;
+  heads_.reserve(count + count / 8 + spare);
+  blocks_.reserve(count + count / 8 + spare);
+}
+
 template <int D>
 std::uint32_t HierarchicalGridCells<D>::new_block(std::uint32_t cell) {
   std::uint32_t block = static_cast<std::uint32_t>(blocks_.size());
   if (free_.empty()) {
+    if (blocks_.size() == blocks_.capacity()) reserve_blocks(blocks_.size());
     heads_.emplace_back();
     blocks_.emplace_back();
   } else {

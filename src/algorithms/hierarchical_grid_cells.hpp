@@ -11,6 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/grow.hpp"
 #include "core/sample.hpp"
 #include "kernels/cell_blocks.hpp"
 
@@ -25,7 +26,7 @@ class HierarchicalGridCells {
 
   /// The memory for places up to `count`.
   void reserve(std::size_t count) {
-    if (place_.size() < count) place_.resize(count);
+    if (place_.size() < count) core::resize_by_eighths(place_, count);
   }
 
   /// Files a box that is there, under an id that is not filed. O(1).
@@ -72,6 +73,7 @@ class HierarchicalGridCells {
   bool disperse_crowds();
   void file(std::span<const Box<D>> boxes);
   void put(BoxId id, const Box<D>& box, std::size_t level, bool is_moving);
+  void reserve_blocks(std::size_t count);
   std::uint32_t new_block(std::uint32_t cell);
   void write(std::uint32_t place, const Box<D>& box);
   void close_hole(std::uint32_t place);

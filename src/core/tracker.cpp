@@ -9,6 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/sort_pairs.hpp"
 
@@ -86,15 +87,15 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::size_t known = before_.size();
   const std::size_t size = std::max(boxes.size(), known);
   const bool had_filters = !filters_before_.empty();
-  before_.resize(size, absent_box<D, Real>());
-  now_.resize(size, absent_box<D, Real>());
+  core::resize_by_eighths(before_, size, absent_box<D, Real>());
+  core::resize_by_eighths(now_, size, absent_box<D, Real>());
   if (!frame.filters.empty() || had_filters) {
-    filters_before_.resize(size);
-    filters_now_.resize(size);
+    core::resize_by_eighths(filters_before_, size);
+    core::resize_by_eighths(filters_now_, size);
   }
   // Flags are all 0 between two updates, but where the last one failed.
-  if (rebuild) flags_.assign(size, 0);
-  flags_.resize(size, 0);
+  if (rebuild) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
+  core::resize_by_eighths(flags_, size);
   changed_.clear();
   invalid_.clear();
   const auto take = [&](std::size_t i) {

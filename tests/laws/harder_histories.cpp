@@ -116,7 +116,7 @@ class Histories {
       }
     });
     add("all swap places", uniform_, 20,
-        [&](int, Boxes<D>& boxes) { std::ranges::rotate(boxes, boxes.begin() + 1); });
+        [&](int, Boxes<D>& boxes) { std::rotate(boxes.begin(), boxes.begin() + 1, boxes.end()); });
     add("half of them go, and come back", uniform_, 12, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += 2) boxes[i] = frame % 2 == 0 ? uniform_[i] : absent_box<D>();
     });

@@ -1,0 +1,18 @@
+// Vectors that grow by an eighth.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace broadside::core {
+
+/// Makes `size` the vector's size, new elements being `value`. Where memory is to be taken, it is for an
+/// eighth more: a vector by itself takes twice as much, and what is kept of each box would count double for a
+/// few more.
+template <typename T>
+void resize_by_eighths(std::vector<T>& vector, std::size_t size, const T& value = T{}) {
+  if (size > vector.capacity()) vector.reserve(size + size / 8);
+  vector.resize(size, value);
+}
+
+}  // namespace broadside::core
