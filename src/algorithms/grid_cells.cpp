@@ -36,8 +36,7 @@ std::array<std::size_t, GridCells<D>::levels> GridCells<D>::references_of(
     const Place place = place_of(box);
     const CellRange<D> cells = cells_at(place.level, place.finest);
     std::size_t touched = 1;
-    for (int axis = 0; axis < D; ++axis)
-      touched *= static_cast<std::size_t>(cells.last[axis] - cells.first[axis] + 1);
+    for (int axis = 0; axis < D; ++axis) touched *= std::size_t{cells.more(axis)} + 1;
     references[place.level] += touched;
   }
   return references;

@@ -28,6 +28,12 @@ struct CellRange {
     return inside;
   }
 
+  /// How many cells there are on an axis beyond the first: in unsigned numbers, for the difference of two
+  /// that are far from 0 on either side is no std::int32_t.
+  std::uint32_t more(int axis) const {
+    return static_cast<std::uint32_t>(last[axis]) - static_cast<std::uint32_t>(first[axis]);
+  }
+
   friend bool operator==(const CellRange&, const CellRange&) = default;
 };
 
@@ -105,10 +111,7 @@ class GridCells {
   void gather(int level, const CellRange<D>& cells, const CellRange<D>* except, std::vector<Block*>& blocks) {
     Level& table = levels_[level];
     std::uint64_t count = 1;
-    for (int axis = 0; axis < D; ++axis)
-      count *=
-          std::min<std::uint64_t>(static_cast<std::uint32_t>(cells.last[axis] - cells.first[axis]), 1 << 20) +
-          1;
+    for (int axis = 0; axis < D; ++axis) count *= std::min<std::uint64_t>(cells.more(axis), 1 << 20) + 1;
     if (count >= table.heads.size()) {
       for (Block& first : table.heads) add_cell(first, blocks);
       return;
@@ -134,8 +137,7 @@ class GridCells {
     Level& table = levels_[level];
     std::array<std::uint32_t, D> more;
     for (int axis = 0; axis < D; ++axis) {
-      more[axis] =
-          static_cast<std::uint32_t>(cells.last[axis]) - static_cast<std::uint32_t>(cells.first[axis]);
+      more[axis] = cells.more(axis);
       if (more[axis] > 1) return 0;
     }
     // Whether there is one or two is as good as random: no branches.

@@ -355,7 +355,7 @@ TEST(Snapshot, ThatLiesUnderARightChecksumDoesNoHarm) {
       EXPECT_EQ(world.size(), 0u);
     }
     world.add(at(0));
-    update(world);
+    world.update();  // it may say that it keeps no pairs
   }
   EXPECT_GT(refused, right.size());
 }
