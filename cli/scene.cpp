@@ -45,7 +45,12 @@ void check(const SceneArguments& arguments, const lab::Scene& scene) {
   };
   if (!arguments.boxes.empty() && scene.fixed_count) refuse("-n", "whose number of boxes is its own");
   if (arguments.seed && scene.fixed_seed) refuse("--seed", "which is the same for every seed");
-  if (!scene.history_2d && !scene.history_3d) return;
+  if (!scene.history_2d && !scene.history_3d) {
+    const bool rests = arguments.moving.value_or(0) == 0;
+    if (arguments.motion.drift && rests) refuse("--drift", "of which nothing moves without --moving");
+    if (arguments.motion.teleport && rests) refuse("--teleport", "of which nothing moves without --moving");
+    return;
+  }
   if (arguments.moving) refuse("--moving", "which moves by itself");
   if (arguments.motion.drift) refuse("--drift", "which moves by itself");
   if (arguments.motion.teleport) refuse("--teleport", "which moves by itself");

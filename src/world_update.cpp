@@ -96,6 +96,7 @@ void World<D, Real>::State::apply_candidates() {
   graph.reserve(graph.size() + candidates.begun.size(), slots.size());
   make_room(fresh, candidates.begun.size());
   make_room(refined.ended, candidates.ended.size());
+  const bool is_again = !refined.ended.empty() || !fresh.empty();
   for (const Pair pair : candidates.ended) {
     const core::PairGraph::EdgeId edge = graph.find(pair);
     if (graph.mark(edge).overlaps && graph.mark(edge).accepted) refined.ended.push_back(pair);
@@ -104,6 +105,11 @@ void World<D, Real>::State::apply_candidates() {
   for (const Pair pair : candidates.begun) {
     graph.insert(pair);
     fresh.push_back(pair);
+  }
+  // What a failed update has left goes before what is newer; a snapshot lists both by id.
+  if (is_again) {
+    std::sort(refined.ended.begin(), refined.ended.end());
+    std::sort(fresh.begin(), fresh.end());
   }
   candidates.clear();
 }

@@ -183,8 +183,9 @@ class World {
   /// when some three quarters of the slots are gone. A tracker of the caller's keeps what it has.
   void shrink_to_fit();
 
-  /// The world as bytes: all that its future depends on but the predicate, the workers and a tracker of the
-  /// caller's. At any time, also between changes and the update that tells of them. O(slots + pairs).
+  /// The world as bytes: all that its future depends on but the predicate, the workers, a tracker of the
+  /// caller's and the options bad_input, shadow and first_generation, which stay those of the world that
+  /// restores. At any time, also between changes and the update that tells of them. O(slots + pairs).
   /// docs/snapshot-format.md describes the bytes, which are the same on every machine.
   std::vector<std::byte> snapshot() const;
 

@@ -269,6 +269,29 @@ TEST(Snapshot, CanBeTakenAfterAnUpdateThatFailed) {
   EXPECT_EQ(world.pairs().size(), 1u);
 }
 
+TEST(Snapshot, CanBeTakenAfterSeveralUpdatesThatFailed) {
+  bool fails = false;
+  World2 world;
+  world.set_predicate([&](Handle, Handle) {
+    if (fails) throw std::runtime_error("not now");
+    return true;
+  });
+  std::vector<Handle> handles;
+  for (const float x : {0.F, 0.F, 5.F, 5.F, 10.F, 20.F}) handles.push_back(world.add(at(x)));
+  world.update();
+  fails = true;
+  world.move(handles[3], at(30));
+  world.move(handles[5], at(10));
+  EXPECT_THROW(world.update(), std::runtime_error);
+  world.move(handles[1], at(40));
+  EXPECT_THROW(world.update(), std::runtime_error);
+  world.restore(world.snapshot());
+  fails = false;
+  const Events events = world.update();
+  EXPECT_EQ(events.begun.size(), 1u);
+  EXPECT_EQ(events.ended.size(), 2u);
+}
+
 /// A world with a bit of everything, in the middle of a frame.
 World2 full_world() {
   WorldOptions options;
