@@ -131,7 +131,7 @@ std::string AutoTracker<D, Real>::explanation() const {
                                                            " that costs less than finding all pairs anew";
     return "followed by hierarchical_grid, since " + changed + why;
   }
-  const std::string found = "all pairs found anew by " + finder_->explanation();
+  std::string found = "all pairs found anew by " + finder_->explanation();
   if (way_ == Way::rebuild) return found;
   return found + "; " + changed + ", and it pays to follow boxes up to " + std::to_string(break_even_);
 }

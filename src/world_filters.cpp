@@ -93,7 +93,7 @@ void World<D, Real>::set_predicate(PairPredicate predicate) {
   }
   state.is_refining = true;
   state.refilters_all = true;
-  state.predicate = std::move(predicate);
+  state.predicate.swap(predicate);
 }
 
 template <int D, typename Real>

@@ -24,7 +24,7 @@ constexpr int most_steps = 3;  // for 32 bits
 class Digits {
  public:
   explicit Digits(std::uint32_t greatest) {
-    const int bits = std::bit_width(greatest);
+    const int bits = static_cast<int>(std::bit_width(greatest));
     steps_ = (bits + most_bits - 1) / most_bits;
     width_ = steps_ == 0 ? 0 : (bits + steps_ - 1) / steps_;
   }

@@ -116,16 +116,16 @@ bool overlapping(const QueryTree<D>& tree, const Box<D>& box, FoundBoxes& found)
 /// A cast, in every lane.
 template <int D>
 struct Cast {
-  HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast(query) {
+  HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast_(query) {
     for (int axis = 0; axis < D; ++axis) {
       const bool is_back = query.course[axis] == Course::backward ||
                            (query.course[axis] == Course::unknown && query.direction[axis] < 0);
       // What comes first of the cast box meets what comes first of the other one.
-      near_side[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
-      far_side[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
-      inverse[axis] = all(query.inverse[axis]);
-      near_bound_at[axis] = (is_back ? D + axis : axis) * node_width;
-      far_bound_at[axis] = (is_back ? axis : D + axis) * node_width;
+      near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
+      far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
+      inverse_[axis] = all(query.inverse[axis]);
+      near_bound_at_[axis] = (is_back ? D + axis : axis) * node_width;
+      far_bound_at_[axis] = (is_back ? axis : D + axis) * node_width;
     }
   }
 
@@ -136,12 +136,12 @@ struct Cast {
     enter = hn::Zero(Floats());
     FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));  // not NaN
     for (int axis = 0; axis < D; ++axis) {
-      if (HWY_UNLIKELY(cast.course[axis] >= Course::still)) {
-        if (cast.course[axis] == Course::still) hits = hn::And(hits, overlaps(node, axis, at));
+      if (HWY_UNLIKELY(cast_.course[axis] >= Course::still)) {
+        if (cast_.course[axis] == Course::still) hits = hn::And(hits, overlaps(node, axis, at));
         continue;
       }
-      enter = hn::Max(enter, hn::Mul(hn::Sub(near_bound(node, axis, at), near_side[axis]), inverse[axis]));
-      leave = hn::Min(leave, hn::Mul(hn::Sub(far_bound(node, axis, at), far_side[axis]), inverse[axis]));
+      enter = hn::Max(enter, hn::Mul(hn::Sub(near_bound(node, axis, at), near_side_[axis]), inverse_[axis]));
+      leave = hn::Min(leave, hn::Mul(hn::Sub(far_bound(node, axis, at), far_side_[axis]), inverse_[axis]));
     }
     leave = hn::MulAdd(leave, all(margin), all(least));
     return hn::And(hits, hn::Le(enter, hn::Min(leave, limit)));
@@ -154,13 +154,13 @@ struct Cast {
     enter = hn::Zero(Floats());
     FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));
     for (int axis = 0; axis < D; ++axis) {
-      if (HWY_UNLIKELY(cast.course[axis] == Course::still)) {
+      if (HWY_UNLIKELY(cast_.course[axis] == Course::still)) {
         hits = hn::And(hits, overlaps(node, axis, at));
         continue;
       }
-      const FloatVector direction = all(cast.direction[axis]);
-      enter = hn::Max(enter, hn::Div(hn::Sub(near_bound(node, axis, at), near_side[axis]), direction));
-      leave = hn::Min(leave, hn::Div(hn::Sub(far_bound(node, axis, at), far_side[axis]), direction));
+      const FloatVector direction = all(cast_.direction[axis]);
+      enter = hn::Max(enter, hn::Div(hn::Sub(near_bound(node, axis, at), near_side_[axis]), direction));
+      leave = hn::Min(leave, hn::Div(hn::Sub(far_bound(node, axis, at), far_side_[axis]), direction));
     }
     return hn::And(hits, hn::Le(enter, leave));
   }
@@ -171,7 +171,7 @@ struct Cast {
     for (std::size_t at = 0; at < node_width; at += lanes) {
       FloatVector enter;
       FloatMask hits = may_meet(node, at, limit, enter);
-      if (cast.exact) {
+      if (cast_.exact) {
         if (hn::AllFalse(Floats(), hits)) continue;
         hits = meets(node, at, furthest, enter);
       }
@@ -187,24 +187,24 @@ struct Cast {
 
  private:
   HWY_INLINE FloatVector near_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
-    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at[axis] + at);
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at_[axis] + at);
   }
   HWY_INLINE FloatVector far_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
-    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at[axis] + at);
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at_[axis] + at);
   }
   HWY_INLINE FloatMask overlaps(const QueryNode<D>& node, int axis, std::size_t at) const {
-    return hn::And(hn::Le(load(node.min[axis], at), near_side[axis]),
-                   hn::Le(far_side[axis], load(node.max[axis], at)));
+    return hn::And(hn::Le(load(node.min[axis], at), near_side_[axis]),
+                   hn::Le(far_side_[axis], load(node.max[axis], at)));
   }
 
-  const CastQuery<D>& cast;
-  FloatVector near_side[D];
-  FloatVector far_side[D];
-  FloatVector inverse[D];
+  const CastQuery<D>& cast_;
+  FloatVector near_side_[D];
+  FloatVector far_side_[D];
+  FloatVector inverse_[D];
   // Where in a node the bounds stand that a cast meets first and last, counted in floats: no branch on a
   // direction.
-  std::size_t near_bound_at[D];
-  std::size_t far_bound_at[D];
+  std::size_t near_bound_at_[D];
+  std::size_t far_bound_at_[D];
 };
 
 template <int D>
