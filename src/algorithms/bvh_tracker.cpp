@@ -163,8 +163,8 @@ class BvhTracker final : public core::IncrementalTracker<D> {
       const bool is = is_present(now);
       if (!was && !is) continue;
       Step step;
-      step.before = was ? before : nan_;
-      step.now = is ? now : nan_;
+      step.before = was ? before : nowhere;
+      step.now = is ? now : nowhere;
       step.id = index(id);
       step.every = refiltered || leaves_ == Leaves::widen;
       step.is_far = !was || !is || !overlap(before, now);
@@ -250,7 +250,7 @@ class BvhTracker final : public core::IncrementalTracker<D> {
            (left_.capacity() + waiting_.capacity()) * sizeof(std::uint32_t) + is_waiting_.capacity();
   }
 
-  inline static const Box<D> nan_ = [] {
+  inline static const Box<D> nowhere = [] {
     Box<D> box;
     box.min.fill(std::numeric_limits<float>::quiet_NaN());
     box.max.fill(std::numeric_limits<float>::quiet_NaN());

@@ -19,7 +19,7 @@ constexpr std::size_t crowded = 4;
 constexpr std::size_t deserted = 16;
 
 /// Numbers of cells lie between these: a float holds them exactly, and what lies beyond is in the last cell.
-constexpr float most_cell = 1 << 30;
+constexpr float most_cell = 0x1p30F;
 
 /// The axes' steps through a table, in parts of it: rows next to each other lie far apart, and evenly.
 constexpr double step_fraction[] = {0, 0.7548776662, 0.5698402910};
