@@ -29,10 +29,9 @@ std::vector<Part> quick_parts() {
       {{"uniform"}, {1'000, 10'000, 100'000}},
       {{"power_law", "mixed", "clustered", "one_line", "lattice", "integers", "thin", "terdiman"}, {10'000}},
       {{"one_point"}, {2'000}},
-      {{"uniform"}, {10'000}, {0.01, 0.1, 1}, 10},
-      {{"clustered"}, {10'000}, {0.1}, 10},
+      {{"uniform"}, {10'000}, {0.01, 1}, 10},
       {{"uniform"}, {100'000}, {0.1}, 5},
-      {{"churn", "jumps"}, {1'000}, {0}, 20},
+      {{"churn"}, {1'000}, {0}, 20},
       {{"box2d_rain", "box2d_pyramid", "bullet_free_fall"}, {1'000}, {0}, 30},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
   };
