@@ -27,7 +27,7 @@ struct Part {
 std::vector<Part> quick_parts() {
   return {
       {{"uniform"}, {1'000, 10'000, 100'000}},
-      {{"power_law", "mixed", "clustered", "one_line", "lattice", "integers", "thin", "terdiman"}, {10'000}},
+      {{"power_law", "mixed", "clustered", "one_line", "lattice", "thin", "terdiman"}, {10'000}},
       {{"one_point"}, {2'000}},
       {{"uniform"}, {10'000}, {0.01, 1}, 10},
       {{"uniform"}, {100'000}, {0.1}, 5},
