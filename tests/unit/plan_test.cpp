@@ -14,15 +14,23 @@
 namespace broadside::lab {
 namespace {
 
-TEST(QuickPlan, HasEveryGeneratedSceneInEveryDimensionItHas) {
-  const std::vector<CaseRequest> plan = quick_plan();
+/// Whether the plan has the scene in that dimension.
+bool has(const std::vector<CaseRequest>& plan, const Scene& scene, int dimension) {
+  return std::ranges::any_of(plan, [&](const CaseRequest& request) {
+    return request.scene == scene.name && request.dimension == dimension;
+  });
+}
+
+TEST(Plans, HaveEveryGeneratedSceneInEveryDimensionItHas) {
   for (const Scene& scene : scenes()) {
     if (scene.kind != SceneKind::generated) continue;
+    // The quick one has two minutes: it leaves out what is there for golden hashes, and the rarest motion.
+    const bool is_for_long = scene.name == "integers" || scene.name == "jumps";
     for (const int dimension : {2, 3}) {
-      const bool planned = std::ranges::any_of(plan, [&](const CaseRequest& request) {
-        return request.scene == scene.name && request.dimension == dimension;
-      });
-      EXPECT_EQ(planned, scene.has_dimension(dimension)) << scene.name << " " << dimension << "D";
+      EXPECT_EQ(has(long_plan(), scene, dimension), scene.has_dimension(dimension)) << scene.name;
+      if (!is_for_long) {
+        EXPECT_EQ(has(quick_plan(), scene, dimension), scene.has_dimension(dimension)) << scene.name;
+      }
     }
   }
 }
