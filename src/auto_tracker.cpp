@@ -59,8 +59,8 @@ void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
 
 template <int D, typename Real>
 void AutoTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) {
-  flags_.assign(boxes.size(), 0);
-  Change<D, Real> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = flags_, .rebuild = true};
+  // Nothing has changed, so that nobody asks for the flag of a box.
+  const Change<D, Real> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = {}, .rebuild = true};
   PairCounter none;
   const std::optional<Statistics> statistics = this->statistics();
   this->update_with(*follower_, nothing, none, none);

@@ -57,7 +57,6 @@ class AutoTracker final : public PairTracker<D, Real> {
   bool has_pairs_ = false;  // whether pairs_ are those of the last frame
   std::vector<Pair> pairs_;
   std::vector<Pair> found_;
-  std::vector<std::uint8_t> flags_;  // all 0
 };
 
 }  // namespace broadside::own

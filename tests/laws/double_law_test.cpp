@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -169,6 +170,21 @@ TEST_P(DoubleLaw, FindsThePairsBetweenTwoSetsOfDoubles) {
   });
 }
 
+/// Lets the tracker take a frame, and applies its events to the pairs that it told of before.
+template <int D>
+void take_frame(PairTracker<D, double>& tracker, const Boxes<D>& boxes, std::span<const BoxId> changed,
+                std::vector<Pair>& current) {
+  std::vector<Pair> begun;
+  std::vector<Pair> ended;
+  PairCollector begun_pairs(begun);
+  PairCollector ended_pairs(ended);
+  tracker.update({boxes, changed}, begun_pairs, ended_pairs);
+  std::vector<Pair> kept;
+  std::ranges::set_difference(current, ended, std::back_inserter(kept));
+  current.clear();
+  std::ranges::merge(kept, begun, std::back_inserter(current));
+}
+
 TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
   in_dimension([&]<int D>() {
     Dice dice(22);
@@ -185,15 +201,7 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
           boxes[i].max[axis] += step;
         }
       }
-      std::vector<Pair> begun;
-      std::vector<Pair> ended;
-      PairCollector begun_pairs(begun);
-      PairCollector ended_pairs(ended);
-      tracker->update({boxes, changed}, begun_pairs, ended_pairs);
-      std::vector<Pair> kept;
-      std::ranges::set_difference(current, ended, std::back_inserter(kept));
-      current.clear();
-      std::ranges::merge(kept, begun, std::back_inserter(current));
+      take_frame<D>(*tracker, boxes, changed, current);
       EXPECT_EQ(current, reference<D>(boxes)) << "frame " << frame;
     }
   });
@@ -222,15 +230,7 @@ void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double w
       if (kind > 0.95) boxes[i] = absent_box<D, double>();
       if (kind < 0.02 && algorithm.infinite_boxes) boxes[i].max.fill(std::numeric_limits<double>::infinity());
     }
-    std::vector<Pair> begun;
-    std::vector<Pair> ended;
-    PairCollector begun_pairs(begun);
-    PairCollector ended_pairs(ended);
-    tracker->update({boxes, changed}, begun_pairs, ended_pairs);
-    std::vector<Pair> kept;
-    std::ranges::set_difference(current, ended, std::back_inserter(kept));
-    current.clear();
-    std::ranges::merge(kept, begun, std::back_inserter(current));
+    take_frame<D>(*tracker, boxes, changed, current);
     ASSERT_EQ(current, reference<D>(boxes)) << spec.text() << ", frame " << frame << ", at " << where;
   }
 }
