@@ -23,6 +23,7 @@
 #include "algorithms/bvh_kept.hpp"
 #include "core/incremental_tracker.hpp"
 #include "kernels/kept_tree.hpp"
+#include "kernels/nowhere.hpp"
 
 namespace broadside::own {
 namespace {
@@ -163,8 +164,8 @@ class BvhTracker final : public core::IncrementalTracker<D> {
       const bool is = is_present(now);
       if (!was && !is) continue;
       Step step;
-      step.before = was ? before : nowhere;
-      step.now = is ? now : nowhere;
+      step.before = was ? before : kernels::nowhere<D>();
+      step.now = is ? now : kernels::nowhere<D>();
       step.id = index(id);
       step.every = refiltered || leaves_ == Leaves::widen;
       step.is_far = !was || !is || !overlap(before, now);
@@ -249,13 +250,6 @@ class BvhTracker final : public core::IncrementalTracker<D> {
     return tree_.bytes() + steps_.capacity() * sizeof(Step) + packed_.capacity() * sizeof(Box<D>) +
            (left_.capacity() + waiting_.capacity()) * sizeof(std::uint32_t) + is_waiting_.capacity();
   }
-
-  inline static const Box<D> nowhere = [] {
-    Box<D> box;
-    box.min.fill(std::numeric_limits<float>::quiet_NaN());
-    box.max.fill(std::numeric_limits<float>::quiet_NaN());
-    return box;
-  }();
 
   Leaves leaves_;
   std::optional<float> margin_;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "algorithms/bvh_buckets.hpp"
+#include "kernels/nowhere.hpp"
 
 namespace broadside::own {
 namespace {
@@ -37,15 +38,6 @@ Element* grown(std::vector<Element>& memory, std::size_t size) {
 /// What is neutral to bounds.
 template <int D>
 constexpr Box<D> none = absent_box<D>();
-
-/// What overlaps nothing, not even an infinite box.
-template <int D>
-constexpr Box<D> nowhere() {
-  Box<D> box;
-  box.min.fill(std::numeric_limits<float>::quiet_NaN());
-  box.max.fill(std::numeric_limits<float>::quiet_NaN());
-  return box;
-}
 
 }  // namespace
 
@@ -280,9 +272,9 @@ void BoxTreePacker<D>::build() {
     kernels::set_bounds(tree_, level);
     fill(level, gap_behind(level), none<D>);
   } while (tree_.levels[tree_.level_count - 1].size > fan_out);
-  for (const Gap gap : gaps_) fill(0, gap, nowhere<D>());
+  for (const Gap gap : gaps_) fill(0, gap, kernels::nowhere<D>());
   for (std::size_t level = 1; level < tree_.level_count; ++level)
-    fill(level, gap_behind(level), nowhere<D>());
+    fill(level, gap_behind(level), kernels::nowhere<D>());
 }
 
 template <int D>

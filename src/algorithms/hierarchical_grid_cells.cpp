@@ -12,6 +12,8 @@
 #include <limits>
 #include <utility>
 
+#include "kernels/nowhere.hpp"
+
 namespace broadside::own {
 namespace {
 
@@ -339,18 +341,12 @@ void HierarchicalGridCells<D>::write(std::uint32_t place, const Box<D>& box) {
 
 template <int D>
 void HierarchicalGridCells<D>::drop_stale() {
-  constexpr Box<D> none = [] {
-    Box<D> box{};
-    box.min.fill(std::numeric_limits<float>::quiet_NaN());
-    box.max.fill(std::numeric_limits<float>::quiet_NaN());
-    return box;
-  }();
   for (const std::uint32_t place : stale_) {
     kernels::BlockHead& head = heads_[place / block_size];
     const std::uint32_t others = ~(1U << place % block_size);
     head.used = static_cast<std::uint16_t>(head.used & others);
     head.moving = static_cast<std::uint16_t>(head.moving & others);
-    write(place, none);
+    write(place, kernels::nowhere<D>());
     std::size_t level = level_count_ - 1;
     while (levels_[level].first_cell > head.cell) --level;
     --levels_[level].boxes;

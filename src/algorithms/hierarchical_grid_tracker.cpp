@@ -8,10 +8,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "core/candidate_sink.hpp"
+#include "kernels/nowhere.hpp"
 
 namespace broadside::own {
 namespace {
@@ -22,14 +22,6 @@ constexpr std::size_t batch = 64;
 
 /// From so many queries is told how many blocks are usual.
 constexpr std::uint64_t telling_queries = 1024;
-
-template <int D>
-constexpr Box<D> nowhere() {
-  Box<D> box{};
-  box.min.fill(std::numeric_limits<float>::quiet_NaN());
-  box.max.fill(std::numeric_limits<float>::quiet_NaN());
-  return box;
-}
 
 }  // namespace
 
@@ -90,8 +82,8 @@ kernels::CellQuery<D> HierarchicalGridTracker<D>::file(const Change<D>& change, 
   const Box<D>& now = change.now[index(id)];
   const bool was = is_present(before);
   const bool is = is_present(now);
-  kernels::CellQuery<D> query{.before = was ? before : nowhere<D>(),
-                              .now = is ? now : nowhere<D>(),
+  kernels::CellQuery<D> query{.before = was ? before : kernels::nowhere<D>(),
+                              .now = is ? now : kernels::nowhere<D>(),
                               .bounds = is ? now : before,
                               .id = id};
   if (is) moving_.push_back(id);

@@ -3,11 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+
+#include "kernels/nowhere.hpp"
 
 namespace broadside::kernels {
 
@@ -15,15 +16,6 @@ inline constexpr std::size_t pack_size = 16;
 
 /// The end of a chain of packs.
 inline constexpr std::uint32_t no_pack = 0xffffffffU;
-
-/// The box that overlaps nothing, not even an infinite one.
-template <int D>
-constexpr Box<D> nowhere() noexcept {
-  Box<D> box{};
-  box.min.fill(std::numeric_limits<float>::quiet_NaN());
-  box.max.fill(std::numeric_limits<float>::quiet_NaN());
-  return box;
-}
 
 /// Sixteen boxes, one a lane. A lane without a box is nowhere. A box that moves in this frame stands here as
 /// the bounds of where it was and where it is.
