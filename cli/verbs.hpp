@@ -18,6 +18,7 @@ using Verb = std::function<Exit()>;
 
 /// `arguments` are the program's, itself first, for what reports say of it; they outlive the verb.
 Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
+Verb add_experiment(CLI::App& program, std::span<const std::string> arguments);
 Verb add_scene(CLI::App& program);
 Verb add_pairs(CLI::App& program);
 Verb add_info(CLI::App& program);

@@ -9,7 +9,7 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/measure/samples.hpp"
-#include "lab/report/machine.hpp"
+#include "lab/report/machine_json.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -22,28 +22,6 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
-std::string text_of(const Json& json) {
-  // A path need not be UTF-8, which JSON must be.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json machine_json() {
-  const Machine machine = this_machine();
-  return {{"cpu", or_null(machine.cpu)},
-          {"cores", machine.cores == 0 ? Json() : Json(machine.cores)},
-          {"memory_bytes", machine.memory_bytes == 0 ? Json() : Json(machine.memory_bytes)},
-          {"os", or_null(machine.os)}};
-}
-
-Json build_json() {
-  const Build build = this_build();
-  return {{"version", build.version},
-          {"revision", or_null(build.revision)},
-          {"compiler", build.compiler},
-          {"type", or_null(build.type)},
-          {"flags", or_null(build.flags)}};
-}
 
 Json measurement_json(const CaseResult& result, const Measurement& measurement) {
   const Case& of = result.of;
@@ -100,14 +78,15 @@ std::string json_of(const Comparison& comparison, std::span<const std::string> c
   // One measurement a line: short, and readable where two results are compared.
   std::string text =
       fmt::format("{{\n\"schema\": \"broadside.results/1\",\n\"machine\": {},\n\"build\": {},\n",
-                  text_of(machine_json()), text_of(build_json()));
-  text += fmt::format("\"command\": {},\n\"stopped\": {},\n\"measurements\": [",
-                      text_of(std::vector<std::string>(command.begin(), command.end())), comparison.stopped);
+                  json_text(json_of(this_machine())), json_text(json_of(this_build())));
+  text +=
+      fmt::format("\"command\": {},\n\"stopped\": {},\n\"measurements\": [",
+                  json_text(std::vector<std::string>(command.begin(), command.end())), comparison.stopped);
   std::string_view separator = "\n";
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {
       text += separator;
-      text += text_of(measurement_json(result, measurement));
+      text += json_text(measurement_json(result, measurement));
       separator = ",\n";
     }
   }

@@ -1,0 +1,136 @@
+// broadside experiment: the paper's claims, tested.
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "cli/verbs.hpp"
+#include "lab/experiments/results.hpp"
+#include "lab/numbers.hpp"
+#include "lab/readers/write_file.hpp"
+
+namespace broadside::cli {
+namespace {
+
+struct ExperimentArguments {
+  std::vector<std::string> names;
+  bool is_quick = false;
+  bool is_list = false;
+  std::string from;
+  std::string json;
+};
+
+/// Those that were named, each once, by number; all if none was.
+std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names) {
+  std::vector<const lab::Experiment*> all;
+  if (names.empty()) {
+    for (const lab::Experiment& experiment : lab::experiments()) all.push_back(&experiment);
+  }
+  for (const std::string& name : names) all.push_back(&lab::find_experiment(name));
+  std::ranges::sort(all, {}, &lab::Experiment::number);
+  const auto [begin, end] = std::ranges::unique(all);
+  all.erase(begin, end);
+  return all;
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Unusable(fmt::format("{}: cannot be read; expected results of experiments", path));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void print_list() {
+  for (const lab::Experiment& experiment : lab::experiments())
+    print(fmt::format("{:2}  {:20}  {} (section {})\n", experiment.number, experiment.name, experiment.title,
+                      experiment.section));
+}
+
+void print_result(const lab::ExperimentResult& result) {
+  print(lab::text_of(result) + '\n');
+  flush_output();
+}
+
+/// Results of an earlier run, judged anew.
+lab::ExperimentResults read(const ExperimentArguments& arguments) {
+  lab::ExperimentResults results = lab::read_experiments(content_of(arguments.from), arguments.from);
+  const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
+  std::erase_if(results.results, [&](const lab::ExperimentResult& result) {
+    return std::ranges::find(wanted, result.experiment) == wanted.end();
+  });
+  if (results.results.empty())
+    throw Unusable(
+        fmt::format("{}: no results of {}; expected some", arguments.from, fmt::join(arguments.names, ", ")));
+  for (const lab::ExperimentResult& result : results.results) print_result(result);
+  return results;
+}
+
+lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<const std::string> command) {
+  const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
+  ProgressLine progress;
+  const lab::Catalogue catalogue;
+  const lab::Laboratory laboratory(
+      catalogue, arguments.is_quick,
+      {.stop = interrupted, .progress = [&](std::string_view what) { progress.show(what); }});
+  lab::ExperimentResults results = lab::begin_results(command, arguments.is_quick);
+  on_signal(OnSignal::note_then_end);
+  lab::do_experiments(wanted, laboratory, results, [&](const lab::ExperimentResult& result) {
+    progress.clear();
+    print_result(result);
+  });
+  return results;
+}
+
+Exit run(const ExperimentArguments& arguments, std::span<const std::string> command) {
+  if (arguments.is_list) {
+    print_list();
+    return Exit::fine;
+  }
+  if (!arguments.json.empty()) check_writable("--json", arguments.json);
+  if (!arguments.json.empty() && !arguments.from.empty())
+    check_is_other_file("--json", arguments.json, arguments.from);
+  const lab::ExperimentResults results =
+      arguments.from.empty() ? measure(arguments, command) : read(arguments);
+  print(lab::summary_of(results));
+  if (!arguments.json.empty() && !results.results.empty()) {
+    on_signal(OnSignal::note);
+    const std::string text = lab::json_of(results);
+    lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
+    if (results.stopped)
+      say(fmt::format("stopped; {} holds the {} that had ended", arguments.json,
+                      lab::counted(results.results.size(), "experiment", "experiments")));
+  } else if (!arguments.json.empty()) {
+    say(fmt::format("stopped before an experiment had ended; {} is not written", arguments.json));
+  }
+  return results.stopped ? Exit::interrupted : Exit::fine;
+}
+
+}  // namespace
+
+Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
+  const auto arguments = std::make_shared<ExperimentArguments>();
+  CLI::App* const verb = program.add_subcommand(
+      "experiment",
+      "Tests the claims of the paper, each by an experiment with a verdict. All of them take up to twenty "
+      "minutes, with --quick up to three.");
+  verb->add_option("names", arguments->names,
+                   "Names or numbers of experiments, as --list shows them (standard: all)");
+  verb->add_flag("--list", arguments->is_list, "List the experiments");
+  verb->add_flag("--quick", arguments->is_quick, "Less boxes and fewer samples, for a first impression");
+  verb->add_option("--from", arguments->from,
+                   "Measure nothing; judge the results in this file, which --json has written")
+      ->type_name("FILE");
+  verb->add_option("--json", arguments->json, "Write the results to this file as well")->type_name("FILE");
+  return [arguments, command] { return run(*arguments, command); };
+}
+
+}  // namespace broadside::cli

@@ -1,0 +1,11 @@
+// The experiments' descriptions: each is defined at the end of the file of its name, and listed in
+// experiments.cpp.
+#pragma once
+
+#include "lab/experiments/experiment.hpp"
+
+namespace broadside::lab {
+
+Experiment brute_force_tests();
+
+}  // namespace broadside::lab

@@ -1,0 +1,45 @@
+// The one list of experiments.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "broadside/error.hpp"
+
+#include "lab/experiments/descriptions.hpp"
+
+namespace broadside::lab {
+
+std::string_view name(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::holds:
+      return "holds";
+    case Verdict::holds_when:
+      return "holds when";
+    case Verdict::does_not_hold:
+      return "does not hold";
+  }
+  return "";
+}
+
+std::string Finding::verdict_text() const {
+  return std::string(name(verdict)) + (verdict == Verdict::holds_when ? " " + condition : "");
+}
+
+std::span<const Experiment> experiments() {
+  static const std::vector<Experiment> list = {
+      brute_force_tests(),
+  };
+  return list;
+}
+
+const Experiment& find_experiment(std::string_view text) {
+  std::vector<std::string> known;
+  for (const Experiment& experiment : experiments()) {
+    if (experiment.name == text || std::to_string(experiment.number) == text) return experiment;
+    known.push_back(fmt::format("{} {}", experiment.number, experiment.name));
+  }
+  throw InvalidSpec(
+      fmt::format("no experiment '{}'; expected a name or number of: {}", text, fmt::join(known, ", ")));
+}
+
+}  // namespace broadside::lab

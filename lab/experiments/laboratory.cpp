@@ -1,0 +1,85 @@
+// What experiments measure with.
+#include "lab/experiments/laboratory.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "lab/measure/compare.hpp"
+#include "lab/measure/samples.hpp"
+
+namespace broadside::lab {
+namespace {
+
+Cell count_cell(const Measurement& measurement, std::uint64_t Statistics::*count) {
+  return measurement.statistics ? Cell(static_cast<double>(*measurement.statistics.*count)) : Cell();
+}
+
+}  // namespace
+
+Effort Laboratory::effort() const {
+  if (quick_) {
+    return {.budget_seconds = 0.25,
+            .history_seconds = 0.5,
+            .share_seconds = 0.01,
+            .least_samples = 3,
+            .most_samples = 50,
+            .single_sample_seconds = 0.1};
+  }
+  return {.budget_seconds = 2,
+          .history_seconds = 4,
+          .share_seconds = 0.1,
+          .least_samples = 5,
+          .most_samples = 200,
+          .single_sample_seconds = 1};
+}
+
+CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request) const {
+  return measure(algorithms, request, effort());
+}
+
+CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
+                               const Effort& effort) const {
+  CompareOptions options;
+  options.algorithms = algorithms;
+  options.plan = {request};
+  options.effort = effort;
+  options.watch = watch_;
+  Comparison comparison = compare(*catalogue_, options);
+  if (comparison.stopped) throw Stopped();
+  if (comparison.cases.empty())
+    throw std::runtime_error(fmt::format("scene '{}' could not be measured", request.scene));
+  for (const Measurement& measurement : comparison.cases[0].measurements) {
+    if (measurement.outcome == Outcome::failed)
+      throw std::runtime_error(fmt::format("scene '{}': {}", request.scene, measurement.reason));
+  }
+  return std::move(comparison.cases[0]);
+}
+
+const Measurement& measurement_of(const CaseResult& result, std::string_view spec) {
+  const auto found = std::ranges::find(result.measurements, spec, &Measurement::algorithm);
+  if (found == result.measurements.end()) {
+    std::vector<std::string_view> known;
+    for (const Measurement& measurement : result.measurements) known.push_back(measurement.algorithm);
+    throw std::invalid_argument(
+        fmt::format("'{}' was not measured; expected one of: {}", spec, fmt::join(known, ", ")));
+  }
+  return *found;
+}
+
+Cell time_cell(const Measurement& measurement) {
+  return measurement.samples_ms.empty() ? Cell() : Cell(median(measurement.samples_ms));
+}
+
+Cell tests_cell(const Measurement& measurement) { return count_cell(measurement, &Statistics::tests); }
+
+Cell references_cell(const Measurement& measurement) {
+  return count_cell(measurement, &Statistics::references);
+}
+
+Cell bytes_cell(const Measurement& measurement) {
+  return measurement.own_bytes ? Cell(static_cast<double>(*measurement.own_bytes)) : Cell();
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,62 @@
+// What experiments measure with: algorithms in turns on a scene, every result checked.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "lab/catalogue.hpp"
+#include "lab/experiments/table.hpp"
+#include "lab/measure/contest.hpp"
+#include "lab/measure/measurement.hpp"
+#include "lab/measure/plan.hpp"
+
+namespace broadside::lab {
+
+/// The place where an experiment is done: how thorough it is, and who watches.
+class Laboratory {
+ public:
+  /// `quick` for a first impression: smaller numbers and fewer samples. All fifteen experiments then take
+  /// less than three minutes on two cores, and less than twenty otherwise.
+  Laboratory(const Catalogue& catalogue, bool quick, Watch watch = {})
+      : catalogue_(&catalogue), quick_(quick), watch_(std::move(watch)) {}
+
+  bool is_quick() const noexcept { return quick_; }
+
+  /// One of two values, by how thorough the experiment is.
+  template <typename Value>
+  Value either(Value thorough, Value quick) const {
+    return quick_ ? quick : thorough;
+  }
+
+  /// The time that a call of measure() may take, an algorithm: what is slower than its budget is skipped.
+  Effort effort() const;
+
+  /// Measures the algorithms that the list names (specs, as Catalogue::select reads them) in turns on a
+  /// scene. Throws std::runtime_error if one of them breaks the law, and Stopped.
+  CaseResult measure(const std::string& algorithms, const CaseRequest& request) const;
+  CaseResult measure(const std::string& algorithms, const CaseRequest& request, const Effort& effort) const;
+
+  /// Shows what is going on and asks whether to go on. Throws Stopped.
+  void at(std::string_view what) const { watch_.at(what); }
+
+ private:
+  const Catalogue* catalogue_;
+  bool quick_;
+  Watch watch_;
+};
+
+/// The measurement of the algorithm with this spec. Throws std::invalid_argument if it is not among them.
+const Measurement& measurement_of(const CaseResult& result, std::string_view spec);
+
+/// The median time in milliseconds; nothing where it was skipped.
+Cell time_cell(const Measurement& measurement);
+
+/// Tests of pairs, and references, a call or a frame; nothing where they are not counted.
+Cell tests_cell(const Measurement& measurement);
+Cell references_cell(const Measurement& measurement);
+
+/// What the algorithm holds between calls, in bytes; nothing where that is not counted.
+Cell bytes_cell(const Measurement& measurement);
+
+}  // namespace broadside::lab

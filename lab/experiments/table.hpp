@@ -1,0 +1,87 @@
+// Tables of what an experiment measured, and the charts that show them best.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace broadside::lab {
+
+/// A column: what it is, in lower case as it stands in a heading, and the unit of its numbers ("ms", "bytes";
+/// empty for a count, a ratio or text).
+struct Column {
+  std::string name;
+  std::string unit{};
+
+  friend bool operator==(const Column&, const Column&) = default;
+};
+
+/// A finite number, a text, or nothing where there is nothing to say (an algorithm that was skipped).
+using Cell = std::variant<std::monostate, double, std::string>;
+
+/// How a chart shows a table.
+enum class ChartKind {
+  lines,  ///< y over x, a line for each value of `series`
+  bars,   ///< y for each x (which may be text), a bar for each value of `series`
+  map     ///< a field for each x and y, coloured by the text in `value`: who wins where
+};
+
+/// "lines", "bars" or "map".
+std::string_view name(ChartKind kind) noexcept;
+
+/// A chart of a table, in names of its columns.
+struct Chart {
+  std::string title;
+  ChartKind kind = ChartKind::lines;
+  std::string x;
+  std::string y;
+  std::string series{};  ///< empty: there is one
+  std::string value{};   ///< of a map
+  bool log_x = false;
+  bool log_y = false;
+  /// Only rows in which each of these columns has this text are shown; empty: all.
+  std::vector<std::pair<std::string, std::string>> where{};
+
+  friend bool operator==(const Chart&, const Chart&) = default;
+};
+
+/// Rows of cells under columns.
+struct Table {
+  std::string name;   ///< as in results: lower case, digits and underscores
+  std::string title;  ///< what it shows, in a line
+  std::vector<Column> columns;
+  std::vector<Chart> charts{};
+  std::vector<std::vector<Cell>> rows{};
+
+  friend bool operator==(const Table&, const Table&) = default;
+
+  /// Adds a row. Throws std::invalid_argument if there are not as many cells as columns, or one is a number
+  /// that is not finite.
+  void add(std::vector<Cell> row);
+
+  /// The place of a column. Throws std::invalid_argument if there is none of that name.
+  std::size_t column(std::string_view name) const;
+
+  /// Those of its rows whose cell in `column` is `cell`, as a table.
+  Table where(std::string_view column, const Cell& cell) const;
+
+  /// A column's numbers and texts, row by row; rows with none are left out. Two columns of numbers go
+  /// together only by points().
+  std::vector<double> numbers(std::string_view column) const;
+  std::vector<std::string> texts(std::string_view column) const;
+
+  /// Each different text of a column, in the order in which they first come; likewise numbers.
+  std::vector<std::string> distinct_texts(std::string_view column) const;
+  std::vector<double> distinct_numbers(std::string_view column) const;
+
+  /// Of each row with a number in both columns: the two.
+  std::vector<std::pair<double, double>> points(std::string_view x, std::string_view y) const;
+};
+
+/// The table of that name. Throws std::invalid_argument if there is none.
+const Table& table_named(const std::vector<Table>& tables, std::string_view name);
+
+}  // namespace broadside::lab
