@@ -7,5 +7,6 @@
 namespace broadside::lab {
 
 Experiment brute_force_tests();
+Experiment overtaking();
 
 }  // namespace broadside::lab

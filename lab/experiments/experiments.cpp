@@ -28,6 +28,7 @@ std::string Finding::verdict_text() const {
 std::span<const Experiment> experiments() {
   static const std::vector<Experiment> list = {
       brute_force_tests(),
+      overtaking(),
   };
   return list;
 }
