@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <hwy/targets.h>
 
+#include "broadside/instruction_set.hpp"
 #include "broadside/sinks.hpp"
 
 #include "kernels/run.hpp"
@@ -37,11 +37,10 @@ kernels::RunBuffer<D> run_of(std::size_t count, std::uint64_t seed) {
   return run;
 }
 
-/// Times one kernel, `call(a, b, pairs)`, with the kernels of one of Highway's targets.
+/// Times one kernel, `call(a, b, pairs)`, with the kernels of one instruction set.
 template <int D, typename Call>
-void time_kernel(benchmark::State& state, std::int64_t target, Call call) {
-  hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+void time_kernel(benchmark::State& state, const std::string& name, Call call) {
+  limit_instruction_set(name);
   const auto count = static_cast<std::size_t>(state.range(0));
   kernels::RunBuffer<D> a = run_of<D>(count, 1);
   kernels::RunBuffer<D> b = run_of<D>(count, 2);
@@ -51,14 +50,13 @@ void time_kernel(benchmark::State& state, std::int64_t target, Call call) {
   pairs.flush();
   state.counters["tests"] = {static_cast<double>(tests), benchmark::Counter::kIsRate};
   state.counters["pairs"] = {static_cast<double>(pairs.count()), benchmark::Counter::kIsRate};
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  limit_instruction_set("");
 }
 
 template <int D>
-void register_kernels(std::int64_t target) {
+void register_kernels(const std::string& target) {
   using Run = kernels::Run<D>;
-  const std::string end = "/" + std::to_string(D) + "D/" + hwy::TargetName(target);
+  const std::string end = "/" + std::to_string(D) + "D/" + target;
   const auto add = [&](const std::string& name, auto call) {
     benchmark::RegisterBenchmark((name + end).c_str(), time_kernel<D, decltype(call)>, target, call)
         ->RangeMultiplier(4)
@@ -74,7 +72,7 @@ void register_kernels(std::int64_t target) {
 }  // namespace broadside::bench
 
 int main(int count, char** arguments) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+  for (const std::string& target : broadside::instruction_sets()) {
     broadside::bench::register_kernels<2>(target);
     broadside::bench::register_kernels<3>(target);
   }

@@ -1,6 +1,10 @@
 // Which instruction set the kernels are dispatched to.
 #include "broadside/instruction_set.hpp"
 
+#include <cstdint>
+
+#include "broadside/error.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/instruction_set.cpp"
 #include <hwy/foreach_target.h>
@@ -14,10 +18,43 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace broadside {
+namespace {
+
+/// Takes `target` for all that the processor has, or, if it is 0, what it has. Highway has no other way to
+/// narrow the choice at run time than the one for its own tests.
+void choose(std::int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+/// The processor's and the library's targets, whatever was chosen.
+const std::vector<std::int64_t>& targets() {
+  static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+  return all;
+}
+
+}  // namespace
 
 HWY_EXPORT(target_name);
 
 std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> names;
+  for (const std::int64_t target : targets()) names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+void limit_instruction_set(std::string_view name) {
+  if (name.empty()) return choose(0);
+  std::string known;
+  for (const std::int64_t target : targets()) {
+    if (hwy::TargetName(target) == name) return choose(target);
+    known += (known.empty() ? "" : ", ") + std::string(hwy::TargetName(target));
+  }
+  throw InvalidSpec("no instruction set '" + std::string(name) + "' here; expected one of: " + known +
+                    ", or nothing for the best");
+}
 
 }  // namespace broadside
 #endif  // HWY_ONCE

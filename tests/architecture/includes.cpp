@@ -28,7 +28,8 @@ const std::vector<Rule>& rules() {
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
       {"src/kernels/",
-       standard + R"(|"broadside/(box|pair|instruction_set)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
+       standard +
+           R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
       {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
       {"src/double_follower", inner + R"(|"(double_follower|algorithms/hierarchical_grid_tracker)\.hpp")"},

@@ -8,13 +8,16 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/box.hpp"
+#include "broadside/error.hpp"
 #include "broadside/instruction_set.hpp"
 #include "broadside/sinks.hpp"
 
 #include "kernels/sweep.hpp"
+#include "message.hpp"
 #include "tests/instruction_sets.hpp"
 
 namespace broadside::kernels {
@@ -178,7 +181,7 @@ void sort_run(Entries<D>& entries, float slack = 0) {
 /// Runs `body.operator()<D>(kind, entries, others)` on every instruction set and sizes from 0 to 200.
 template <typename Body>
 void on_all(Body body) {
-  for (const std::string& name : instruction_sets_here()) {
+  for (const std::string& name : instruction_sets()) {
     const OnInstructionSet chosen(name);
     ASSERT_EQ(instruction_set(), name);
     for (const Kind& kind : kinds) {
@@ -198,11 +201,26 @@ void on_all(Body body) {
 }
 
 TEST(Kernels, AreThereForPlainCppAtLeast) {
-  const std::vector<std::string> names = instruction_sets_here();
+  const std::vector<std::string> names = instruction_sets();
   ASSERT_FALSE(names.empty());
   for (const std::string& name : names) EXPECT_TRUE(is_instruction_set(name)) << name;
   EXPECT_EQ(instruction_set(), names.front());
   EXPECT_FALSE(is_instruction_set("Unknown"));
+}
+
+TEST(Kernels, RunOnTheInstructionSetThatTheyAreLimitedTo) {
+  const std::vector<std::string> names = instruction_sets();
+  for (const std::string& name : names) {
+    limit_instruction_set(name);
+    EXPECT_EQ(instruction_set(), name);
+    EXPECT_EQ(instruction_sets(), names);
+    EXPECT_THAT(message_of<InvalidSpec>([] { limit_instruction_set("AVX9"); }),
+                testing::AllOf(testing::HasSubstr("'AVX9'"), testing::HasSubstr(names.front()),
+                               testing::HasSubstr(names.back())));
+    EXPECT_EQ(instruction_set(), name);
+  }
+  limit_instruction_set("");
+  EXPECT_EQ(instruction_set(), names.front());
 }
 
 TEST(Kernels, SweepARunAsDefinedOnEveryInstructionSet) {

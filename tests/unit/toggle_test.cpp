@@ -62,7 +62,7 @@ Events toggled(const std::vector<Box<D>>& boxes, std::uint32_t id, const Box<D>&
 /// Runs `body.operator()<D>(boxes, id, before, now, refiltered)` on every instruction set, for 0 to 70 boxes.
 template <typename Body>
 void on_all(Body body) {
-  for (const std::string& name : instruction_sets_here()) {
+  for (const std::string& name : instruction_sets()) {
     const OnInstructionSet chosen(name);
     ASSERT_EQ(instruction_set(), name);
     SCOPED_TRACE(name);
