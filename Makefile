@@ -29,7 +29,8 @@ clang: tests-clang ## The tests in a build by clang
 format: setup-ci ## Put every source file in the project's format
 	$(sources) | xargs clang-format -i
 
-lint: check-format build/clang/build.ninja ## Check the format and what clang-tidy says of library, lab and program
+lint: check-format build/clang/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
+	web/node_modules/.bin/tsc --noEmit --project web
 	find $(wildcard src lab cli examples) -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
 
 check-format: setup-ci

@@ -1,0 +1,116 @@
+// Bars: one or several for each text. They lie where the texts are long or many, so that these can be read.
+import {
+  above, axis_name, below, category_axis, frame, legend_height, shortened, text_width, value_axis,
+} from "./frame.ts";
+import type { AxisSpec, Drawn, Place } from "./frame.ts";
+import { rounded } from "./numbers.ts";
+import { colours_of } from "./theme.ts";
+
+export interface BarsSpec {
+  title: string;
+  x: { name: string; unit: string };
+  y: AxisSpec;
+  labels: readonly string[];
+  /** Of each: its name (empty where there is only one) and a number, or none, for each label. */
+  series: readonly { name: string; values: readonly (number | null)[] }[];
+  /** Of each label; only where there is one series. */
+  colours?: readonly string[];
+  /** Where bars begin, marked by a line; standard: 0, or where a logarithmic axis begins. */
+  from?: number;
+  value_text?: (value: number) => string;
+}
+
+function describe(spec: BarsSpec, text: (value: number) => string): string {
+  const most = 40;
+  const parts = spec.labels.slice(0, most).map((label, i) => {
+    const values = spec.series.map(({ name, values }) => {
+      const value = values[i];
+      return `${name === "" ? "" : name + " "}${value === null || value === undefined ? "none" : text(value)}`;
+    });
+    return ` ${label}: ${values.join(", ")}.`;
+  });
+  const more = spec.labels.length > most ? ` And ${spec.labels.length - most} more.` : "";
+  return `${spec.title}. Bar chart of ${axis_name(spec.y)} by ${axis_name(spec.x)}.${parts.join("")}${more}`;
+}
+
+/** Bars of `spec`, the first label at the top or at the left. */
+export function draw_bars(spec: BarsSpec, place: Place): Drawn {
+  const { theme } = place;
+  const text = spec.value_text ?? rounded;
+  const description = describe(spec, text);
+  const names = spec.series.map((series) => series.name);
+  const colours = colours_of(names, theme);
+  const single = spec.series.length === 1;
+  const widest = Math.max(0, ...spec.labels.map(text_width));
+  const lying = widest > (place.width - 60) / Math.max(1, spec.labels.length) - 10 || spec.labels.length > 12;
+  const legend = legend_height(names, place.width);
+  const values = spec.series.flatMap((series) => series.values.filter((value) => value !== null));
+  // A bar on a logarithmic axis begins where the axis does, so the least one needs room to be seen.
+  const ends = spec.from !== undefined ? [...values, spec.from]
+    : spec.y.log ? [...values, ...values.map((value) => value / 1.3)] : values;
+  const axis = value_axis(spec.y, ends, place);
+  const number_axis: Record<string, unknown> = {
+    ...axis,
+    scale: false,
+    ...(axis["min"] === undefined ? {} : { startValue: spec.from ?? axis["min"] }),
+  };
+  const most = place.width < 520 ? 22 : 42;
+  const labels = spec.labels.map((label) => (lying ? shortened(label, most) : label));
+  const label_axis = category_axis(labels, place);
+  const thick = single ? 20 : Math.max(9, 14 - spec.series.length);
+  const height = lying
+    ? legend + 56 + spec.labels.length * (single ? 24 : spec.series.length * thick + 12)
+    : legend + Math.round(Math.min(360, Math.max(260, place.width * 0.5)));
+  return {
+    description,
+    height,
+    option: {
+      ...frame(names, description, place),
+      grid: lying
+        ? {
+          left: Math.max(0, ...labels.map(text_width)) + 12, right: single ? 56 : 20, top: legend + 6, bottom: 50,
+          outerBoundsMode: "none",
+        }
+        : { left: 4, right: 20, top: legend + 30, bottom: 30, outerBoundsMode: "same", outerBoundsContain: "all" },
+      xAxis: lying
+        ? { ...number_axis, ...below(axis_name(spec.y), place) }
+        : { ...label_axis, ...below(axis_name(spec.x), place) },
+      yAxis: lying
+        ? { ...label_axis, inverse: true, axisLabel: { color: theme.text, fontSize: 12, interval: 0 } }
+        : { ...number_axis, ...above(axis_name(spec.y), place) },
+      tooltip: {
+        ...frame(names, description, place).tooltip,
+        trigger: "axis",
+        axisPointer: { type: "shadow" },
+        valueFormatter: (value: unknown) => (typeof value === "number" ? text(value) : "–"),
+      },
+      series: spec.series.map((series, i) => ({
+        type: "bar" as const,
+        name: series.name === "" ? axis_name(spec.y) : series.name,
+        color: colours[i] ?? theme.muted,
+        barMaxWidth: lying ? thick : 48,
+        barGap: "10%",
+        data: series.values.map((value, at) => ({
+          value: value ?? "-",
+          ...(single && spec.colours?.[at] !== undefined ? { itemStyle: { color: spec.colours[at] } } : {}),
+        })),
+        label: {
+          show: single,
+          position: lying ? "right" as const : "top" as const,
+          color: theme.text,
+          fontSize: 11,
+          formatter: (bar: { value: unknown }) => (typeof bar.value === "number" ? text(bar.value) : ""),
+        },
+        ...(i === 0 && spec.from !== undefined ? {
+          markLine: {
+            silent: true,
+            symbol: "none",
+            label: { show: false },
+            lineStyle: { color: theme.text, type: "dashed" as const, width: 1 },
+            data: [lying ? { xAxis: spec.from } : { yAxis: spec.from }],
+          },
+        } : {}),
+      })),
+    },
+  };
+}

@@ -1,0 +1,97 @@
+// A comparison's cases: who is how fast in each, and over all. The rules are those of lab/report/ranking.cpp.
+import type { Measurement } from "./data.ts";
+import { geometric_mean, grouped } from "./numbers.ts";
+
+/** What was measured on the same boxes. */
+export interface Case {
+  name: string;
+  scene: string;
+  dimension: number;
+  boxes: number;
+  moving: number;
+  mode: "find" | "track";
+  floor_ms: number | null;
+  measurements: Measurement[];
+}
+
+export interface Timed extends Measurement {
+  median_ms: number;
+}
+
+export function is_timed(measurement: Measurement): measurement is Timed {
+  return measurement.median_ms !== null;
+}
+
+export function percent(share: number): string {
+  return `${Number((share * 100).toPrecision(2))} %`;
+}
+
+/** An algorithm, with its threads where there are several. */
+export function label_of(measurement: Measurement): string {
+  return measurement.threads > 1 ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
+}
+
+/** Of measurements, in the order in which the cases come. */
+export function cases_of(measurements: readonly Measurement[]): Case[] {
+  const cases = new Map<string, Case>();
+  for (const measurement of measurements) {
+    const { scene, dimension, boxes, moving, mode, frames, drift, teleport, floor_ms } = measurement;
+    const key = JSON.stringify([scene, dimension, boxes, moving, mode, frames, drift, teleport, measurement.seeds]);
+    let found = cases.get(key);
+    if (found === undefined) {
+      const moves = mode === "track" ? `, ${percent(moving)} moving` : "";
+      const name = `${scene}, ${dimension}D, ${grouped(boxes)} boxes${moves}`;
+      found = { name, scene, dimension, boxes, moving, mode, floor_ms, measurements: [] };
+      cases.set(key, found);
+    }
+    found.measurements.push(measurement);
+  }
+  return [...cases.values()];
+}
+
+/** Those that have a time, the fastest first. */
+export function ranking(of: Case): Timed[] {
+  return of.measurements.filter(is_timed).sort((a, b) => a.median_ms - b.median_ms);
+}
+
+/** The time of the fastest peer over that of the fastest of ours; undefined where one of them is not there. */
+export function lead_of(of: Case): { ratio: number; own: Timed; peer: Timed } | undefined {
+  const ranked = ranking(of);
+  const own = ranked.find((measurement) => measurement.kind === "own");
+  const peer = ranked.find((measurement) => measurement.kind === "peer");
+  return own === undefined || peer === undefined ? undefined : { ratio: peer.median_ms / own.median_ms, own, peer };
+}
+
+export interface Standing {
+  algorithm: string;
+  kind: Measurement["kind"];
+  cases: number;
+  fastest: number;
+  /** Of its times over those of the fastest, the geometric mean. */
+  ratio: number;
+}
+
+/** Of every algorithm that has a time, the best first. */
+export function standings(cases: readonly Case[]): Standing[] {
+  const ratios = new Map<string, { kind: Measurement["kind"]; ratios: number[]; fastest: number }>();
+  for (const of of cases) {
+    const ranked = ranking(of);
+    const best = ranked[0]?.median_ms ?? 0;
+    for (const measurement of ranked) {
+      const label = label_of(measurement);
+      const entry = ratios.get(label) ?? { kind: measurement.kind, ratios: [], fastest: 0 };
+      ratios.set(label, entry);
+      entry.ratios.push(measurement.median_ms / best);
+      if (measurement.median_ms === best) ++entry.fastest;
+    }
+  }
+  return [...ratios]
+    .map(([algorithm, entry]) => ({
+      algorithm,
+      kind: entry.kind,
+      cases: entry.ratios.length,
+      fastest: entry.fastest,
+      ratio: geometric_mean(entry.ratios),
+    }))
+    .sort((a, b) => a.ratio - b.ratio);
+}

@@ -1,0 +1,162 @@
+// The charts of a comparison.
+import { draw_bars } from "./bars.ts";
+import { is_timed, label_of, lead_of, percent, ranking, standings } from "./comparison.ts";
+import type { Case } from "./comparison.ts";
+import type { Measurement } from "./data.ts";
+import type { Drawn, Place } from "./frame.ts";
+import { draw_lines } from "./lines.ts";
+import { draw_map } from "./map.ts";
+import { ratio_text, short, time_text } from "./numbers.ts";
+import { family_colour } from "./theme.ts";
+import type { Theme } from "./theme.ts";
+
+const time = { name: "time", unit: "ms", log: true };
+
+function colour_of(measurement: { algorithm: string }, theme: Theme): string {
+  return family_colour(measurement.algorithm, theme) ?? theme.muted;
+}
+
+/** The times of all algorithms in a case, as multiples of the fastest. */
+export function draw_ratios(of: Case, place: Place): Drawn {
+  const ranked = ranking(of);
+  const best = ranked[0]?.median_ms ?? 1;
+  return draw_bars({
+    title: `Times as multiples of the fastest: ${of.name}`,
+    x: { name: "algorithm", unit: "" },
+    y: { name: "times the fastest's time", unit: "", log: true },
+    labels: ranked.map(label_of),
+    series: [{ name: "", values: ranked.map((measurement) => measurement.median_ms / best) }],
+    colours: ranked.map((measurement) => colour_of(measurement, place.theme)),
+    from: 1,
+    value_text: ratio_text,
+  }, place);
+}
+
+/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
+export function draw_standings(cases: readonly Case[], place: Place): Drawn {
+  const all = standings(cases);
+  return draw_bars({
+    title: "Times as multiples of the fastest, geometric mean of the cases that an algorithm does",
+    x: { name: "algorithm", unit: "" },
+    y: { name: "times the fastest's time", unit: "", log: true },
+    labels: all.map((standing) => standing.algorithm),
+    series: [{ name: "", values: all.map((standing) => standing.ratio) }],
+    colours: all.map((standing) => colour_of(standing, place.theme)),
+    from: 1,
+    value_text: ratio_text,
+  }, place);
+}
+
+/** How many times as fast the fastest of ours is as the fastest peer, case by case. */
+export function draw_leads(cases: readonly Case[], place: Place): Drawn {
+  const leads = cases.flatMap((of) => {
+    const lead = lead_of(of);
+    return lead === undefined ? [] : [{ of, ...lead }];
+  });
+  return draw_bars({
+    title: "The fastest peer's time over that of the fastest of ours",
+    x: { name: "case", unit: "" },
+    y: { name: "times as fast", unit: "", log: true },
+    labels: leads.map(({ of }) => short_name(of)),
+    series: [{ name: "", values: leads.map(({ ratio }) => ratio) }],
+    colours: leads.map(({ own }) => colour_of(own, place.theme)),
+    from: 1,
+    value_text: ratio_text,
+  }, place);
+}
+
+/** A case in as few characters as tell it: "uniform 2D 10k". */
+export function short_name(of: Case): string {
+  return `${of.scene.replace(":boxes=", " ")} ${of.dimension}D ${size_text(of)}`;
+}
+
+/** Its boxes, and how many of these move. */
+function size_text(of: Case): string {
+  return short(Number(of.boxes.toPrecision(3))) + (of.mode === "track" ? `, ${percent(of.moving)}` : "");
+}
+
+/** The scenes that were measured with several numbers of boxes, all else being equal. */
+export function scaled_scenes(cases: readonly Case[]): { scene: string; dimension: number; mode: string; moving: number }[] {
+  const groups = new Map<string, { first: Case; counts: Set<number> }>();
+  for (const of of cases) {
+    const key = JSON.stringify([of.scene, of.dimension, of.mode, of.mode === "track" ? percent(of.moving) : 0]);
+    const group = groups.get(key) ?? { first: of, counts: new Set() };
+    groups.set(key, group);
+    group.counts.add(of.boxes);
+  }
+  return [...groups.values()].filter(({ counts }) => counts.size > 1)
+    .map(({ first: { scene, dimension, mode, moving } }) => ({ scene, dimension, mode, moving }));
+}
+
+/** Time over the number of boxes in one of scaled_scenes(), a line for each of at most `most` algorithms. */
+export function draw_scaling(
+  cases: readonly Case[], of: ReturnType<typeof scaled_scenes>[number], place: Place,
+  kinds: readonly Measurement["kind"][] = ["own"], most = 8,
+): Drawn {
+  const chosen = cases.filter((other) => other.scene === of.scene && other.dimension === of.dimension &&
+    other.mode === of.mode && (of.mode === "find" || percent(other.moving) === percent(of.moving)));
+  const lines = new Map<string, [number, number][]>();
+  for (const other of chosen) {
+    for (const measurement of other.measurements) {
+      if (!is_timed(measurement) || !kinds.includes(measurement.kind)) continue;
+      const points = lines.get(label_of(measurement)) ?? [];
+      lines.set(label_of(measurement), points);
+      points.push([other.boxes, measurement.median_ms]);
+    }
+  }
+  const last = Math.max(...chosen.map((other) => other.boxes));
+  // Those that get furthest, and of these the fastest there.
+  const rank = (points: readonly [number, number][]): number => {
+    const end = points.reduce((a, b) => (b[0] > a[0] ? b : a));
+    return end[0] === last ? end[1] : Infinity;
+  };
+  const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, most);
+  const moves = of.mode === "track" ? `, ${percent(of.moving)} moving` : "";
+  return draw_lines({
+    title: `Time over the number of boxes: ${of.scene}, ${of.dimension}D${moves}`,
+    x: { name: "boxes", unit: "", log: true },
+    y: time,
+    lines: shown.map(([name, points]) => ({
+      name, points: points.sort((a, b) => a[0] - b[0]), dashed: name.startsWith("paper_"),
+    })),
+  }, place);
+}
+
+/** The times of a moving case's frames, one history after the other, with each algorithm's 99th percentile. */
+export function draw_frames(of: Case, place: Place, most = 6): Drawn {
+  const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, most);
+  // The slow ones were shown fewer histories.
+  const fewest = Math.min(...shown.map((measurement) => measurement.samples_ms?.length ?? 0));
+  const frames = shown[0]?.frames ?? 0;
+  return draw_lines({
+    title: `Time of each frame, and the 99th percentile (dashed): ${of.name}`,
+    x: { name: fewest > frames ? `frame (a new history every ${frames})` : "frame", unit: "", log: false },
+    y: time,
+    plain: true,
+    lines: shown.map((measurement) => ({
+      name: label_of(measurement),
+      points: (measurement.samples_ms ?? []).slice(0, fewest).map((sample, i) => [i + 1, sample] as const),
+      ...(measurement.p99_ms === null ? {} : { level: ["p99", measurement.p99_ms] as const }),
+    })),
+  }, place);
+}
+
+/** Who is fastest in each case: scenes with their numbers of boxes up, dimensions across. */
+export function draw_winners(cases: readonly Case[], place: Place, kinds?: readonly Measurement["kind"][]): Drawn {
+  const row_of = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${size_text(of)}`;
+  const fields = cases.flatMap((of) => {
+    const best = ranking(of).find((measurement) => kinds === undefined || kinds.includes(measurement.kind));
+    return best === undefined ? [] : [{
+      x: `${of.dimension}D`, y: row_of(of), value: best.algorithm,
+      note: `${of.name}: ${time_text(best.median_ms)}`,
+    }];
+  });
+  return draw_map({
+    title: "The fastest in each case",
+    x: { name: "dimension", unit: "" },
+    y: { name: "scene", unit: "" },
+    xs: [...new Set(fields.map((field) => field.x))].sort(),
+    ys: [...new Set(fields.map((field) => field.y))].reverse(),
+    fields,
+  }, place);
+}

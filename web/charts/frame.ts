@@ -1,0 +1,181 @@
+// What all charts have in common: axes, legend, tooltip, a description for screen readers.
+import type { EChartsOption } from "echarts";
+
+import { short } from "./numbers.ts";
+import type { Theme } from "./theme.ts";
+
+/** Where a chart is shown. */
+export interface Place {
+  theme: Theme;
+  /** In CSS pixels. */
+  width: number;
+}
+
+/** A chart: what ECharts takes, how high it wants to be, and what it shows in words. */
+export interface Drawn {
+  option: EChartsOption;
+  height: number;
+  description: string;
+}
+
+export const font = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
+
+export interface AxisSpec {
+  name: string;
+  unit: string;
+  log: boolean;
+}
+
+export function axis_name(axis: { name: string; unit: string }): string {
+  return axis.unit === "" ? axis.name : `${axis.name} (${axis.unit})`;
+}
+
+/** How wide a text is at most, more or less, at 12 px; the same with and without a DOM. */
+export function text_width(text: string): number {
+  return text.length * 7.2;
+}
+
+/** Shortened in the middle, where it is longer than `most` characters. */
+export function shortened(text: string, most: number): string {
+  if (text.length <= most) return text;
+  const half = Math.floor((most - 1) / 2);
+  return `${text.slice(0, most - 1 - half)}…${text.slice(text.length - half)}`;
+}
+
+const legend_line = 22;
+
+/** How many lines a legend takes at a width. */
+function legend_lines(names: readonly string[], width: number): number {
+  let lines = 1;
+  let used = 0;
+  for (const name of names) {
+    const item = text_width(name) + 42;
+    if (used > 0 && used + item > width - 16) {
+      ++lines;
+      used = 0;
+    }
+    used += item;
+  }
+  return lines;
+}
+
+export function legend_height(names: readonly string[], width: number): number {
+  return names.length < 2 ? 0 : legend_lines(names, width) * legend_line + 6;
+}
+
+/** Ticks of a logarithmic axis, and its ends: powers of ten, or 1, 2 and 5 where there are few of these. */
+export function log_ticks(values: readonly number[]): { min: number; max: number; ticks: number[] } {
+  const positive = values.filter((value) => value > 0);
+  const least = Math.min(...positive);
+  const most = Math.max(...positive);
+  const decades = Math.log10(most / least);
+  const steps = decades > 3 ? [1] : decades > 1.5 ? [1, 3] : [1, 2, 5];
+  const ticks: number[] = [];
+  for (let power = Math.floor(Math.log10(least)) - 1; power <= Math.ceil(Math.log10(most)); ++power) {
+    for (const step of steps) ticks.push(Number((step * 10 ** power).toPrecision(6)));
+  }
+  const first = ticks.findLastIndex((tick) => tick <= least * 1.0001);
+  const last = ticks.findIndex((tick) => tick >= most * 0.9999);
+  const shown = ticks.slice(first, last + 1);
+  const min = shown[0] ?? least;
+  const max = shown[shown.length - 1] ?? most;
+  // At most some eight labels, of many decades every second or third.
+  const stride = Math.ceil(shown.length / 8);
+  return { min, max, ticks: shown.filter((_, i) => i % stride === 0) };
+}
+
+type AxisPart = Record<string, unknown>;
+
+/** A numeric axis over `values`. */
+export function value_axis(axis: AxisSpec, values: readonly number[], place: Place): AxisPart {
+  const { theme } = place;
+  const style = {
+    axisLine: { show: false },
+    axisTick: { show: false },
+    splitLine: { show: true, lineStyle: { color: theme.line, width: 1 } },
+    axisLabel: { color: theme.muted, fontSize: 12, hideOverlap: true, formatter: (value: number) => short(value) },
+  };
+  if (!axis.log || !values.some((value) => value > 0)) return { type: "value", scale: true, ...style };
+  const { min, max, ticks } = log_ticks(values);
+  return {
+    type: "log",
+    min,
+    max: max > min ? max : min * 10,
+    ...style,
+    axisLabel: { ...style.axisLabel, customValues: ticks },
+    axisTick: { show: false, customValues: ticks },
+  };
+}
+
+export function category_axis(labels: readonly string[], place: Place): AxisPart {
+  const { theme } = place;
+  return {
+    type: "category",
+    data: [...labels],
+    axisLine: { lineStyle: { color: theme.line } },
+    axisTick: { show: false },
+    splitLine: { show: false },
+    axisLabel: { color: theme.muted, fontSize: 12 },
+  };
+}
+
+/** What stands under the horizontal axis. */
+export function below(name: string, place: Place): AxisPart {
+  return {
+    name,
+    nameLocation: "middle",
+    nameGap: 28,
+    nameTextStyle: { color: place.theme.text, fontSize: 12 },
+  };
+}
+
+/** What stands over the vertical axis, from its left end on. */
+export function above(name: string, place: Place): AxisPart {
+  return {
+    name,
+    nameLocation: "end",
+    nameGap: 10,
+    nameTextStyle: { color: place.theme.text, fontSize: 12, align: "left", padding: [0, 0, 0, -36] },
+  };
+}
+
+/** The option that every chart begins with. */
+export function frame(names: readonly string[], description: string, place: Place): EChartsOption {
+  const { theme } = place;
+  const legend = legend_height(names, place.width);
+  return {
+    animation: false,
+    backgroundColor: "transparent",
+    textStyle: { fontFamily: font, color: theme.text },
+    aria: { enabled: true, label: { enabled: true, description } },
+    legend: {
+      show: legend > 0,
+      top: 0,
+      left: 0,
+      width: place.width - 8,
+      itemGap: 14,
+      itemWidth: 22,
+      itemHeight: 10,
+      textStyle: { color: theme.text, fontSize: 12 },
+      inactiveColor: theme.line,
+      data: [...names],
+    },
+    tooltip: {
+      confine: true,
+      backgroundColor: theme.background,
+      borderColor: theme.line,
+      textStyle: { color: theme.text, fontSize: 12 },
+    },
+  };
+}
+
+const symbols = ["circle", "rect", "triangle", "diamond", "emptyCircle", "emptyRect", "emptyTriangle", "emptyDiamond"];
+const dashes = ["solid", "dashed", "dotted"] as const;
+
+/** Marks that tell lines apart without their colour. */
+export function mark(index: number): { symbol: string; dash: (typeof dashes)[number] } {
+  return {
+    symbol: symbols[index % symbols.length] ?? "circle",
+    dash: dashes[Math.floor(index / symbols.length) % dashes.length] ?? "solid",
+  };
+}

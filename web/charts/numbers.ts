@@ -1,0 +1,58 @@
+// Numbers as a reader wants them: three digits that count, thousands apart.
+
+/** 1234567 as "1,234,567". */
+export function grouped(value: number): string {
+  const [whole = "", fraction] = String(value).split(".");
+  const sign = whole.startsWith("-") ? "-" : "";
+  const digits = whole.slice(sign.length).replace(/\B(?=(\d{3})+$)/g, ",");
+  return sign + digits + (fraction === undefined ? "" : "." + fraction);
+}
+
+/** To three digits; whole numbers from 100 on as they are. */
+export function rounded(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 100) return grouped(Math.round(value));
+  if (size < 1e-6) return value.toExponential(2);
+  const digits = 2 - Math.floor(Math.log10(size));
+  const text = value.toFixed(Math.min(digits, 8));
+  return Number.isInteger(value) ? String(value) : text;
+}
+
+/** Short, for the ticks of an axis: 100k, 0.01. */
+export function short(value: number): string {
+  const size = Math.abs(value);
+  for (const [unit, name] of [[1e9, "G"], [1e6, "M"], [1e3, "k"]] as const) {
+    if (size >= unit) return trimmed(value / unit) + name;
+  }
+  return trimmed(value);
+}
+
+/** A time in the unit that suits it. */
+export function time_text(milliseconds: number): string {
+  if (milliseconds >= 1000) return rounded(milliseconds / 1000) + " s";
+  if (milliseconds < 0.001) return rounded(milliseconds * 1e6) + " ns";
+  return milliseconds < 1 ? rounded(milliseconds * 1000) + " µs" : rounded(milliseconds) + " ms";
+}
+
+export function bytes_text(bytes: number): string {
+  let value = bytes;
+  for (const unit of ["bytes", "KiB", "MiB", "GiB"]) {
+    if (value < 1024 || unit === "GiB") return rounded(value) + " " + unit;
+    value /= 1024;
+  }
+  return "";
+}
+
+export function geometric_mean(values: readonly number[]): number {
+  return Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
+}
+
+/** A ratio as the program's tables show it. */
+export function ratio_text(ratio: number): string {
+  return ratio < 99.95 ? ratio.toFixed(2) : rounded(ratio);
+}
+
+function trimmed(value: number): string {
+  return String(Number(value.toPrecision(4)));
+}

@@ -1,0 +1,149 @@
+// What the charts make of tables and comparisons.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import {
+  bytes_text, cases_of, colours_of, dark, draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings,
+  draw_table_chart, draw_winners, family_of, grouped, lead_of, light, rounded, scaled_scenes, short, standings, time_text,
+} from "../charts/index.ts";
+import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
+import { log_ticks } from "../charts/frame.ts";
+import { svg_of } from "../charts/render.ts";
+import { comparison } from "./fixture.ts";
+
+const place: Place = { theme: light, width: 640 };
+
+const table: Table = {
+  name: "cells",
+  title: "Time by cell size",
+  columns: [{ name: "cell size", unit: "" }, { name: "time", unit: "ms" }, { name: "scene", unit: "" }, { name: "best", unit: "" }],
+  charts: [],
+  rows: [[2, 0.5, "mixed", "grid"], [1, 1, "mixed", "bvh"], [1, 3, "uniform", "grid"], [2, null, "uniform", "grid"], [4, 0, "uniform", "grid"]],
+};
+
+function spec(changes: Partial<ChartSpec>): ChartSpec {
+  return {
+    title: "Time", kind: "lines", x: "cell size", y: "time", series: "scene", value: "", log_x: true, log_y: true, where: [],
+    ...changes,
+  };
+}
+
+type Series = { name: string; data: unknown[]; color: string };
+
+function series_of(drawn: Drawn): Series[] {
+  return drawn.option.series as unknown as Series[];
+}
+
+test("lines are sorted by x, a line for each series, without what is missing or cannot be on a logarithmic axis", () => {
+  const [mixed, uniform] = series_of(draw_table_chart(table, spec({}), place));
+  assert.deepEqual(mixed?.data, [[1, 1], [2, 0.5]]);
+  assert.deepEqual(uniform?.data, [[1, 3]]);
+  const linear = series_of(draw_table_chart(table, spec({ log_y: false }), place));
+  assert.deepEqual(linear[1]?.data, [[1, 3], [4, 0]]);
+});
+
+test("a chart shows only the rows that it asks for", () => {
+  const series = series_of(draw_table_chart(table, spec({ where: [["scene", "mixed"]] }), place));
+  assert.deepEqual(series.map(({ name }) => name), ["mixed"]);
+});
+
+test("bars have a place for every label, empty where there is no number", () => {
+  const drawn = draw_table_chart(table, spec({ kind: "bars", log_y: false }), place);
+  const values = series_of(drawn).map(({ data }) => (data as { value: unknown }[]).map(({ value }) => value));
+  assert.deepEqual(values, [[1, 0.5, "-"], [3, "-", 0]]);
+});
+
+test("a map has a series for each winner", () => {
+  const drawn = draw_table_chart(table, spec({ kind: "map", y: "scene", value: "best" }), place);
+  assert.deepEqual(series_of(drawn).map(({ name, data }) => [name, data.length]), [["bvh", 1], ["grid", 4]]);
+});
+
+test("a column that is not there is named with those that are", () => {
+  assert.throws(() => draw_table_chart(table, spec({ x: "cells" }), place),
+    /table 'cells' has no column 'cells'; expected one of cell size, time, scene, best/);
+});
+
+test("a chart tells in words what it shows", () => {
+  const { description } = draw_table_chart(table, spec({}), place);
+  assert.match(description, /^Time\. Line chart of time \(ms\) over cell size, logarithmic\. mixed: 1 ms at 1, 0\.500 ms at 2\./);
+});
+
+test("an algorithm has its family's colour in every chart", () => {
+  assert.equal(family_of("grid:cell=2.5"), "grid");
+  assert.equal(family_of("paper_grid"), "grid");
+  assert.equal(family_of("bullet_dbvt"), "bullet");
+  assert.equal(family_of("mixed"), undefined);
+  assert.deepEqual(colours_of(["bvh", "grid"], light), [colours_of(["grid", "bvh"], light)[1], "#e69f00"]);
+  assert.notDeepEqual(colours_of(["bvh"], light), colours_of(["bvh"], dark));
+});
+
+test("no two of up to eight series have the same colour", () => {
+  const names = ["grid:cell=1", "grid:cell=2", "grid", "bvh", "uniform", "mixed", "1", "2"];
+  assert.equal(new Set(colours_of(names, light)).size, names.length);
+  assert.equal(new Set(colours_of(names, dark)).size, names.length);
+});
+
+test("ticks of a logarithmic axis span the values", () => {
+  for (const values of [[1, 2], [0.003, 4000], [7], [1, 1e9], [0.2, 0.9]]) {
+    const { min, max, ticks } = log_ticks(values);
+    assert.ok(min <= Math.min(...values) && max >= Math.max(...values), String(values));
+    assert.ok(ticks.length >= 1 && ticks.length <= 8, String(ticks));
+  }
+});
+
+test("numbers are told with three digits", () => {
+  assert.deepEqual([0, 1234567, 0.012345, 12.345, 5, 99.99].map(rounded), ["0", "1,234,567", "0.0123", "12.3", "5", "100.0"]);
+  assert.deepEqual([1000, 250000, 0.05, 2e6].map(short), ["1k", "250k", "0.05", "2M"]);
+  assert.deepEqual([0.0123, 1.5, 2500, 0.0002].map(time_text), ["12.3 µs", "1.50 ms", "2.50 s", "200 ns"]);
+  assert.equal(grouped(-1234.5), "-1,234.5");
+  assert.equal(bytes_text(1536), "1.50 KiB");
+});
+
+const cases = cases_of(comparison.measurements);
+
+test("measurements on the same boxes are one case", () => {
+  assert.deepEqual(cases.map(({ name }) => name), [
+    "uniform, 2D, 1,000 boxes", "uniform, 2D, 10,000 boxes", "churn, 2D, 1,000 boxes, 25 % moving",
+  ]);
+});
+
+test("a lead is the fastest peer's time over that of the fastest of ours", () => {
+  const lead = lead_of(cases[0]!);
+  assert.deepEqual([lead?.own.algorithm, lead?.peer.algorithm, lead?.ratio], ["bvh", "box2d_tree", 4]);
+});
+
+test("who is skipped in a case does not stand in it", () => {
+  assert.deepEqual(standings(cases).map(({ algorithm, cases, fastest }) => [algorithm, cases, fastest]),
+    [["bvh", 3, 1], ["grid", 3, 2], ["box2d_tree", 3, 0], ["brute_force", 1, 0]]);
+});
+
+test("the charts of a comparison hold what was measured", () => {
+  assert.deepEqual(scaled_scenes(cases).map(({ scene, dimension }) => [scene, dimension]), [["uniform", 2]]);
+  const lines = series_of(draw_scaling(cases, scaled_scenes(cases)[0]!, place));
+  assert.deepEqual(lines.find(({ name }) => name === "grid")?.data, [[1000, 0.2], [10000, 1]]);
+  const frames = series_of(draw_frames(cases[2]!, place));
+  assert.deepEqual(frames.map(({ name, data }) => [name, data.length]), [["grid", 4], ["bvh", 4], ["box2d_tree", 4]]);
+  assert.equal(series_of(draw_ratios(cases[0]!, place))[0]?.data.length, 4);
+  assert.deepEqual(series_of(draw_winners(cases, place)).map(({ name }) => name), ["bvh", "grid"]);
+});
+
+test("every chart is drawn in Node, in both themes, the same each time, whatever was drawn before", () => {
+  for (const theme of [light, dark]) {
+    for (const width of [340, 720]) {
+      const at = { theme, width };
+      const all = (): string[] => [
+        draw_standings(cases, at), draw_leads(cases, at), draw_winners(cases, at), draw_frames(cases[2]!, at),
+        draw_ratios(cases[1]!, at), draw_scaling(cases, scaled_scenes(cases)[0]!, at),
+        ...(["lines", "bars", "map"] as const).map((kind) =>
+          draw_table_chart(table, spec(kind === "map" ? { kind, y: "scene", value: "best" } : { kind }), at)),
+      ].map((drawn) => svg_of(drawn, { width, title: "A < B" }));
+      const first = all();
+      assert.deepEqual(all(), first);
+      for (const svg of first) {
+        assert.match(svg, /^<svg [^>]*><title>A &lt; B<\/title><desc>[^<]+<\/desc>/);
+        assert.ok(svg.includes("<path"));
+        assert.doesNotMatch(svg, /NaN|Infinity|undefined/);
+      }
+    }
+  }
+});
