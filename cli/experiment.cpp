@@ -38,8 +38,7 @@ std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names
   }
   for (const std::string& name : names) all.push_back(&lab::find_experiment(name));
   std::ranges::sort(all, {}, &lab::Experiment::number);
-  const auto [begin, end] = std::ranges::unique(all);
-  all.erase(begin, end);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
