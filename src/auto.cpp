@@ -13,6 +13,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "auto_tracker.hpp"
@@ -56,7 +57,7 @@ constexpr std::array<std::string_view, 6> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid"};
 
 template <int D>
-class Auto final : public PairFinder<D> {
+class Auto final : public PairFinder<D>, public Outlined<D> {
  public:
   std::string explanation() const override {
     const auto rounded = [](double number) {
@@ -86,6 +87,10 @@ class Auto final : public PairFinder<D> {
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    this->search_with(chosen_for(boxes), boxes, pairs);
+  }
+
+  PairFinder<D>& chosen_for(std::span<const Box<D>> boxes) {
     count_ = boxes.size();
     choice_ = choose(boxes);
     auto& finder = finders_[static_cast<std::size_t>(choice_)];
@@ -93,7 +98,14 @@ class Auto final : public PairFinder<D> {
       const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
       finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
     }
-    this->search_with(*finder, boxes, pairs);
+    return *finder;
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    Outline<D> outline = broadside::outline(chosen_for(boxes), boxes);
+    const std::string_view name = chosen_algorithm[static_cast<std::size_t>(choice_)];
+    outline.caption.insert(0, std::string(name) + (outline.caption.empty() ? "" : ": "));
+    return outline;
   }
 
   Choice choose(std::span<const Box<D>> boxes) {

@@ -14,6 +14,7 @@
 #include "broadside/history.hpp"
 #include "broadside/instruction_set.hpp"
 #include "broadside/minimise.hpp"
+#include "broadside/outline.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/pair_finder.hpp"
 #include "broadside/pair_tracker.hpp"

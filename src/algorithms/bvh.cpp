@@ -2,24 +2,52 @@
 //
 // The builder is in bvh_tree.cpp, the join in kernels/box_tree.cpp.
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/bvh_tracker.hpp"
 #include "algorithms/bvh_tree.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/outline_text.hpp"
 #include "kernels/box_tree.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class Bvh final : public PairFinder<D> {
+class Bvh final : public PairFinder<D>, public Outlined<D> {
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     if (boxes.empty()) return this->count({});
     packer_.pack(boxes, this->left_count());
     this->count({.tests = kernels::join(packer_.tree(), pairs), .references = boxes.size()});
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    packer_.pack(boxes);
+    const kernels::BoxTree<D>& tree = packer_.tree();
+    Outline<D> outline;
+    outline.kind = "nodes";
+    for (std::size_t level = tree.level_count; level-- > 1;) {
+      std::vector<Box<D>>& bounds = outline.levels.emplace_back();
+      for (std::size_t place = 0; place < tree.levels[level].size; ++place) {
+        Box<D> node;
+        for (int axis = 0; axis < D; ++axis) {
+          node.min[axis] = tree.levels[level].min[axis][place];
+          node.max[axis] = tree.levels[level].max[axis][place];
+        }
+        if (is_present(node)) bounds.push_back(node);
+      }
+    }
+    const std::size_t leaves = outline.levels.back().size();
+    outline.caption = (leaves == 1 ? "1 leaf" : std::to_string(leaves) + " leaves") + " of up to " +
+                      std::to_string(kernels::fan_out) + " boxes, " +
+                      core::counted(outline.levels.size(), "level") + " of bounds";
+    return outline;
   }
 
   BoxTreePacker<D> packer_;

@@ -6,19 +6,23 @@
 // reported in the one cell that holds the greater of the two boxes' minima on every gridded axis.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/grid_layout.hpp"
 #include "algorithms/grid_sweep.hpp"
 #include "algorithms/grid_tracker.hpp"
+#include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "kernels/run.hpp"
@@ -27,7 +31,7 @@ namespace broadside::own {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D> {
+class Grid final : public PairFinder<D>, public Outlined<D> {
  public:
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
 
@@ -35,8 +39,7 @@ class Grid final : public PairFinder<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     parallel_.start(this->workers(), boxes.size());
     sweeps_.resize(std::max(sweeps_.size(), parallel_.lanes()));
-    sample_.take(boxes);
-    layout_.choose(sample_, boxes.size(), cell_);
+    choose_cells(boxes);
     count_boxes(boxes);
     file(boxes);
     const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
@@ -49,6 +52,54 @@ class Grid final : public PairFinder<D> {
       return statistics;
     };
     this->count(parallel_.search(layout_.slabs(), pairs, sweep));
+  }
+
+  void choose_cells(std::span<const Box<D>> boxes) {
+    sample_.take(boxes);
+    layout_.choose(sample_, boxes.size(), cell_);
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    choose_cells(boxes);
+    const std::array<int, D>& axes = layout_.axes();
+    Outline<D> outline;
+    outline.kind = "cells";
+    outline.swept_axis = axes[0];
+    outline.levels.resize(1);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Box<D> cell;
+    cell.min.fill(-infinity);
+    cell.max.fill(infinity);
+    // The last cell's border is NaN: it goes on without end, like the first one.
+    const auto end = [](float border) {
+      return std::isnan(border) ? std::numeric_limits<float>::infinity() : border;
+    };
+    for (std::size_t row = 0; row < layout_.rows(); ++row) {
+      cell.min[axes[D - 1]] = row == 0 ? -infinity : layout_.row_border(row - 1);
+      cell.max[axes[D - 1]] = end(layout_.row_border(row));
+      for (std::size_t column = 0; column < layout_.row_length(); ++column) {
+        if constexpr (D == 3) {
+          cell.min[axes[1]] = column == 0 ? -infinity : layout_.column_border(column - 1);
+          cell.max[axes[1]] = end(layout_.column_border(column));
+        }
+        outline.levels[0].push_back(cell);
+      }
+    }
+    outline.caption = caption();
+    return outline;
+  }
+
+  /// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
+  std::string caption() const {
+    const std::array<int, D>& axes = layout_.axes();
+    const std::string swept = " swept along " + core::axis_name(axes[0]);
+    if (layout_.cells() == 1) return "1 cell," + swept;
+    if constexpr (D == 2)
+      return core::counted(layout_.rows(), "cell") + " of " + core::three_digits(layout_.cell_size(0)) +
+             " over " + core::axis_name(axes[1]) + ", each" + swept;
+    return std::to_string(layout_.row_length()) + " x " + core::counted(layout_.rows(), "cell") + " of " +
+           core::three_digits(layout_.cell_size(0)) + " x " + core::three_digits(layout_.cell_size(1)) +
+           " over " + core::axis_name(axes[1]) + " and " + core::axis_name(axes[D - 1]) + ", each" + swept;
   }
 
   /// As far as the sample reaches on the swept axis, and a little more: a sample misses the ends.

@@ -56,6 +56,9 @@ class GridLayout {
   float row_border(std::size_t row) const { return borders_[gridded - 1][row]; }
   float column_border(std::size_t column) const { return borders_[0][column]; }
 
+  /// How wide the cells on an axis are: axis `axes()[1 + axis]`.
+  float cell_size(int axis) const { return 1 / per_unit_[axis]; }
+
   /// The border of a row's slab.
   float slab_border(std::size_t row) const { return slab_border_[row]; }
 

@@ -5,21 +5,26 @@
 // stays where it is. Made for motion; as a finder it is filed anew at each call.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/hierarchical_grid_cells.hpp"
 #include "algorithms/hierarchical_grid_tracker.hpp"
+#include "core/outline_text.hpp"
 #include "kernels/cell_blocks.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class HierarchicalGrid final : public PairFinder<D> {
+class HierarchicalGrid final : public PairFinder<D>, public Outlined<D> {
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     cells_.build(boxes, boxes);
@@ -34,6 +39,46 @@ class HierarchicalGrid final : public PairFinder<D> {
       tests += kernels::find_later<D>(cells_.view(), std::span(queries).first(count), pairs).tests;
     }
     this->count({.tests = tests, .references = boxes.size(), .cells = cells_.cells()});
+  }
+
+  /// The cells of each level that has boxes, the widest first.
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    cells_.build(boxes, boxes);
+    const kernels::CellsView<D> view = cells_.view();
+    Outline<D> outline;
+    outline.kind = "cells";
+    for (std::size_t i = view.levels.size(); i-- > 0;) {
+      const kernels::CellLevel<D>& level = view.levels[i];
+      if (level.boxes == 0) continue;
+      outline.levels.push_back(cells_of(level));
+      outline.caption += (outline.caption.empty() ? "" : ", ") + core::counted(level.boxes, "box");
+      if (level.boxes != 1) outline.caption.insert(outline.caption.size() - 1, "e");
+      outline.caption += " in ";
+      for (int axis = 0; axis < D; ++axis)
+        outline.caption += (axis == 0 ? "" : " x ") + std::to_string(static_cast<int>(level.last[axis]) + 1);
+      outline.caption += outline.levels.back().size() == 1 ? " cell" : " cells";
+    }
+    return outline;
+  }
+
+  static std::vector<Box<D>> cells_of(const kernels::CellLevel<D>& level) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    std::vector<Box<D>> cells;
+    std::array<float, D> at{};
+    do {
+      Box<D> cell;
+      for (int axis = 0; axis < D; ++axis) {
+        const float border = level.low[axis] + at[axis] / level.inverse[axis];
+        const float next = level.low[axis] + (at[axis] + 1) / level.inverse[axis];
+        cell.min[axis] = at[axis] == 0 ? -infinity : border;
+        cell.max[axis] = at[axis] == level.last[axis] ? infinity : next;
+      }
+      cells.push_back(cell);
+      int axis = 0;
+      while (axis < D && at[axis] == level.last[axis]) at[axis++] = 0;
+      if (axis == D) return cells;
+      ++at[axis];
+    } while (true);
   }
 
   HierarchicalGridCells<D> cells_;

@@ -13,14 +13,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/quadtree_tracker.hpp"
+#include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -46,7 +50,7 @@ struct Reference {
 };
 
 template <int D>
-class Quadtree final : public PairFinder<D> {
+class Quadtree final : public PairFinder<D>, public Outlined<D> {
  public:
   explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
 
@@ -104,6 +108,61 @@ class Quadtree final : public PairFinder<D> {
       return lanes_[lane].statistics;
     };
     this->count(parallel_.search(parts_.size(), pairs, search_parts));
+  }
+
+  /// Splits the nodes as search() does, and keeps their regions.
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    sample_.take(boxes);
+    const std::array<int, D> axes = sample_.axes_by_overlap();
+    sorted_boxes_ = sorted_.sort(boxes, axes);
+    lanes_.resize(std::max<std::size_t>(lanes_.size(), 1));
+    Lane& lane = lanes_[0];
+    lane.stack.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) lane.stack.push_back({i, 0});
+    Outline<D> outline;
+    outline.kind = "nodes";
+    Box<D> region;
+    region.min.fill(-std::numeric_limits<float>::infinity());
+    region.max.fill(std::numeric_limits<float>::infinity());
+    const std::size_t leaves = lay_out(lane, 0, lane.stack.size(), {axes, region}, 0, outline.levels);
+    std::size_t nodes = 0;
+    for (const std::vector<Box<D>>& level : outline.levels) nodes += level.size();
+    outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
+                      ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+    return outline;
+  }
+
+  /// A node's region, by the caller's axes; axis a of the sorted boxes is axes[a] of these.
+  struct Region {
+    std::array<int, D> axes;
+    Box<D> box;
+  };
+
+  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  std::size_t lay_out(Lane& lane, std::size_t begin, std::size_t end, const Region& region, std::size_t depth,
+                      std::vector<std::vector<Box<D>>>& levels) const {
+    if (levels.size() == depth) levels.emplace_back();
+    levels[depth].push_back(region.box);
+    Split split;
+    std::array<std::size_t, most_children> sizes;
+    if (end - begin < 2 || end - begin <= capacity_ || !choose_split(lane, begin, end, split) ||
+        !partition(lane, begin, end, split, sizes))
+      return 1;
+    const std::size_t top = lane.stack.size();
+    push_children(lane, begin, end, split, sizes);
+    std::size_t leaves = 0;
+    std::size_t first = top;
+    for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
+      Region part = region;
+      for (int at = 0; at < split.axis_count; ++at) {
+        const int axis = region.axes[split.axes[at]];
+        ((child >> at & 1U) != 0 ? part.box.min : part.box.max)[axis] = split.at[split.axes[at]];
+      }
+      leaves += lay_out(lane, first, first + sizes[child], part, depth + 1, levels);
+      first += sizes[child];
+    }
+    lane.stack.resize(top);
+    return leaves;
   }
 
   /// Makes parts of the node and those below it, in the order in which search() would meet them.

@@ -8,16 +8,20 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+#include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/sweep_and_prune_tracker.hpp"
 #include "core/cell_lists.hpp"
+#include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -35,7 +39,7 @@ constexpr std::size_t most_stripes = 256;
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D> {
+class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
  public:
   explicit SweepAndPrune(const Settings& settings) {
     if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
@@ -47,17 +51,44 @@ class SweepAndPrune final : public PairFinder<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     parallel_.start(this->workers(), boxes.size());
     runs_.resize(std::max(runs_.size(), parallel_.lanes()));
+    const std::array<int, D> axes = choose_axes(boxes);
+    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
+    if (borders_.empty())
+      sweep_all(sorted, pairs);
+    else
+      sweep_stripes(sorted, pairs);
+  }
+
+  /// Chooses the swept axis, the striped one and so on, and the stripes.
+  std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
     sample_.take(boxes);
     std::array<int, D> axes = sample_.axes_by_overlap();
     for (int i = D - 1; i > 0; --i) {
       if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
     choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
-    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
-    if (borders_.empty())
-      sweep_all(sorted, pairs);
-    else
-      sweep_stripes(sorted, pairs);
+    return axes;
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    const std::array<int, D> axes = choose_axes(boxes);
+    Outline<D> outline;
+    outline.swept_axis = axes[0];
+    outline.kind = borders_.empty() ? "sweep" : "stripes";
+    const std::string swept = "swept along " + core::axis_name(axes[0]);
+    outline.caption = borders_.empty() ? "one sweep along " + core::axis_name(axes[0])
+                                       : core::counted(borders_.size() + 1, "stripe") + " of " +
+                                             core::axis_name(axes[1]) + ", each " + swept;
+    Box<D> stripe;
+    stripe.min.fill(-std::numeric_limits<float>::infinity());
+    stripe.max.fill(std::numeric_limits<float>::infinity());
+    outline.levels.resize(1);
+    for (std::size_t i = 0; i <= borders_.size(); ++i) {
+      if (i > 0) stripe.min[axes[1]] = borders_[i - 1];
+      stripe.max[axes[1]] = i < borders_.size() ? borders_[i] : std::numeric_limits<float>::infinity();
+      outline.levels[0].push_back(stripe);
+    }
+    return outline;
   }
 
   /// Sets the borders between stripes, none if one axis is enough.

@@ -357,6 +357,37 @@ std::size_t DoubleFinder<D>::gather(const Places& places, const std::array<Axis,
   return left;
 }
 
+template <int D>
+Outline<D, double> DoubleFinder<D>::lay_out(std::span<const Box<D, double>> boxes) {
+  std::array<double, D> origin{};
+  for (int axis = 0; axis < D; ++axis) {
+    for (const Box<D, double>& box : boxes) {
+      if (!std::isfinite(box.min[axis])) continue;
+      origin[axis] = box.min[axis];
+      break;
+    }
+  }
+  std::vector<Box<D>> floats(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      floats[i].min[axis] = static_cast<float>(boxes[i].min[axis] - origin[axis]);
+      floats[i].max[axis] = static_cast<float>(boxes[i].max[axis] - origin[axis]);
+    }
+  }
+  const Outline<D> rounded = outline(*finder_, floats);
+  Outline<D, double> outline{rounded.kind, rounded.caption, rounded.swept_axis, {}};
+  for (const std::vector<Box<D>>& level : rounded.levels) {
+    std::vector<Box<D, double>>& parts = outline.levels.emplace_back(level.size());
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      for (int axis = 0; axis < D; ++axis) {
+        parts[i].min[axis] = origin[axis] + level[i].min[axis];
+        parts[i].max[axis] = origin[axis] + level[i].max[axis];
+      }
+    }
+  }
+  return outline;
+}
+
 template class DoubleFinder<2>;
 template class DoubleFinder<3>;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "core/parallel.hpp"
 
@@ -23,7 +24,7 @@ namespace broadside::core {
 /// makes many boxes touch that lie apart; there the boxes are split into regions, each with an origin of its
 /// own. A pair is reported in the region that holds the greater of the two minima on every axis.
 template <int D>
-class DoubleFinder final : public PairFinder<D, double> {
+class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, double> {
  public:
   explicit DoubleFinder(std::unique_ptr<PairFinder<D>> finder);
 
@@ -58,6 +59,9 @@ class DoubleFinder final : public PairFinder<D, double> {
   class ExactSink;
 
   void find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) override;
+
+  /// As if all boxes were one region, whose origin is the first box that has one.
+  Outline<D, double> lay_out(std::span<const Box<D, double>> boxes) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }
 
   /// Reports the region's pairs. Its boxes are those whose places are [begin, end) of the stack, ascending.

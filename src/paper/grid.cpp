@@ -4,10 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
+#include "core/outline_text.hpp"
 #include "paper/descriptions.hpp"
 #include "paper/shared/algorithm_1.hpp"
 #include "paper/shared/world.hpp"
@@ -22,6 +26,9 @@ double most_references(double boxes) { return std::max<double>(64 * boxes, 1 << 
 /// The most in a grid that chooses its cell: beyond that, cells and references cost more than they save.
 double most_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22); }
 double most_auto_references(double boxes) { return 16 * boxes; }
+
+/// Of more cells, an outline has only those that a box is in.
+constexpr double most_drawn = 1 << 16;
 
 /// The number of the cell, of `count` cells, in which `x` lies. Rises with x, and is defined for every x:
 /// what lies outside the world is in the cell at its border.
@@ -46,7 +53,7 @@ double choose_size(std::span<const Box2> boxes, const World& world) {
   return std::max(world.width, world.height) / std::sqrt(static_cast<double>(boxes.size()));
 }
 
-class Grid final : public PairFinder<2> {
+class Grid final : public PairFinder<2>, public Outlined<2> {
  public:
   explicit Grid(const Settings& settings)
       : world_settings_(settings), cell_(settings.is_auto("cell") ? 0 : settings.number("cell")) {}
@@ -55,13 +62,52 @@ class Grid final : public PairFinder<2> {
   void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
     statistics_ = {};
     if (!boxes.empty()) {
-      boxes_ = boxes;
-      world_ = world_settings_.around(boxes);
-      algorithm_2_init(world_.width, world_.height, cell_ > 0 ? cell_ : choose_size(boxes, world_));
+      initialize(boxes);
       algorithm_3_spanning_add_element();
       algorithm_4_spi(pairs);
     }
     this->count(statistics_);
+  }
+
+  void initialize(std::span<const Box2> boxes) {
+    boxes_ = boxes;
+    world_ = world_settings_.around(boxes);
+    algorithm_2_init(world_.width, world_.height, cell_ > 0 ? cell_ : choose_size(boxes, world_));
+  }
+
+  /// Every cell or, of very many, those that a box is in.
+  Outline<2> lay_out(std::span<const Box2> boxes) override {
+    initialize(boxes);
+    const bool all = x_grids_ * y_grids_ <= most_drawn;
+    if (!all) algorithm_3_spanning_add_element();
+    const auto columns = static_cast<std::size_t>(x_grids_);
+    const auto rows = static_cast<std::size_t>(y_grids_);
+    Outline<2> outline;
+    outline.kind = "cells";
+    outline.levels.resize(1);
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        if (!all && g(c, r).empty()) continue;
+        const auto [left, right] = ends(c, columns, world_.left, 0);
+        const auto [top, bottom] = ends(r, rows, world_.top, 1);
+        outline.levels[0].push_back({{left, top}, {right, bottom}});
+      }
+    }
+    outline.caption =
+        std::to_string(columns) + " x " + core::counted(rows, "cell") + " of " + core::three_digits(size_);
+    return outline;
+  }
+
+  /// Where a cell begins and ends on an axis. One at the world's border goes on without end where boxes do.
+  std::pair<float, float> ends(std::size_t cell, std::size_t count, double origin, int axis) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto begin = static_cast<float>(origin + static_cast<double>(cell) * size_);
+    const auto end = static_cast<float>(origin + static_cast<double>(cell + 1) * size_);
+    const bool before =
+        cell == 0 && std::ranges::any_of(boxes_, [&](const Box2& e) { return e.min[axis] < begin; });
+    const bool beyond =
+        cell + 1 == count && std::ranges::any_of(boxes_, [&](const Box2& e) { return e.max[axis] > end; });
+    return {before ? -infinity : begin, beyond ? infinity : end};
   }
 
   /// Algorithm 2, "Initialize".

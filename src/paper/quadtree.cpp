@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
+#include "core/outline_text.hpp"
 #include "paper/descriptions.hpp"
 #include "paper/shared/algorithm_1.hpp"
 #include "paper/shared/world.hpp"
@@ -76,6 +79,20 @@ class QuadTreeNode {
     if (qiii_ != nullptr) qiii_->algorithm_10_traverse(test_collide);  // Erratum 10c
     if (qiv_ != nullptr) qiv_->algorithm_10_traverse(test_collide);    // Erratum 10c
     algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) { test_collide(region_, a, b); });
+  }
+
+  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  std::size_t lay_out(std::vector<std::vector<Box2>>& levels) const {
+    const auto depth = static_cast<std::size_t>(depth_);
+    levels.resize(std::max(levels.size(), depth + 1));
+    Box2 box;
+    for (int axis = 0; axis < 2; ++axis) {
+      box.min[axis] = static_cast<float>(region_.begin[axis]);
+      box.max[axis] = static_cast<float>(region_.end[axis]);
+    }
+    levels[depth].push_back(box);
+    if (qi_ == nullptr) return 1;
+    return qi_->lay_out(levels) + qii_->lay_out(levels) + qiii_->lay_out(levels) + qiv_->lay_out(levels);
   }
 
   /// The entries in this node's leaves.
@@ -184,21 +201,40 @@ int choose_depth(std::span<const Box2> boxes, const World& world) {
   return fits;
 }
 
-class Quadtree final : public PairFinder<2> {
+class Quadtree final : public PairFinder<2>, public Outlined<2> {
  public:
   explicit Quadtree(const Settings& settings)
       : world_settings_(settings), capacity_(static_cast<std::size_t>(settings.integer("capacity"))) {}
 
  private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+  /// The root of a tree over the boxes.
+  static QuadTreeNode fill(const Tree& tree, const World& world) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const World world = world_settings_.around(boxes);
-    const Tree tree{boxes, capacity_, choose_depth(boxes, world)};
     const double half_width = world.width * 0.5;
     const double half_height = world.height * 0.5;
     QuadTreeNode root(tree, 0, {{-infinity, -infinity}, {infinity, infinity}}, world.left + half_width,
                       world.top + half_height, half_width, half_height);
-    for (std::size_t i = 0; i < boxes.size(); ++i) root.algorithm_7_add_element(BoxId(i));
+    for (std::size_t i = 0; i < tree.boxes.size(); ++i) root.algorithm_7_add_element(BoxId(i));
+    return root;
+  }
+
+  Outline<2> lay_out(std::span<const Box2> boxes) override {
+    const World world = world_settings_.around(boxes);
+    const Tree tree{boxes, capacity_, choose_depth(boxes, world)};
+    Outline<2> outline;
+    outline.kind = "nodes";
+    const std::size_t leaves = fill(tree, world).lay_out(outline.levels);
+    std::size_t nodes = 0;
+    for (const std::vector<Box2>& level : outline.levels) nodes += level.size();
+    outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
+                      ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+    return outline;
+  }
+
+  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+    const World world = world_settings_.around(boxes);
+    const Tree tree{boxes, capacity_, choose_depth(boxes, world)};
+    const QuadTreeNode root = fill(tree, world);
 
     Statistics statistics{.references = root.references()};
     auto test_collide = [&](const Region& leaf, BoxId a, BoxId b) {

@@ -1,11 +1,13 @@
 // Sweep and prune as section IV of paper.md has it: Algorithms 5 and 6, along the x axis. What was mended,
 // and why, is in docs/paper/errata.md.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
 
 #include "paper/descriptions.hpp"
 
@@ -13,7 +15,7 @@ namespace broadside::paper {
 namespace {
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D> {
+class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     boxes_ = boxes;
@@ -22,6 +24,13 @@ class SweepAndPrune final : public PairFinder<D> {
     for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
     algorithm_5_sweep(e_, pairs);
     this->count(statistics_);
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>>) override {
+    Box<D> all;
+    all.min.fill(-std::numeric_limits<float>::infinity());
+    all.max.fill(std::numeric_limits<float>::infinity());
+    return {.kind = "sweep", .caption = "one sweep along x", .swept_axis = 0, .levels = {{all}}};
   }
 
   /// Algorithm 5, "Sweep".
