@@ -1,0 +1,136 @@
+// What templates may name of the comparison with other libraries.
+import { ranking, type Case } from "../charts/comparison.ts";
+import {
+  draw_leads,
+  draw_scaling,
+  draw_standings,
+  draw_winners,
+  scaled_scenes,
+} from "../charts/comparison_charts.ts";
+import type { Comparison } from "../charts/data.ts";
+import type { Drawn, Place } from "../charts/frame.ts";
+import { geometric_mean, ratio_text, rounded } from "../charts/numbers.ts";
+import { greatest, least, leads_of, type Facts } from "./facts.ts";
+import { plain, table_text } from "./markdown.ts";
+import { listed, Problem } from "./problem.ts";
+import { shown } from "./words.ts";
+
+const mean = (all: readonly { ratio: number }[]) => ratio_text(geometric_mean(all.map(({ ratio }) => ratio)));
+
+export function comparison_data(facts: Facts, { command, build }: Comparison): Record<string, unknown> {
+  const { cases, leads, choices } = facts;
+  const worst = greatest(choices);
+  const peers = facts.standings.filter((standing) => standing.kind === "peer");
+  const lost = leads.filter((lead) => lead.ratio < 1);
+  return {
+    cases: shown(cases.length),
+    still_cases: shown(facts.still.length),
+    moving_cases: shown(facts.moving.length),
+    measurements: shown(facts.timed),
+    skipped: shown(facts.skipped),
+    peers: shown(peers.length),
+    cases_with_a_peer: shown(leads.length),
+    mean_lead: mean(leads),
+    mean_lead_still: mean(leads_of(facts.still)),
+    mean_lead_moving: mean(leads_of(facts.moving)),
+    least_lead: ratio_text(least(leads).ratio),
+    least_lead_case: least(leads).of.name,
+    least_lead_peer: least(leads).peer.algorithm,
+    greatest_lead: ratio_text(greatest(leads).ratio),
+    greatest_lead_case: greatest(leads).of.name,
+    lost: shown(lost.length),
+    auto_mean: mean(choices),
+    auto_worst: ratio_text(worst.ratio),
+    auto_worst_case: worst.of.name,
+    command: command.join(" "),
+    revision: build.revision,
+  };
+}
+
+function cases_named(facts: Facts, which: string): Case[] {
+  const groups: Record<string, Case[]> = { still: facts.still, moving: facts.moving };
+  const found = groups[which];
+  if (!found) throw new Problem(`no cases '${which}'; there are ${listed(Object.keys(groups))}`);
+  return found;
+}
+
+/** Who of ours, of the peers and of the draft's is fastest in each case. */
+export function leads_table(facts: Facts, which: string): string {
+  return table_text(
+    ["boxes", "ours", " ms", "fastest peer", " ms", " lead", "fastest of the draft's", " ms"],
+    cases_named(facts, which).map((of) => {
+      const fastest = (kind: string) => {
+        const found = ranking(of).find((measurement) => measurement.kind === kind);
+        return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
+      };
+      const ratio = leads_of([of])[0]?.ratio;
+      const lead = ratio === undefined ? "-" : ratio_text(ratio);
+      return [
+        plain(of.name),
+        ...fastest("own"),
+        ...fastest("peer"),
+        ratio !== undefined && ratio < 1 ? `**${lead}**` : lead,
+        ...fastest("paper"),
+      ];
+    }),
+  );
+}
+
+/** The cases in which a peer is faster than all of ours, as a list; a sentence where there is none. */
+export function lost_list(facts: Facts): string {
+  const lost = facts.leads.filter((lead) => lead.ratio < 1);
+  if (lost.length === 0) return "In no case was a peer faster than the fastest of ours.";
+  return lost
+    .map(
+      ({ of, own, peer, ratio }) =>
+        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, the fastest of ours, ` +
+        `\`${own.algorithm}\`, ${rounded(own.median_ms)} ms, which is a lead of ${ratio_text(ratio)}.`,
+    )
+    .join("\n");
+}
+
+const kinds: Record<string, string> = { own: "ours", paper: "the draft's", peer: "peer", user: "user's" };
+
+export function standings_table(facts: Facts): string {
+  return table_text(
+    ["algorithm", "whose", " cases", " fastest in", " ratio to the fastest"],
+    facts.standings.map(({ algorithm, kind, cases, fastest, ratio }) => [
+      `\`${algorithm}\``,
+      kinds[kind] ?? kind,
+      shown(cases),
+      shown(fastest),
+      ratio_text(ratio),
+    ]),
+  );
+}
+
+export interface NamedChart {
+  caption: string;
+  draw: (place: Place) => Drawn;
+}
+
+/** The charts of the comparison, by name. */
+export function comparison_charts(facts: Facts): Record<string, NamedChart> {
+  const charts: Record<string, NamedChart> = {
+    standings: {
+      caption: "Times as multiples of the fastest's, geometric mean of the cases that an algorithm does",
+      draw: (place) => draw_standings(facts.cases, place),
+    },
+    leads_still: {
+      caption: "Boxes that rest: time of the fastest peer over that of the fastest of ours",
+      draw: (place) => draw_leads(facts.still, place),
+    },
+    leads_moving: {
+      caption: "Boxes that move: time of the fastest peer over that of the fastest of ours",
+      draw: (place) => draw_leads(facts.moving, place),
+    },
+    winners: { caption: "The fastest in each case", draw: (place) => draw_winners(facts.cases, place) },
+  };
+  for (const scene of scaled_scenes(facts.still)) {
+    charts[`scaling_${scene.scene}_${scene.dimension}d`] = {
+      caption: `Time over the number of boxes: ${scene.scene}, ${scene.dimension}D; ours, the draft's and the peers'`,
+      draw: (place) => draw_scaling(facts.still, scene, place, ["own", "paper", "peer"], 12),
+    };
+  }
+  return charts;
+}

@@ -1,0 +1,79 @@
+// What the comparison with other libraries comes to.
+import { cases_of, lead_of, ranking, standings, type Case, type Standing, type Timed } from "../charts/comparison.ts";
+import type { Comparison } from "../charts/data.ts";
+import { Problem } from "./problem.ts";
+
+/** A case that both ours and a peer have a time in. */
+export interface Lead {
+  of: Case;
+  /** The time of the fastest peer over that of our fastest. */
+  ratio: number;
+  own: Timed;
+  peer: Timed;
+}
+
+/** The time of `auto` in a case over that of the fastest of our others. */
+export interface Choice {
+  of: Case;
+  ratio: number;
+}
+
+export interface Facts {
+  cases: Case[];
+  /** Cases of boxes that rest, and of boxes that move. */
+  still: Case[];
+  moving: Case[];
+  leads: Lead[];
+  choices: Choice[];
+  standings: Standing[];
+  timed: number;
+  skipped: number;
+}
+
+function choice_in(of: Case): Choice[] {
+  const own = ranking(of).filter((measurement) => measurement.kind === "own");
+  const chosen = own.find((measurement) => measurement.algorithm === "auto");
+  const best = own.find((measurement) => measurement.algorithm !== "auto");
+  return chosen && best ? [{ of, ratio: chosen.median_ms / best.median_ms }] : [];
+}
+
+/** The leads of some cases. */
+export function leads_of(cases: readonly Case[]): Lead[] {
+  return cases.flatMap((of) => {
+    const lead = lead_of(of);
+    return lead ? [{ of, ...lead }] : [];
+  });
+}
+
+/** The one with the least ratio of at least one. */
+export function least<Thing extends { ratio: number }>(all: readonly Thing[]): Thing {
+  return all.reduce((a, b) => (b.ratio < a.ratio ? b : a));
+}
+
+export function greatest<Thing extends { ratio: number }>(all: readonly Thing[]): Thing {
+  return all.reduce((a, b) => (b.ratio > a.ratio ? b : a));
+}
+
+/** Throws Problem if there is nothing to compare, or nothing that moves. */
+export function facts_of(comparison: Comparison, file: string): Facts {
+  const { measurements } = comparison;
+  const cases = cases_of(measurements).filter((of) => ranking(of).length > 0);
+  const still = cases.filter((of) => of.mode === "find");
+  const moving = cases.filter((of) => of.mode === "track");
+  for (const [group, what] of [[still, "rest"], [moving, "move"]] as const) {
+    if (leads_of(group).length === 0)
+      throw new Problem(`${file}: no case of boxes that ${what} with times of ours and of a peer; expected at least one`);
+  }
+  const choices = cases.flatMap(choice_in);
+  if (choices.length === 0) throw new Problem(`${file}: no case with a time of auto; expected at least one`);
+  return {
+    cases,
+    still,
+    moving,
+    leads: leads_of(cases),
+    choices,
+    standings: standings(cases),
+    timed: measurements.filter((measurement) => measurement.median_ms !== null).length,
+    skipped: measurements.filter((measurement) => measurement.skipped !== null).length,
+  };
+}

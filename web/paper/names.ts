@@ -1,0 +1,157 @@
+// What templates may name: the machine, the experiments and what they came to, the comparison, figures and sources.
+import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../charts/data.ts";
+import type { Drawn, Place } from "../charts/frame.ts";
+import { draw_table_chart } from "../charts/table_chart.ts";
+import { comparison_charts, comparison_data, leads_table, lost_list, standings_table } from "./comparison_names.ts";
+import { figures_table, machine_data, results_table, section_text, verdict_text, verdicts_table } from "./experiment_names.ts";
+import { facts_of, type Facts } from "./facts.ts";
+import type { Names } from "./fill.ts";
+import { plain, slug } from "./markdown.ts";
+import { Numbering } from "./numbering.ts";
+import { listed, Problem } from "./problem.ts";
+import { shown, with_unit } from "./words.ts";
+
+/** A figure of the paper. */
+export interface Drawing {
+  caption: string;
+  draw: (place: Place) => Drawn;
+}
+
+/** What `key` is among `all`. Throws Problem naming those there are. */
+function one_of<Thing>(all: Record<string, Thing>, key: string, what: string): Thing {
+  const thing = Object.hasOwn(all, key) ? all[key] : undefined;
+  if (thing === undefined) throw new Problem(`no ${what} '${key}'; there are ${listed(Object.keys(all))}`);
+  return thing;
+}
+
+const by = <Thing>(all: readonly Thing[], key: (thing: Thing) => string): Record<string, Thing> =>
+  Object.fromEntries(all.map((thing) => [key(thing), thing]));
+
+const drawing_name = (experiment: Experiment, table: Table, chart: ChartSpec) =>
+  `${experiment.name}_${table.name}_${slug(chart.title)}`;
+
+/** Results as templates name them. What is drawn, and how figures and sources are numbered, is kept here. */
+export class Paper {
+  /** Of the pass that is going on, by the name of its file. */
+  readonly drawings = new Map<string, Drawing>();
+  private readonly figures = new Numbering("figure");
+  private readonly sources = new Numbering("source");
+  private readonly cited = new Set<string>();
+  private readonly experiments: Record<string, Experiment>;
+  private readonly facts: Facts;
+
+  constructor(
+    private readonly results: Experiments,
+    private readonly comparison: Comparison,
+    comparison_file: string,
+  ) {
+    this.experiments = by(results.experiments, (experiment) => experiment.name);
+    this.facts = facts_of(comparison, comparison_file);
+  }
+
+  /** Ends a pass over all templates: after the first, numbers of figures and sources are known. */
+  end_pass(): void {
+    this.figures.end_pass();
+    this.sources.end_pass();
+  }
+
+  begin_pass(): void {
+    this.drawings.clear();
+  }
+
+  /** Sources that no template cites. */
+  uncited(): string[] {
+    return this.sources.all().filter((source) => !this.cited.has(source));
+  }
+
+  private experiment(name: string): Experiment {
+    return one_of(this.experiments, name, "experiment");
+  }
+
+  private table(experiment: string, name: string): Table {
+    const tables = by(this.experiment(experiment).tables, (table) => table.name);
+    return one_of(tables, name, `table in the experiment '${experiment}':`);
+  }
+
+  private figure(experiment: string, name: string): { value: number; unit: string } {
+    return one_of(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
+  }
+
+  private draw(name: string, drawing: Drawing): string {
+    const number = this.figures.next(name);
+    this.drawings.set(name, drawing);
+    const alternative = drawing.caption.replace(/[[\]]/g, "");
+    return `![${alternative}](figures/${name}.svg)\n\n*Figure ${number}. ${plain(drawing.caption)}*`;
+  }
+
+  private draw_chart(experiment: Experiment, table: Table, chart: ChartSpec): string {
+    const draw = (place: Place) => draw_table_chart(table, chart, place);
+    return this.draw(drawing_name(experiment, table, chart), { caption: chart.title, draw });
+  }
+
+  private see(names: readonly string[]): string {
+    const numbers = this.figures.numbers_of(names).map(String);
+    return `${numbers.length === 1 ? "Figure" : "Figures"} ${listed(numbers)}`;
+  }
+
+  names(): Names {
+    const of = (name: string) => this.experiment(name);
+    const value = (experiment: string, name: string) => this.figure(experiment, name).value;
+    const comparison = comparison_charts(this.facts);
+    return {
+      data: { ...machine_data(this.results), comparison: comparison_data(this.facts, this.comparison) },
+      helpers: {
+        heading: (experiment) => `Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
+        number: (experiment) => String(of(experiment).number),
+        claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${section_text(of(experiment).section)})`,
+        measured: (experiment) => plain(of(experiment).measured),
+        verdict: (experiment) => plain(verdict_text(of(experiment))),
+        reason: (experiment) => plain(of(experiment).reason),
+        figure: (experiment, name) => {
+          const figure = this.figure(experiment, name);
+          return with_unit(figure.value, figure.unit);
+        },
+        value: (experiment, name) => shown(value(experiment, name)),
+        table: (experiment, name) => results_table(this.table(experiment, name)),
+        chart: (experiment, name, title) => {
+          const table = this.table(experiment, name);
+          const charts = by(table.charts, (chart) => chart.title);
+          return this.draw_chart(of(experiment), table, one_of(charts, title, `chart of the table '${name}':`));
+        },
+        charts: (experiment) =>
+          of(experiment)
+            .tables.flatMap((table) => table.charts.map((chart) => this.draw_chart(of(experiment), table, chart)))
+            .join("\n\n"),
+        see: (experiment) =>
+          this.see(
+            of(experiment).tables.flatMap((table) =>
+              table.charts.map((chart) => drawing_name(of(experiment), table, chart)),
+            ),
+          ),
+        verdicts: () => verdicts_table(this.results),
+        all_figures: () => figures_table(this.results),
+        holds: (experiment) => of(experiment).verdict === "holds",
+        holds_when: (experiment) => of(experiment).verdict === "holds when",
+        fails: (experiment) => of(experiment).verdict === "does not hold",
+        given: (experiment, name) => Object.hasOwn(of(experiment).figures, name),
+        less: (experiment, first, second) => value(experiment, first) < value(experiment, second),
+        scene: (name) => {
+          const scenes = by(this.facts.cases, (one) => one.scene.split(":")[0]!);
+          one_of(scenes, name, "scene in the comparison:");
+          return `\`${name}\``;
+        },
+        leads: (which) => leads_table(this.facts, which),
+        lost: () => lost_list(this.facts),
+        any_lost: () => this.facts.leads.some((lead) => lead.ratio < 1),
+        standings: () => standings_table(this.facts),
+        comparison_chart: (name) => this.draw(`comparison_${name}`, one_of(comparison, name, "chart of the comparison")),
+        see_comparison: (name) => this.see([`comparison_${name}`]),
+        cite: (source) => {
+          this.cited.add(source);
+          return `[[${this.sources.number_of(source)}]](#${source})`;
+        },
+        source: (source) => `${this.sources.next(source)}. <a id="${source}"></a>`,
+      },
+    };
+  }
+}
