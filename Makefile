@@ -2,10 +2,11 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare bench test sanitize clang format check-format lint clean
+.PHONY: help setup setup-ci program compare paper paper-results bench test sanitize clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
+results := docs/paper/results
 sources := find $(wildcard include src lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
@@ -13,6 +14,21 @@ help: ## List the targets
 
 compare: program ## Build the program and run the quick comparison
 	build/release/broadside compare
+
+paper: program ## Make docs/paper/paper.md and its figures from the committed results
+	mkdir -p build/paper
+	build/release/broadside experiment --from $(results)/experiments.json --json build/paper/experiments.json \
+	  >build/paper/verdicts.txt
+	node web/build.mjs --paper
+	node build/web/paper/main.mjs build/paper/experiments.json $(results)/comparison.json docs/paper/templates docs/paper
+
+paper-results: program ## Measure what the paper quotes, on this machine: half an hour
+	mkdir -p build/paper $(results)
+	node web/build.mjs --paper
+	build/release/broadside experiment --json build/paper/measured.json
+	build/release/broadside compare --json build/paper/comparison.json
+	node build/web/paper/without_samples.mjs build/paper/comparison.json $(results)/comparison.json
+	cp build/paper/measured.json $(results)/experiments.json
 
 bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak
 	cmake --build --preset release --target motion $(soak)
@@ -41,7 +57,7 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench paper-results: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 setup:
 	@scripts/setup $(setup_options)
