@@ -8,5 +8,7 @@ namespace broadside::lab {
 
 Experiment brute_force_tests();
 Experiment overtaking();
+Experiment grid_memory();
+Experiment grid_spanning();
 
 }  // namespace broadside::lab

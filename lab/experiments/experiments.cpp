@@ -29,6 +29,8 @@ std::span<const Experiment> experiments() {
   static const std::vector<Experiment> list = {
       brute_force_tests(),
       overtaking(),
+      grid_memory(),
+      grid_spanning(),
   };
   return list;
 }

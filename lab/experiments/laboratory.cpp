@@ -82,4 +82,9 @@ Cell bytes_cell(const Measurement& measurement) {
   return measurement.own_bytes ? Cell(static_cast<double>(*measurement.own_bytes)) : Cell();
 }
 
+Cell over(const Cell& cell, double divisor) {
+  const double* const number = std::get_if<double>(&cell);
+  return number == nullptr ? cell : Cell(*number / divisor);
+}
+
 }  // namespace broadside::lab

@@ -59,4 +59,7 @@ Cell references_cell(const Measurement& measurement);
 /// What the algorithm holds between calls, in bytes; nothing where that is not counted.
 Cell bytes_cell(const Measurement& measurement);
 
+/// A number over another one, such as tests over boxes; nothing and text stay what they are.
+Cell over(const Cell& cell, double divisor);
+
 }  // namespace broadside::lab

@@ -1,5 +1,6 @@
 // What the experiments on brute force and grids (sections II and III of the paper) make of tables made by
 // hand.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -73,6 +74,122 @@ TEST(Overtaking, AsksForItsTablesAndForThreeRowsOfEachAlgorithm) {
   EXPECT_THROW(judge("overtaking", {tables[0], tables[1]}), std::invalid_argument);
   tables[0].rows.resize(8);
   EXPECT_THROW(judge("overtaking", tables), std::invalid_argument);
+}
+
+// Experiment 3.
+
+/// Worlds of 32, 64, ... cells on a side. A matrix takes `cell_bytes` for each cell up to the cap; its boxes
+/// are tested as often as `tests` says.
+std::vector<Table> worlds(double cell_bytes, const Curve& tests) {
+  Table cells{.name = "cells", .title = "", .columns = {{"world over cell"}, {"kept"}, {"cells"}}};
+  Table grids{.name = "grids",
+              .title = "",
+              .columns = {{"world over cell"}, {"grid"}, {"memory"}, {"tests a box"}, {"time"}}};
+  for (double world = 32; world <= 4096; world *= 2) {
+    cells.add({world, "in a matrix", world * world});
+    cells.add({world, "in a hash", 900.0});
+    const double capped = std::min(world, 256.0);
+    grids.add({world, "paper_grid:cell=2", 5000 + cell_bytes * capped * capped, tests(world), 1.0});
+    for (const char* grid : {"hierarchical_grid", "hierarchical_grid in 3D", "grid"})
+      grids.add({world, grid, 90e3, 10.0, 1.0});
+  }
+  return {cells, grids};
+}
+
+TEST(GridMemory, HoldsWhereMemoryGoesWithTheWorldAndTheCapWithTests) {
+  const Finding finding = judge("grid_memory", worlds(24, [](double world) { return world; }));
+  EXPECT_EQ(finding.verdict, Verdict::holds);
+  EXPECT_NEAR(figure(finding, "bytes_a_cell"), 24, 1e-6);
+  EXPECT_NEAR(figure(finding, "largest_matrix_bytes"), 24 * 4096.0 * 4096.0, 1);
+  EXPECT_NEAR(figure(finding, "full_at_world"), std::sqrt(16e9 / 24), 1);
+  EXPECT_EQ(figure(finding, "hierarchical_grid_memory_growth"), 1);
+}
+
+TEST(GridMemory, IsOfSmallCellsOnlyWhereLargeOnesCostNoTests) {
+  EXPECT_EQ(judge("grid_memory", worlds(24, [](double) { return 8.0; })).verdict_text(),
+            "holds when cells do not grow with the world");
+}
+
+TEST(GridMemory, DoesNotHoldWhereMemoryIsThatOfTheBoxes) {
+  EXPECT_EQ(judge("grid_memory", worlds(0, [](double world) { return world; })).verdict,
+            Verdict::does_not_hold);
+}
+
+TEST(GridMemory, AsksForThreeWorldsBelowTheCapAndForEachGrid) {
+  std::vector<Table> tables = worlds(24, [](double) { return 8.0; });
+  std::vector<Table> few = tables;
+  few[0].rows.erase(few[0].rows.begin(), few[0].rows.begin() + 4);
+  few[1].rows.erase(few[1].rows.begin(), few[1].rows.begin() + 8);
+  EXPECT_THROW(judge("grid_memory", few), std::invalid_argument);
+  std::erase_if(tables[1].rows, [](const std::vector<Cell>& row) { return row[1] == Cell("grid"); });
+  EXPECT_THROW(judge("grid_memory", tables), std::invalid_argument);
+  EXPECT_THROW(judge("grid_memory", {tables[0]}), std::invalid_argument);
+}
+
+// Experiment 4.
+
+/// Shares of adding, in percent, by the number of neighbours, the same for cells of every size.
+std::vector<Table> shares(const Curve& kept, const Curve& anew) {
+  Table shares{.name = "shares",
+               .title = "",
+               .columns = {{"scene"},
+                           {"neighbours"},
+                           {"cells across a box"},
+                           {"references a box"},
+                           {"tests a box"},
+                           {"adding"},
+                           {"adding to new cells"}}};
+  Table grids{.name = "grids", .title = "", .columns = {{"cells across a box"}, {"grid"}, {"time"}}};
+  for (const double neighbours : {1.0, 4.0, 16.0, 64.0}) {
+    for (double across = 1; across <= 16; across *= 2) {
+      // Where cells are large, nothing is as in the small ones that the claim is about.
+      const bool is_large = across < 8;
+      shares.add({"uniform:neighbours=" + std::to_string(neighbours), neighbours, across, across * across,
+                  across, is_large ? 0 : kept(neighbours), is_large ? 0 : anew(neighbours)});
+    }
+  }
+  for (const double across : {1.0, 4.0}) {
+    grids.add({across, "paper_grid", across});
+    grids.add({across, "grid", 1.0});
+  }
+  return {shares, grids};
+}
+
+const Curve all = [](double) { return 90.0; };
+const Curve none = [](double) { return 5.0; };
+const Curve half_at_eight = [](double neighbours) { return 50 * std::sqrt(8 / neighbours); };
+
+TEST(GridSpanning, HoldsWhereMostTimeGoesIntoAdding) {
+  const Finding finding = judge("grid_spanning", shares(all, all));
+  EXPECT_EQ(finding.verdict, Verdict::holds);
+  EXPECT_NEAR(figure(finding, "references_growth"), 2, 1e-6);
+  EXPECT_NEAR(figure(finding, "tests_growth"), 1, 1e-6);
+  EXPECT_EQ(figure(finding, "paper_grid_time_over_1_cell_across"), 4);
+}
+
+TEST(GridSpanning, HoldsUpToSomeDensity) {
+  EXPECT_EQ(judge("grid_spanning", shares(half_at_eight, all)).verdict_text(),
+            "holds when a box touches fewer than about 8.00 others");
+}
+
+TEST(GridSpanning, HoldsForNewCellsOnly) {
+  EXPECT_EQ(judge("grid_spanning", shares(none, all)).verdict_text(),
+            "holds when each search makes its cells anew");
+  EXPECT_EQ(judge("grid_spanning", shares(none, half_at_eight)).verdict_text(),
+            "holds when each search makes its cells anew, and a box touches fewer than about 8.00 others");
+}
+
+TEST(GridSpanning, DoesNotHoldWhereTestsTakeMost) {
+  EXPECT_EQ(judge("grid_spanning", shares(none, none)).verdict, Verdict::does_not_hold);
+}
+
+TEST(GridSpanning, AsksForTwoDensitiesAndForBothGrids) {
+  std::vector<Table> tables = shares(all, all);
+  std::vector<Table> one = tables;
+  one[0].rows.resize(5);
+  EXPECT_THROW(judge("grid_spanning", one), std::invalid_argument);
+  tables[1].rows.pop_back();
+  EXPECT_THROW(judge("grid_spanning", tables), std::invalid_argument);
 }
 
 }  // namespace
