@@ -94,13 +94,27 @@ class QuadtreeTracker final : public core::IncrementalTracker<D> {
       moved_since_build_ = 0;
     }
     tree_.resize(boxes);
+    Candidates<D> candidates(change, begun, ended);
+    std::uint64_t tests = 0;
+    // Into an empty tree go some, then as many again as are in it, so that no leaf is long much too full: all
+    // at once would be compared with each other.
+    constexpr std::uint32_t first_few = 256;
+    const auto count = static_cast<std::uint32_t>(movers_.size());
+    std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
+    for (std::uint32_t begin = 0; begin < end; begin = std::exchange(end, std::min(2 * end, count)))
+      tests += take(begin, end, candidates, change);
+    this->count(Statistics{.tests = tests, .references = tree_.references(), .cells = tree_.node_count()});
+  }
+
+  /// Takes some of the movers, by their numbers; how many boxes they were compared with.
+  std::uint64_t take(std::uint32_t begin, std::uint32_t end, Candidates<D>& candidates,
+                     const Change<D>& change) {
     filed_.clear();
     looks_.clear();
     above_.clear();
-    for (std::uint32_t mover = 0; mover < movers_.size(); ++mover) file(mover);
+    for (std::uint32_t mover = begin; mover < end; ++mover) file(mover);
     look_all();
 
-    Candidates<D> candidates(change, begun, ended);
     const std::uint64_t tests = kernels::compare(
         tree_.packs().view(), std::span<const kernels::MovingBox<D>>(movers_), tasks_, candidates);
     candidates.flush();
@@ -114,7 +128,7 @@ class QuadtreeTracker final : public core::IncrementalTracker<D> {
       }
     }
     tree_.tidy(change.now);
-    this->count(Statistics{.tests = tests, .references = tree_.references(), .cells = tree_.node_count()});
+    return tests;
   }
 
   void take_movers(const Change<D>& change) {

@@ -72,6 +72,16 @@ TEST(IncrementalTracker, ComparesAMoverWithItsNeighbourhoodOnly) {
   }
 }
 
+TEST(IncrementalTracker, TakesItsFirstBoxesWithoutComparingAllOfThem) {
+  for (const std::string spec : {"quadtree:update=root", "quadtree:update=relative"}) {
+    const auto tracker = make_tracker<2>(spec);
+    const std::vector<Box2> boxes = scattered(20'000);
+    EXPECT_GT(update(*tracker, boxes, {}), 1'000U) << spec;
+    ASSERT_TRUE(tracker->statistics()) << spec;
+    EXPECT_LE(tracker->statistics()->tests, 500 * boxes.size()) << spec;
+  }
+}
+
 TEST(IncrementalTracker, AllocatesNothingInASteadyState) {
   if (!lab::AllocationMeter().read()) GTEST_SKIP() << "this build does not count allocations";
   for (const std::string& spec : following) {
