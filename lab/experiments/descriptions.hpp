@@ -7,8 +7,12 @@
 namespace broadside::lab {
 
 Experiment brute_force_tests();
-Experiment overtaking();
 Experiment grid_memory();
+Experiment grid_rebuilding();
 Experiment grid_spanning();
+Experiment grid_translation();
+Experiment overtaking();
+Experiment quadtree_siblings();
+Experiment update_fraction();
 
 }  // namespace broadside::lab

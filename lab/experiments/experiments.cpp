@@ -31,6 +31,10 @@ std::span<const Experiment> experiments() {
       overtaking(),
       grid_memory(),
       grid_spanning(),
+      update_fraction(),
+      grid_translation(),
+      grid_rebuilding(),
+      quadtree_siblings(),
   };
   return list;
 }
