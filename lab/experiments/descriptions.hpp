@@ -7,12 +7,15 @@
 namespace broadside::lab {
 
 Experiment brute_force_tests();
-Experiment grid_memory();
-Experiment grid_rebuilding();
-Experiment grid_spanning();
-Experiment grid_translation();
 Experiment overtaking();
-Experiment quadtree_siblings();
+Experiment grid_memory();
+Experiment grid_spanning();
+Experiment sweep_axis();
+Experiment quadtree_sizes();
+Experiment quadtree_capacity();
 Experiment update_fraction();
+Experiment grid_translation();
+Experiment grid_rebuilding();
+Experiment quadtree_siblings();
 
 }  // namespace broadside::lab

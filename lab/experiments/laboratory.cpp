@@ -41,9 +41,21 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
 
 CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
                                const Effort& effort) const {
+  return measure(algorithms, request, effort, CompareOptions{}.find);
+}
+
+CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene,
+                               const CaseRequest& request) const {
+  const NamedScene named{scene, {.name = request.scene, .values = {}}};
+  return measure(algorithms, request, effort(), [&named](std::string_view) { return named; });
+}
+
+CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
+                               const Effort& effort, const FindScene& find) const {
   CompareOptions options;
   options.algorithms = algorithms;
   options.plan = {request};
+  options.find = find;
   options.effort = effort;
   options.watch = watch_;
   Comparison comparison = compare(*catalogue_, options);

@@ -10,6 +10,7 @@
 #include "lab/measure/contest.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/plan.hpp"
+#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 
@@ -37,10 +38,16 @@ class Laboratory {
   CaseResult measure(const std::string& algorithms, const CaseRequest& request) const;
   CaseResult measure(const std::string& algorithms, const CaseRequest& request, const Effort& effort) const;
 
+  /// The same on a scene of the experiment's own; `request.scene` is what it is called.
+  CaseResult measure(const std::string& algorithms, const Scene& scene, const CaseRequest& request) const;
+
   /// Shows what is going on and asks whether to go on. Throws Stopped.
   void at(std::string_view what) const { watch_.at(what); }
 
  private:
+  CaseResult measure(const std::string& algorithms, const CaseRequest& request, const Effort& effort,
+                     const FindScene& find) const;
+
   const Catalogue* catalogue_;
   bool quick_;
   Watch watch_;

@@ -85,6 +85,15 @@ std::vector<std::string> Table::texts(std::string_view column) const {
   return values<std::string>(*this, column);
 }
 
+double Table::number(std::string_view column) const {
+  const std::vector<double> all = numbers(column);
+  if (all.empty()) {
+    throw std::invalid_argument(fmt::format("table '{}': no number in column '{}' of {} rows; expected one",
+                                            name, column, rows.size()));
+  }
+  return all[0];
+}
+
 std::vector<std::string> Table::distinct_texts(std::string_view column) const {
   return distinct(texts(column));
 }

@@ -73,6 +73,9 @@ struct Table {
   std::vector<double> numbers(std::string_view column) const;
   std::vector<std::string> texts(std::string_view column) const;
 
+  /// A column's first number. Throws std::invalid_argument if there is none.
+  double number(std::string_view column) const;
+
   /// Each different text of a column, in the order in which they first come; likewise numbers.
   std::vector<std::string> distinct_texts(std::string_view column) const;
   std::vector<double> distinct_numbers(std::string_view column) const;
