@@ -48,6 +48,7 @@ Exit run(const std::vector<std::string>& arguments) {
       {"verify", broadside::cli::add_verify(program)},
       {"convert", broadside::cli::add_convert(program)},
       {"scene", broadside::cli::add_scene(program)},
+      {"draw", broadside::cli::add_draw(program)},
       {"list", broadside::cli::add_list(program)},
   };
   check_verb(arguments, program);

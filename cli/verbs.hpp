@@ -24,6 +24,7 @@ Verb add_pairs(CLI::App& program);
 Verb add_info(CLI::App& program);
 Verb add_verify(CLI::App& program);
 Verb add_convert(CLI::App& program);
+Verb add_draw(CLI::App& program);
 Verb add_list(CLI::App& program);
 
 }  // namespace broadside::cli

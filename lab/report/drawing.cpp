@@ -1,0 +1,200 @@
+// A scene's boxes and what algorithms lay over them, as paths.
+#include "lab/report/drawing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/outline.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/report/drawing_paths.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// The axes of the world that a view shows.
+using Axes = std::array<int, 2>;
+
+template <int D>
+std::vector<Axes> views_of() {
+  if (D == 2) return {{0, 1}};
+  return {{0, 1}, {0, 2}, {1, 2}};
+}
+
+template <int D>
+Rectangle seen(const Box<D>& box, const Axes& axes) {
+  return {{box.min[axes[0]], box.min[axes[1]]}, {box.max[axes[0]], box.max[axes[1]]}};
+}
+
+template <int D>
+std::vector<Rectangle> seen(std::span<const Box<D>> boxes, const Axes& axes) {
+  std::vector<Rectangle> rectangles;
+  for (const Box<D>& box : boxes) rectangles.push_back(seen(box, axes));
+  return rectangles;
+}
+
+/// A sweep at its middle box: where its line is, within which part, and which boxes it crosses there.
+template <int D>
+struct Sweep {
+  int axis;
+  float at;
+  Box<D> part;
+  std::vector<Box<D>> active;
+};
+
+template <int D>
+std::optional<Sweep<D>> sweep_of(const Outline<D>& outline, std::span<const Box<D>> boxes) {
+  if (outline.kind != "sweep" && outline.kind != "stripes") return std::nullopt;
+  const int axis = outline.swept_axis;
+  Sweep<D> sweep{axis, 0, outline.levels[0][outline.levels[0].size() / 2], {}};
+  std::vector<float> begins;
+  for (const Box<D>& box : boxes) {
+    if (overlap(box, sweep.part) && std::isfinite(box.min[axis])) begins.push_back(box.min[axis]);
+  }
+  if (begins.empty()) return std::nullopt;
+  std::ranges::sort(begins);
+  sweep.at = begins[begins.size() / 2];
+  sweep.part.min[axis] = sweep.part.max[axis] = sweep.at;
+  for (const Box<D>& box : boxes) {
+    if (overlap(box, sweep.part)) sweep.active.push_back(box);
+  }
+  return sweep;
+}
+
+/// The sweep's line and the boxes that it crosses, where its axis is one of the view's.
+template <int D>
+std::string path_of(const Sweep<D>& sweep, const Axes& axes, const Window& window) {
+  std::string path;
+  if (sweep.axis != axes[0] && sweep.axis != axes[1]) return path;
+  const int along = sweep.axis == axes[0] ? 1 : 0;
+  append_line(path, along, sweep.at, sweep.part.min[axes[along]], sweep.part.max[axes[along]], window);
+  for (const Box<D>& box : sweep.active) append_rectangle(path, seen(box, axes), window);
+  return path;
+}
+
+/// By place in the array: whether a box overlaps another one.
+template <int D>
+std::vector<bool> touching(std::span<const Box<D>> boxes) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  find_pairs(boxes, collector);
+  std::vector<bool> touches(boxes.size());
+  for (const Pair pair : pairs) touches[index(pair.first)] = touches[index(pair.second)] = true;
+  return touches;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most) {
+  std::vector<Box<D>> present;
+  std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
+  if (present.size() <= most) return present;
+  const double ratio = static_cast<double>(present.size()) / static_cast<double>(most);
+  const double factor = D == 2 ? std::sqrt(ratio) : std::cbrt(ratio);
+  std::vector<Box<D>> chosen;
+  for (std::size_t i = 0; i < most; ++i) {
+    Box<D> box = present[(2 * i + 1) * present.size() / (2 * most)];
+    for (int axis = 0; axis < D; ++axis) {
+      const double more = (double{box.max[axis]} - box.min[axis]) * (factor - 1) / 2;
+      if (!std::isfinite(more)) continue;
+      box.min[axis] = static_cast<float>(box.min[axis] - more);
+      box.max[axis] = static_cast<float>(box.max[axis] + more);
+    }
+    chosen.push_back(box);
+  }
+  return chosen;
+}
+
+template <int D>
+Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_t of,
+             std::span<const Contender> contenders) {
+  std::vector<Box<D>> present;
+  std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
+  const std::span<const Box<D>> drawn = present;
+  Drawing drawing{scene, D, drawn.size(), of, {}};
+  std::vector<std::pair<const Contender*, Outline<D>>> outlines;
+  for (const Contender& contender : contenders) {
+    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*contender.algorithm, contender.spec);
+    outlines.emplace_back(&contender, outline(*finder, drawn));
+  }
+  const std::vector<bool> touches = touching(drawn);
+  for (const Axes& axes : views_of<D>()) {
+    const std::vector<Rectangle> rectangles = seen(drawn, axes);
+    const Window window = window_on(rectangles);
+    DrawingView& view = drawing.views.emplace_back();
+    view.axes = {"xyz"[axes[0]], "xyz"[axes[1]]};
+    view.width = window.width;
+    view.height = window.height;
+    for (std::size_t i = 0; i < rectangles.size(); ++i)
+      append_rectangle(touches[i] ? view.touching : view.alone, rectangles[i], window);
+    for (const auto& [contender, outline] : outlines) {
+      DrawingLayer& layer = view.layers.emplace_back();
+      layer.algorithm = contender->spec.text();
+      layer.caption = outline.caption;
+      Edges edges(window);
+      for (const std::vector<Box<D>>& level : outline.levels)
+        layer.levels.push_back(edges.next_level(seen<D>(level, axes)));
+      if (const std::optional<Sweep<D>> sweep = sweep_of<D>(outline, drawn))
+        layer.active = path_of(*sweep, axes, window);
+    }
+  }
+  return drawing;
+}
+
+Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of,
+                   std::span<const Contender> contenders, std::size_t most, std::uint64_t seed) {
+  std::vector<Contender> able;
+  for (const Contender& contender : contenders) {
+    if (contender.algorithm->has_dimension(dimension)) able.push_back(contender);
+  }
+  const auto in_dimension = [&]<int D>() {
+    SceneRequest request;
+    request.boxes = most;
+    request.seed = seed;
+    const History<D> history = make_history<D>(named.scene, named.spec, request);
+    const std::vector<Box<D>> boxes = thinned<D>(history.boxes, most);
+    const auto present = static_cast<std::size_t>(std::ranges::count_if(history.boxes, is_present<D, float>));
+    const bool is_own = named.scene.fixed_count || boxes.size() < present;
+    return draw<D>(named.spec.text(), boxes, is_own ? present : std::max(of, present), able);
+  };
+  return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
+}
+
+nlohmann::json json_of(const Drawing& drawing) {
+  nlohmann::json views = nlohmann::json::array();
+  for (const DrawingView& view : drawing.views) {
+    nlohmann::json layers = nlohmann::json::array();
+    for (const DrawingLayer& layer : view.layers) {
+      std::vector<std::string> levels = layer.levels;
+      if (!layer.active.empty()) levels.push_back(layer.active);
+      layers.push_back({{"algorithm", layer.algorithm}, {"caption", layer.caption}, {"levels", levels}});
+    }
+    views.push_back({{"axes", view.axes},
+                     {"width", view.width},
+                     {"height", view.height},
+                     {"boxes", view.alone + view.touching},
+                     {"layers", layers}});
+  }
+  return {{"scene", drawing.scene},
+          {"dimension", drawing.dimension},
+          {"boxes", drawing.boxes},
+          {"of", drawing.of},
+          {"views", views}};
+}
+
+template std::vector<Box<2>> thinned(std::span<const Box<2>>, std::size_t);
+template std::vector<Box<3>> thinned(std::span<const Box<3>>, std::size_t);
+template Drawing draw(const std::string&, std::span<const Box<2>>, std::size_t, std::span<const Contender>);
+template Drawing draw(const std::string&, std::span<const Box<3>>, std::size_t, std::span<const Contender>);
+
+}  // namespace broadside::lab

@@ -1,0 +1,177 @@
+// A drawing as a picture of its own: SVG.
+#include "lab/report/drawing_svg.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace broadside::lab {
+namespace {
+
+/// Pixels of a panel's width, and around it.
+constexpr int panel_width = 420;
+constexpr int gap = 20;
+constexpr int title_height = 46;
+constexpr int key_height = 30;
+constexpr std::size_t most_columns = 3;
+
+/// How many characters of a caption go into a panel's width.
+constexpr std::size_t caption_length = 72;
+
+constexpr const char* style =
+    "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif;"
+    "fill:#1f2328}"
+    ".t{font-size:15px;font-weight:600}.c{font-size:11.5px;fill:#57606a}"
+    ".f{fill:#fff;stroke:#d0d7de}"
+    ".b path{vector-effect:non-scaling-stroke;stroke-width:.8}"
+    ".a{fill:#8c959f;fill-opacity:.22;stroke:#6e7781}"
+    ".o{fill:#d4622a;fill-opacity:.28;stroke:#b9501c}"
+    ".l path{vector-effect:non-scaling-stroke;fill:none;stroke:#1f6feb}"
+    ".s{vector-effect:non-scaling-stroke;fill:#1a7f37;fill-opacity:.16;stroke:#1a7f37;stroke-width:1.6}";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        // Control characters are no characters of XML.
+        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return out;
+}
+
+struct Panel {
+  const DrawingView* view;
+  std::size_t number;         // of the view
+  const DrawingLayer* layer;  // or none
+};
+
+std::string shortened(const std::string& text) {
+  return text.size() <= caption_length ? text : text.substr(0, caption_length - 3) + "...";
+}
+
+/// Of a layer's levels, the uppermost ones stand out.
+std::string lines_of(const DrawingLayer& layer) {
+  std::string lines;
+  const std::size_t count = layer.levels.size();
+  for (std::size_t level = count; level-- > 0;) {
+    if (layer.levels[level].empty()) continue;
+    const double share = count < 2 ? 0 : static_cast<double>(level) / static_cast<double>(count - 1);
+    lines += fmt::format("<path d=\"{}\" stroke-width=\"{:.1f}\" stroke-opacity=\"{:.2f}\"/>\n",
+                         layer.levels[level], 1.8 - 0.8 * share, 1 - 0.25 * share);
+  }
+  return lines;
+}
+
+std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, int height) {
+  const DrawingView& view = *panel.view;
+  const double scale = static_cast<double>(panel_width) / view.width;
+  std::string title = panel.layer == nullptr ? drawing.scene : panel.layer->algorithm;
+  if (drawing.dimension == 3) title += fmt::format(", {} to the right, {} up", view.axes[0], view.axes[1]);
+  std::string caption;
+  if (panel.layer != nullptr)
+    caption = panel.layer->caption.empty() ? "nothing laid over the boxes" : panel.layer->caption;
+  std::string text = fmt::format("<g transform=\"translate({} {})\">\n<text class=\"t\" y=\"15\">{}</text>\n",
+                                 x, y, escaped(shortened(title)));
+  text += fmt::format("<text class=\"c\" y=\"34\">{}</text>\n", escaped(shortened(caption)));
+  text += fmt::format("<svg y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\">\n", title_height,
+                      panel_width, height, view.width, view.height);
+  text += fmt::format("<rect class=\"f\" width=\"{}\" height=\"{}\" stroke-width=\"{:.1f}\"/>\n", view.width,
+                      view.height, 2 / scale);
+  text += fmt::format("<use href=\"#b{}\"/>\n", panel.number);
+  if (panel.layer != nullptr) {
+    text += "<g class=\"l\">\n" + lines_of(*panel.layer) + "</g>\n";
+    if (!panel.layer->active.empty())
+      text += fmt::format("<path class=\"s\" d=\"{}\"/>\n", panel.layer->active);
+  }
+  return text + "</svg>\n</g>\n";
+}
+
+/// What a screen reader says of the picture.
+std::string description_of(const Drawing& drawing) {
+  std::string text = fmt::format("{} boxes in {}D", drawing.boxes, drawing.dimension);
+  if (drawing.of > drawing.boxes) text += fmt::format(", for {}", drawing.of);
+  text += "; those that overlap another one are orange.";
+  if (drawing.views.empty()) return text;
+  for (const DrawingLayer& layer : drawing.views[0].layers) {
+    text += fmt::format(" {}: {}.", layer.algorithm,
+                        layer.caption.empty() ? "nothing laid over the boxes" : layer.caption);
+    if (!layer.active.empty())
+      text += " Half way of a sweep, its line and the boxes that it crosses are green.";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string svg_of(const Drawing& drawing) {
+  std::vector<Panel> panels;
+  std::size_t layers = 0;
+  for (const DrawingView& view : drawing.views) layers = std::max(layers, view.layers.size());
+  for (std::size_t layer = 0; layer < std::max<std::size_t>(layers, 1); ++layer) {
+    for (std::size_t i = 0; i < drawing.views.size(); ++i) {
+      const DrawingView& view = drawing.views[i];
+      panels.push_back({&view, i, layers == 0 ? nullptr : &view.layers[layer]});
+    }
+  }
+  const auto height_of = [](const Panel& panel) {
+    return panel_width * panel.view->height / panel.view->width;
+  };
+  const std::size_t columns = std::clamp<std::size_t>(panels.size(), 1, most_columns);
+  std::string body;
+  int y = gap;
+  for (std::size_t first = 0; first < panels.size(); first += columns) {
+    int highest = 0;
+    for (std::size_t i = first; i < std::min(first + columns, panels.size()); ++i) {
+      const int x = gap + static_cast<int>(i - first) * (panel_width + gap);
+      body += panel_at(drawing, panels[i], x, y, height_of(panels[i]));
+      highest = std::max(highest, height_of(panels[i]));
+    }
+    y += title_height + highest + gap;
+  }
+  const int width = gap + static_cast<int>(columns) * (panel_width + gap);
+  const int height = y + key_height;
+  bool swept = false;
+  for (const Panel& panel : panels) swept |= panel.layer != nullptr && !panel.layer->active.empty();
+  std::string key = fmt::format("{}: {} boxes", drawing.scene, drawing.boxes);
+  if (drawing.of > drawing.boxes) key += fmt::format(" for {}", drawing.of);
+  key += ". Orange: overlaps another one.";
+  if (swept) key += " Green: a sweep half way.";
+
+  std::string text = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "role=\"img\" aria-labelledby=\"title description\">\n",
+      width, height);
+  text +=
+      fmt::format("<title id=\"title\">Boxes of the scene {}</title>\n<desc id=\"description\">{}</desc>\n",
+                  escaped(drawing.scene), escaped(description_of(drawing)));
+  text += fmt::format("<style>{}</style>\n<defs>\n", style);
+  for (std::size_t i = 0; i < drawing.views.size(); ++i) {
+    const DrawingView& view = drawing.views[i];
+    text += fmt::format(
+        "<g id=\"b{}\" class=\"b\">\n<path class=\"a\" d=\"{}\"/>\n<path class=\"o\" d=\"{}\"/>\n</g>\n", i,
+        view.alone, view.touching);
+  }
+  text += fmt::format("</defs>\n<rect width=\"{}\" height=\"{}\" fill=\"#f6f8fa\"/>\n", width, height);
+  text += body;
+  text += fmt::format("<text class=\"c\" x=\"{}\" y=\"{}\">{}</text>\n</svg>\n", gap, height - gap / 2,
+                      escaped(key));
+  return text;
+}
+
+}  // namespace broadside::lab
