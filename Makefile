@@ -19,15 +19,15 @@ paper: program ## Make docs/paper/paper.md and its figures from the committed re
 	mkdir -p build/paper
 	build/release/broadside experiment --from $(results)/experiments.json --json build/paper/experiments.json \
 	  >build/paper/verdicts.txt
-	node web/build.mjs --paper
-	node build/web/paper/main.mjs build/paper/experiments.json $(results)/comparison.json docs/paper/templates docs/paper
+	node web/build.mjs --paper build/paper
+	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json docs/paper/templates docs/paper
 
 paper-results: program ## Measure what the paper quotes, on this machine: half an hour
 	mkdir -p build/paper $(results)
-	node web/build.mjs --paper
+	node web/build.mjs --paper build/paper
 	build/release/broadside experiment --json build/paper/measured.json
 	build/release/broadside compare --json build/paper/comparison.json
-	node build/web/paper/without_samples.mjs build/paper/comparison.json $(results)/comparison.json
+	node build/paper/without_samples.mjs build/paper/comparison.json $(results)/comparison.json
 	cp build/paper/measured.json $(results)/experiments.json
 
 bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak

@@ -11,6 +11,14 @@ export interface SvgOptions {
   title?: string;
 }
 
+// Texts as wide as the widest of common fonts draws them, so that none runs into the next.
+echarts.setPlatformAPI({
+  measureText: (text, font) => {
+    const size = Number(/([\d.]+)px/.exec(font ?? "")?.[1] ?? 12);
+    return { width: text.length * 0.59 * size } as TextMetrics;
+  },
+});
+
 /** With numbers of at most two decimals, no more than a picture needs, a title and a description. */
 export function svg_of(drawn: Drawn, options: SvgOptions): string {
   const { width } = options;

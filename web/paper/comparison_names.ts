@@ -117,11 +117,11 @@ export function comparison_charts(facts: Facts): Record<string, NamedChart> {
       draw: (place) => draw_standings(facts.cases, place),
     },
     leads_still: {
-      caption: "Boxes that rest: time of the fastest peer over that of the fastest of ours",
+      caption: "Boxes that rest: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
       draw: (place) => draw_leads(facts.still, place),
     },
     leads_moving: {
-      caption: "Boxes that move: time of the fastest peer over that of the fastest of ours",
+      caption: "Boxes that move: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
       draw: (place) => draw_leads(facts.moving, place),
     },
     winners: { caption: "The fastest in each case", draw: (place) => draw_winners(facts.cases, place) },

@@ -41,7 +41,7 @@ export function machine_data(results: Experiments): Record<string, unknown> {
 export function verdicts_table({ experiments }: Experiments): string {
   return table_text(
     [" claim", "what it says", "section", "verdict"],
-    experiments.map((one) => [String(one.number), plain(one.title), plain(one.section), plain(verdict_text(one))]),
+    experiments.map((one) => [String(one.number), `[${plain(one.title)}](#${one.name})`, plain(one.section), plain(verdict_text(one))]),
   );
 }
 

@@ -14,11 +14,3 @@ export function table_text(columns: readonly string[], rows: readonly (readonly 
     ...rows.map(line),
   ].join("\n");
 }
-
-/** The words of a text as part of a file's name: "Time over n (2D)" is "time_over_n_2d". */
-export function slug(text: string): string {
-  return text
-    .toLowerCase()
-    .replace(/[^\p{L}\p{N}]+/gu, "_")
-    .replace(/^_|_$/g, "");
-}

@@ -6,7 +6,7 @@ import { comparison_charts, comparison_data, leads_table, lost_list, standings_t
 import { figures_table, machine_data, results_table, section_text, verdict_text, verdicts_table } from "./experiment_names.ts";
 import { facts_of, type Facts } from "./facts.ts";
 import type { Names } from "./fill.ts";
-import { plain, slug } from "./markdown.ts";
+import { plain } from "./markdown.ts";
 import { Numbering } from "./numbering.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown, with_unit } from "./words.ts";
@@ -27,8 +27,11 @@ function one_of<Thing>(all: Record<string, Thing>, key: string, what: string): T
 const by = <Thing>(all: readonly Thing[], key: (thing: Thing) => string): Record<string, Thing> =>
   Object.fromEntries(all.map((thing) => [key(thing), thing]));
 
-const drawing_name = (experiment: Experiment, table: Table, chart: ChartSpec) =>
-  `${experiment.name}_${table.name}_${slug(chart.title)}`;
+/** A drawing's name, which is its file's: short, and unique where names of experiments and tables are. */
+function drawing_name(experiment: Experiment, table: Table, chart: ChartSpec): string {
+  const name = `${experiment.name}_${table.name}`;
+  return table.charts.length === 1 ? name : `${name}_${table.charts.indexOf(chart) + 1}`;
+}
 
 /** Results as templates name them. What is drawn, and how figures and sources are numbered, is kept here. */
 export class Paper {
@@ -101,8 +104,9 @@ export class Paper {
     return {
       data: { ...machine_data(this.results), comparison: comparison_data(this.facts, this.comparison) },
       helpers: {
-        heading: (experiment) => `Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
-        number: (experiment) => String(of(experiment).number),
+        heading: (experiment) =>
+          `<a id="${of(experiment).name}"></a>Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
+        number: (experiment) => `[${of(experiment).number}](#${of(experiment).name})`,
         claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${section_text(of(experiment).section)})`,
         measured: (experiment) => plain(of(experiment).measured),
         verdict: (experiment) => plain(verdict_text(of(experiment))),

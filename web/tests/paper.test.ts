@@ -64,7 +64,7 @@ test("the machine is named", () => {
 
 test("what would be Markdown in results is shown as it is", () => {
   assert.match(text_of('{{claim "tests"}}'), /n\\\*n tests/);
-  assert.match(text_of("{{verdicts}}"), /\| Tests grow \\\| squarely \|/);
+  assert.match(text_of("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
 });
 
 test("tables have a row a line and nothing where nothing is known", () => {
@@ -78,7 +78,7 @@ test("charts are numbered, drawn and referred to before they stand there", () =>
   const made = paper('See {{see "tests"}}.\n\n{{charts "tests"}}');
   assert.match(made.get("paper.md")!, /See Figure 1\./);
   const [name] = [...made.keys()].filter((path) => path !== "paper.md");
-  assert.equal(name, "figures/tests_times_time_over_boxes.svg");
+  assert.equal(name, "figures/tests_times.svg");
   assert.match(made.get(name!)!, /^<svg[^>]*><title>Time over boxes<\/title>/);
 });
 
@@ -179,11 +179,11 @@ test("the program writes the paper, drops figures that are gone, and then finds 
     mkdirSync(join(folder, "figures"));
     writeFileSync(join(folder, "figures", "old.svg"), "old");
     assert.equal(make(), 0);
-    assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times_time_over_boxes.svg"]);
+    assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times.svg"]);
     assert.equal(make("--check"), 0);
-    writeFileSync(join(folder, "figures", "tests_times_time_over_boxes.svg"), "other");
+    writeFileSync(join(folder, "figures", "tests_times.svg"), "other");
     assert.equal(make("--check"), 1);
-    assert.match(printed(), /tests_times_time_over_boxes\.svg/);
+    assert.match(printed(), /tests_times\.svg/);
   });
 });
 
@@ -199,7 +199,7 @@ for (const [what, file, text] of [
       assert.equal(make(), 2);
       assert.match(printed(), /^make paper: /);
       assert.equal(readFileSync(join(folder, "paper.md"), "utf8"), before);
-      assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times_time_over_boxes.svg"]);
+      assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times.svg"]);
     });
   });
 }
