@@ -65,11 +65,15 @@ setup:
 setup-ci:
 	@scripts/setup --ci
 
+# What setup has installed, a configured build has to look for: setup then takes build.ninja away, and make, which has
+# seen it, does not miss it.
 program: build/release/build.ninja
+	@test -f $< || cmake --preset release
 	cmake --build --preset release --target broadside_program
 
 # Everything built under one preset, and its tests.
 tests-%: build/%/build.ninja
+	@test -f $< || cmake --preset $*
 	cmake --build --preset $*
 	ctest --preset $* --parallel $(jobs)
 

@@ -17,5 +17,6 @@ export function bytes(count: number): string {
 /** A number and its unit: "31 %", "4.21 ms", "2.76 MB", "12,000 boxes". */
 export function with_unit(number: number, unit: string): string {
   if (unit === "bytes") return bytes(number);
+  if (unit === "boxes" && number >= 10) return `${grouped(Math.round(number))} boxes`;
   return unit === "" ? shown(number) : `${shown(number)} ${unit}`;
 }
