@@ -10,6 +10,7 @@ Experiment brute_force_tests();
 Experiment overtaking();
 Experiment grid_memory();
 Experiment grid_spanning();
+Experiment grid_cell_size();
 Experiment sweep_axis();
 Experiment quadtree_sizes();
 Experiment quadtree_capacity();

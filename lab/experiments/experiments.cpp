@@ -31,6 +31,7 @@ std::span<const Experiment> experiments() {
       overtaking(),
       grid_memory(),
       grid_spanning(),
+      grid_cell_size(),
       sweep_axis(),
       quadtree_sizes(),
       quadtree_capacity(),

@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -190,6 +191,63 @@ TEST(GridSpanning, AsksForTwoDensitiesAndForBothGrids) {
   EXPECT_THROW(judge("grid_spanning", one), std::invalid_argument);
   tables[1].rows.pop_back();
   EXPECT_THROW(judge("grid_spanning", tables), std::invalid_argument);
+}
+
+// Experiment 5.
+
+/// Curves of cells from 1 to 32 boxes long, the best 4, and hardly better in the scenes in `flat`; what grids
+/// choose takes `chosen` times as long as the best.
+std::vector<Table> curves(const std::vector<std::string>& flat, double chosen) {
+  std::vector<Table> tables;
+  Table choices{.name = "choices", .title = "", .columns = {{"scene"}, {"grid"}, {"chosen over best"}}};
+  for (const auto& [name, label] : {std::pair{"paper", "the paper's grid"}, std::pair{"ours", "our grid"},
+                                    std::pair{"ours_3d", "our grid in 3D"}}) {
+    Table table{.name = name, .title = "", .columns = {{"scene"}, {"cell"}, {"time"}}};
+    for (const char* scene : {"uniform", "power_law", "mixed", "clustered", "thin"}) {
+      const bool is_flat = std::ranges::count(flat, scene) > 0;
+      for (double cell = 1; cell <= 32; cell *= 2)
+        table.add({scene, cell, 1 + std::abs(std::log2(cell / 4)) * (is_flat ? 0.05 : 0.5)});
+      choices.add({scene, label, chosen});
+    }
+    tables.push_back(std::move(table));
+  }
+  tables.push_back(std::move(choices));
+  return tables;
+}
+
+TEST(GridCellSize, HoldsWhereEachSceneHasAnOptimumThatNoRuleFinds) {
+  const Finding finding = judge("grid_cell_size", curves({}, 2));
+  EXPECT_EQ(finding.verdict, Verdict::holds);
+  EXPECT_EQ(figure(finding, "best_cell_thin"), 4);
+  EXPECT_EQ(figure(finding, "largest_over_best_thin"), 2.5);
+  EXPECT_EQ(figure(finding, "ours_3d_chosen_over_best_at_most"), 2);
+  EXPECT_EQ(figure(finding, "own_curves_with_both_ends_high"), 10);
+}
+
+TEST(GridCellSize, IsNoMatterOfHandsWhereARuleFindsTheOptimum) {
+  EXPECT_EQ(judge("grid_cell_size", curves({}, 1.1)).verdict_text(),
+            "holds when the hand may be a rule: with the size that our grid chooses, it takes 1.10 times as "
+            "long as with the best");
+}
+
+TEST(GridCellSize, NamesTheScenesInWhichOnlySomeHaveAnOptimum) {
+  EXPECT_EQ(judge("grid_cell_size", curves({"uniform", "mixed", "thin"}, 2)).verdict_text(),
+            "holds when boxes are as in power_law, clustered");
+}
+
+TEST(GridCellSize, DoesNotHoldWhereNoSizeMatters) {
+  EXPECT_EQ(
+      judge("grid_cell_size", curves({"uniform", "power_law", "mixed", "clustered", "thin"}, 1)).verdict,
+      Verdict::does_not_hold);
+}
+
+TEST(GridCellSize, AsksForEachSceneAndChoice) {
+  std::vector<Table> tables = curves({}, 2);
+  std::vector<Table> few = tables;
+  few[0].rows.resize(12);
+  EXPECT_THROW(judge("grid_cell_size", few), std::invalid_argument);
+  tables[3].rows.pop_back();
+  EXPECT_THROW(judge("grid_cell_size", tables), std::invalid_argument);
 }
 
 }  // namespace
