@@ -1,8 +1,8 @@
 // broadside experiment: the paper's claims, tested.
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -44,8 +44,12 @@ std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names
 
 std::string content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw Unusable(fmt::format("{}: cannot be read; expected results of experiments", path));
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream content;
+  // Of an empty file nothing goes over, which is a failure of `content`.
+  if (file && file.peek() != std::ifstream::traits_type::eof()) content << file.rdbuf();
+  if (!file.is_open() || file.bad() || content.fail())
+    throw Unusable(fmt::format("{}: cannot be read; expected results of experiments", path));
+  return content.str();
 }
 
 void print_list() {

@@ -11,8 +11,8 @@ namespace broadside {
 /// (AVX-512), "AVX2", "SSE4" or "NEON". Pairs and their order do not depend on it. Thread-safe.
 std::string instruction_set();
 
-/// Those that the library was compiled for and this processor has, the best first. The last one is what every
-/// processor of its kind has. Not changed by limit_instruction_set(). Thread-safe.
+/// Those that the library was compiled for and this processor has, the best first; the last one is plain C++.
+/// Not changed by limit_instruction_set(). Thread-safe.
 std::vector<std::string> instruction_sets();
 
 /// Has every search of this process use the instruction set `name`, one of instruction_sets(), or the best

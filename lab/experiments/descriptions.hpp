@@ -18,5 +18,6 @@ Experiment update_fraction();
 Experiment grid_translation();
 Experiment grid_rebuilding();
 Experiment quadtree_siblings();
+Experiment winners();
 
 }  // namespace broadside::lab

@@ -39,6 +39,7 @@ std::span<const Experiment> experiments() {
       grid_translation(),
       grid_rebuilding(),
       quadtree_siblings(),
+      winners(),
   };
   return list;
 }

@@ -24,6 +24,9 @@ class Laboratory {
 
   bool is_quick() const noexcept { return quick_; }
 
+  /// The algorithms there are to measure.
+  const Catalogue& catalogue() const noexcept { return *catalogue_; }
+
   /// One of two values, by how thorough the experiment is.
   template <typename Value>
   Value either(Value thorough, Value quick) const {

@@ -1,8 +1,12 @@
 // Does experiments, and tells a terminal of them.
 #include "lab/experiments/results.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
+#include <set>
+#include <stdexcept>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -60,6 +64,19 @@ std::string wrapped(std::string_view text) {
 
 }  // namespace
 
+Finding judged(const Experiment& experiment, const std::vector<Table>& tables) {
+  Finding finding = experiment.judge(tables);
+  std::set<std::string> names;
+  for (const Figure& figure : finding.figures) {
+    if (!std::isfinite(figure.value))
+      throw std::invalid_argument(
+          fmt::format("figure '{}' comes to {}; expected a finite number", figure.name, figure.value));
+    if (!names.insert(figure.name).second)
+      throw std::invalid_argument(fmt::format("figure '{}' twice; expected it once", figure.name));
+  }
+  return finding;
+}
+
 ExperimentResults begin_results(std::span<const std::string> command, bool quick) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {.machine = this_machine(),
@@ -79,7 +96,7 @@ void do_experiments(std::span<const Experiment* const> chosen, const Laboratory&
       const Stopwatch watch;
       std::vector<Table> tables = experiment->measure(laboratory);
       const double seconds = watch.milliseconds() / 1e3;
-      Finding finding = experiment->judge(tables);
+      Finding finding = judged(*experiment, tables);
       results.results.push_back({experiment, std::move(tables), std::move(finding), seconds});
       if (finished) finished(results.results.back());
     }

@@ -31,6 +31,10 @@ struct ExperimentResults {
   std::vector<ExperimentResult> results{};
 };
 
+/// What the experiment finds in these tables. Throws std::invalid_argument if the tables are not what it
+/// judges by, or it comes to a figure that is not finite or has the name of another.
+Finding judged(const Experiment& experiment, const std::vector<Table>& tables);
+
 /// What there is to say of a run that begins now, with no results yet.
 ExperimentResults begin_results(std::span<const std::string> command, bool quick);
 

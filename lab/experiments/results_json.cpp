@@ -1,6 +1,7 @@
 // Experiments as JSON, and back.
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -82,6 +83,8 @@ class Reader {
   template <typename Value>
   Value get(const char* key, std::string_view expected) const {
     const Json& value = at(key, expected);
+    // The library would take true for 1.
+    if (std::is_same_v<Value, double> && !value.is_number()) fail(key, value, expected);
     try {
       return value.get<Value>();
     } catch (const Json::exception&) {
@@ -92,6 +95,12 @@ class Reader {
   const Json& list(const char* key) const {
     const Json& value = at(key, "a list");
     if (!value.is_array()) fail(key, value, "a list");
+    return value;
+  }
+
+  const Json& object(const char* key) const {
+    const Json& value = at(key, "an object");
+    if (!value.is_object()) fail(key, value, "an object");
     return value;
   }
 
@@ -129,6 +138,20 @@ Chart read_chart(const Json& json, const std::string& where) {
   reader.fail("kind", kind, "lines, bars or map");
 }
 
+/// Refuses a chart of columns that are not there.
+void check_columns(const Chart& chart, const Table& table, const std::string& where) {
+  std::vector<std::string> columns = {chart.x, chart.y};
+  for (const std::string& column : {chart.series, chart.value}) {
+    if (!column.empty()) columns.push_back(column);
+  }
+  for (const auto& [column, text] : chart.where) columns.push_back(column);
+  try {
+    for (const std::string& column : columns) table.column(column);
+  } catch (const std::invalid_argument& missing) {
+    throw FileError(fmt::format("{}, chart '{}': {}", where, chart.title, missing.what()));
+  }
+}
+
 Cell read_cell(const Json& json, const std::string& where) {
   if (json.is_null()) return {};
   if (json.is_string()) return json.get<std::string>();
@@ -143,13 +166,17 @@ Table read_table(const Json& json, const std::string& where_all) {
               .title = reader.get<std::string>("title", "a text"),
               .columns = {}};
   const std::string where = fmt::format("{}, table '{}'", where_all, table.name);
-  for (const Json& column : reader.list("columns")) {
-    const Reader fields(column, where + ", columns");
-    table.columns.push_back(
-        {fields.get<std::string>("name", "a text"), fields.get<std::string>("unit", "a text")});
+  for (const Json& json_column : reader.list("columns")) {
+    const Reader fields(json_column, where + ", columns");
+    Column column{fields.get<std::string>("name", "a text"), fields.get<std::string>("unit", "a text")};
+    if (std::ranges::find(table.columns, column.name, &Column::name) != table.columns.end())
+      throw FileError(fmt::format("{}: column '{}' twice; expected it once", where, column.name));
+    table.columns.push_back(std::move(column));
   }
-  for (const Json& chart : reader.list("charts"))
+  for (const Json& chart : reader.list("charts")) {
     table.charts.push_back(read_chart(chart, where + ", charts"));
+    check_columns(table.charts.back(), table, where);
+  }
   for (const Json& row : reader.list("rows")) {
     const std::string where_row = fmt::format("{}, row {}", where, table.rows.size() + 1);
     if (!row.is_array() || row.size() != table.columns.size())
@@ -174,13 +201,40 @@ ExperimentResult read_result(const Json& json, const std::string& name) {
     throw FileError(fmt::format("{}: {}", name, unknown.what()));
   }
   result.seconds = reader.get<double>("seconds", "a number");
-  for (const Json& table : reader.list("tables")) result.tables.push_back(read_table(table, where));
+  for (const Json& json_table : reader.list("tables")) {
+    Table table = read_table(json_table, where);
+    for (const Table& earlier : result.tables) {
+      if (earlier.name == table.name)
+        throw FileError(fmt::format("{}: table '{}' twice; expected it once", where, table.name));
+    }
+    result.tables.push_back(std::move(table));
+  }
   try {
-    result.finding = result.experiment->judge(result.tables);
+    result.finding = judged(*result.experiment, result.tables);
   } catch (const std::invalid_argument& unfit) {
     throw FileError(fmt::format("{}: {}", where, unfit.what()));
   }
   return result;
+}
+
+Json parsed(std::string_view text, const std::string& name) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw FileError(
+        fmt::format("{}: {}; expected JSON as broadside experiment --json writes it", name, error.what()));
+  }
+}
+
+/// The machine or the build, whose fields may be null or missing but not of another kind.
+template <typename Part>
+Part read_part(const Reader& reader, const char* key, Part (*read)(const Json&)) {
+  const Json& json = reader.object(key);
+  try {
+    return read(json);
+  } catch (const Json::exception&) {
+    reader.fail(key, json, std::string("the ") + key + " as this program writes it");
+  }
 }
 
 }  // namespace
@@ -201,27 +255,28 @@ std::string json_of(const ExperimentResults& results) {
 }
 
 ExperimentResults read_experiments(std::string_view text, const std::string& name) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw FileError(
-        fmt::format("{}: {}; expected JSON as broadside experiment --json writes it", name, error.what()));
-  }
+  const Json json = parsed(text, name);
   const Reader reader(json, name);
   if (const auto found = reader.get<std::string>("schema", schema); found != schema)
     throw FileError(fmt::format("{}: schema '{}'; expected '{}'", name, found, schema));
   ExperimentResults results{
-      .machine = read_machine(reader.at("machine", "an object")),
-      .build = read_build(reader.at("build", "an object")),
+      .machine = read_part(reader, "machine", read_machine),
+      .build = read_part(reader, "build", read_build),
       .target = reader.get<std::string>("target", "a text"),
       .date = reader.get<std::string>("date", "a text"),
       .command = reader.get<std::vector<std::string>>("command", "a list of texts"),
       .quick = reader.get<bool>("quick", "true or false"),
       .stopped = reader.get<bool>("stopped", "true or false"),
   };
-  for (const Json& experiment : reader.list("experiments"))
-    results.results.push_back(read_result(experiment, name));
+  for (const Json& experiment : reader.list("experiments")) {
+    ExperimentResult result = read_result(experiment, name);
+    for (const ExperimentResult& earlier : results.results) {
+      if (earlier.experiment == result.experiment)
+        throw FileError(
+            fmt::format("{}: experiment '{}' twice; expected it once", name, result.experiment->name));
+    }
+    results.results.push_back(std::move(result));
+  }
   if (results.results.empty())
     throw FileError(fmt::format("{}: 0 experiments; expected results of at least one", name));
   return results;
