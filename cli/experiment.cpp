@@ -108,13 +108,14 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
     on_signal(OnSignal::note);
     const std::string text = lab::json_of(results);
     lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
-    if (results.stopped)
+    if (results.stopped && arguments.from.empty())
       say(fmt::format("stopped; {} holds the {} that had ended", arguments.json,
                       lab::counted(results.results.size(), "experiment", "experiments")));
   } else if (!arguments.json.empty()) {
     say(fmt::format("stopped before an experiment had ended; {} is not written", arguments.json));
   }
-  return results.stopped ? Exit::interrupted : Exit::fine;
+  // Results that were read may be of a run that was stopped; this one was not.
+  return results.stopped && arguments.from.empty() ? Exit::interrupted : Exit::fine;
 }
 
 }  // namespace
@@ -128,7 +129,7 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("names", arguments->names,
                    "Names or numbers of experiments, as --list shows them (standard: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
-  verb->add_flag("--quick", arguments->is_quick, "Less boxes and fewer samples, for a first impression");
+  verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
   verb->add_option("--from", arguments->from,
                    "Measure nothing; judge the results in this file, which --json has written")
       ->type_name("FILE");

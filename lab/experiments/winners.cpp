@@ -29,10 +29,21 @@ struct Record {
   std::vector<double> moving{};
   std::size_t wins = 0;  ///< among the single ones
   bool everywhere = true;
+  std::string worst_field{};
 
   double mean() const { return geometric_mean(all); }
   double worst() const { return std::ranges::max(all); }
 };
+
+/// "density 2D, 1,000 boxes".
+std::string name_of(const Table& fields, const std::vector<Cell>& row) {
+  const auto* const map = std::get_if<std::string>(&row[fields.column("map")]);
+  const auto* const boxes = std::get_if<double>(&row[fields.column("boxes")]);
+  if (map == nullptr || boxes == nullptr)
+    throw std::invalid_argument(
+        fmt::format("table '{}': a row without map or boxes; expected both", fields.name));
+  return fmt::format("{}, {} boxes", *map, rounded(*boxes));
+}
 
 /// The records of auto and of each single algorithm, auto's first.
 std::vector<Record> records_of(const Table& fields) {
@@ -55,6 +66,8 @@ std::vector<Record> records_of(const Table& fields) {
     for (std::size_t i = 0; i < records.size(); ++i) {
       records[i].everywhere = records[i].everywhere && times[i].has_value();
       if (!times[i]) continue;
+      if (records[i].all.empty() || *times[i] / *least > records[i].worst())
+        records[i].worst_field = name_of(fields, row);
       records[i].all.push_back(*times[i] / *least);
       const bool is_moving = std::holds_alternative<double>(row[moving]);
       (is_moving ? records[i].moving : records[i].still).push_back(*times[i] / *least);
@@ -203,8 +216,8 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "Of {} fields the fastest was {}. Auto took {:.2f} times the fastest of ours in the geometric mean and "
-      "{:.2f} times at worst",
-      fields.rows.size(), wins, automatic.mean(), automatic.worst());
+      "{:.2f} times at worst ({})",
+      fields.rows.size(), wins, automatic.mean(), automatic.worst(), automatic.worst_field);
   finding.figures = {{"fields", static_cast<double>(fields.rows.size())},
                      {"most_boxes", std::ranges::max(fields.numbers("boxes")), "boxes"},
                      {"auto_mean", automatic.mean()},

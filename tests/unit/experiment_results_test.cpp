@@ -191,7 +191,8 @@ TEST(ExperimentResults, AreRefusedWithChartsThatCannotBeDrawn) {
 }
 
 TEST(ExperimentResults, AreRefusedWithAnyFieldMissingOrOfAnotherKind) {
-  for (const auto& [key, value] : Json::parse(json_of(results())).items()) {
+  const Json whole = Json::parse(json_of(results()));
+  for (const auto& [key, value] : whole.items()) {
     EXPECT_THAT(refusal_after([&](Json& json) { json.erase(key); }), HasSubstr("no '" + key + "'"));
     EXPECT_THAT(refusal_after([&](Json& json) { json[key] = 7; }), HasSubstr("expected ")) << key;
   }
