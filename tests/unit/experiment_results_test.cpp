@@ -192,7 +192,8 @@ TEST(ExperimentResults, AreRefusedWithChartsThatCannotBeDrawn) {
 
 TEST(ExperimentResults, AreRefusedWithAnyFieldMissingOrOfAnotherKind) {
   const Json whole = Json::parse(json_of(results()));
-  for (const auto& [key, value] : whole.items()) {
+  for (const auto& item : whole.items()) {
+    const std::string key = item.key();
     EXPECT_THAT(refusal_after([&](Json& json) { json.erase(key); }), HasSubstr("no '" + key + "'"));
     EXPECT_THAT(refusal_after([&](Json& json) { json[key] = 7; }), HasSubstr("expected ")) << key;
   }
