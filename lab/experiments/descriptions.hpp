@@ -17,6 +17,8 @@ Experiment quadtree_capacity();
 Experiment update_fraction();
 Experiment grid_translation();
 Experiment grid_rebuilding();
+Experiment sweep_insertion();
+Experiment sweep_reinsertion();
 Experiment quadtree_siblings();
 Experiment winners();
 

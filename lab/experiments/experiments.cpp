@@ -38,6 +38,8 @@ std::span<const Experiment> experiments() {
       update_fraction(),
       grid_translation(),
       grid_rebuilding(),
+      sweep_insertion(),
+      sweep_reinsertion(),
       quadtree_siblings(),
       winners(),
   };
