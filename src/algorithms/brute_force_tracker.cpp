@@ -18,7 +18,7 @@ namespace {
 
 /// The fraction of changed boxes from which comparing all pairs is not slower: each is compared twice, and
 /// pairs of changed boxes from both sides.
-constexpr double worthwhile = 0.2;
+constexpr double worthwhile = 0.45;
 
 /// So many boxes at once are compared with all that changed, while they are in the nearest cache.
 constexpr std::size_t boxes_at_once = 1024;

@@ -30,7 +30,7 @@ constexpr std::uint32_t tracking_capacity = 32;
 
 /// The fraction of changed boxes from which finding all pairs anew is not slower.
 template <int D>
-constexpr double worthwhile = D == 2 ? 0.12 : 0.1;
+constexpr double worthwhile = D == 2 ? 0.3 : 0.2;
 
 /// Takes pairs that may have begun or ended.
 template <int D>
