@@ -56,6 +56,8 @@ std::vector<Table> measure(const Laboratory& laboratory) {
       laboratory.either<std::vector<double>>({0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1}, {0.1, 0.3, 1});
   constexpr std::size_t usual = 10'000;
   const std::size_t many = laboratory.either<std::size_t>(100'000, 20'000);
+  Effort few = effort_to_follow(laboratory);
+  few.least_samples = 12;
   const std::size_t frames = laboratory.either<std::size_t>(20, 6);
   for (const int dimension : {2, 3}) {
     const std::vector<Case> cases = {
@@ -72,7 +74,7 @@ std::vector<Table> measure(const Laboratory& laboratory) {
                                 .moving = moving,
                                 .frames = of.boxes > usual ? std::size_t{6} : frames,
                                 .drift = of.drift},
-                               effort_to_follow(laboratory));
+                               of.boxes > usual ? few : effort_to_follow(laboratory));
         const Measurement& inserted = measurement_of(result, reinserting);
         const Measurement& rebuilt = measurement_of(result, rebuilding);
         table.add({name, dimension_text(dimension), static_cast<double>(of.boxes), of.drift, 100 * moving,
