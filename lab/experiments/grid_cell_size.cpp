@@ -58,10 +58,9 @@ Lengths lengths_of(const std::string& scene, std::size_t count) {
   return lengths;
 }
 
-/// The specs of a grid with cells from an eighth of a box up to the whole world, by their size in boxes.
-std::vector<std::pair<double, std::string>> sizes_of(const Grid& grid, const Lengths& lengths) {
+/// The specs of a grid with cells from twice `size` boxes up to the whole world, by their size in boxes.
+std::vector<std::pair<double, std::string>> sizes_of(const Grid& grid, const Lengths& lengths, double size) {
   std::vector<std::pair<double, std::string>> sizes;
-  double size = 0.0625;
   do {
     size *= 2;
     sizes.emplace_back(size, fmt::format("{}:cell={:.4g}", grid.algorithm, size * lengths.box));
@@ -72,9 +71,12 @@ std::vector<std::pair<double, std::string>> sizes_of(const Grid& grid, const Len
 /// Adds a scene's curve, and what the grid's own choice takes beside it.
 void measure_scene(const Laboratory& laboratory, const std::string& scene, const Grid& grid, Table& curves,
                    Table& choices) {
-  const std::size_t boxes = laboratory.either<std::size_t>(10'000, 4'000);
+  // As many as brute force in a single cell can be waited for; of ours so many that looking for a size, which
+  // takes as long for any number of boxes, is a small part of the search.
+  const std::size_t boxes = grid.algorithm == "paper_grid" ? laboratory.either<std::size_t>(10'000, 4'000)
+                                                           : laboratory.either<std::size_t>(40'000, 24'000);
   const Lengths lengths = grid.dimension == 2 ? lengths_of<2>(scene, boxes) : lengths_of<3>(scene, boxes);
-  const auto sizes = sizes_of(grid, lengths);
+  const auto sizes = sizes_of(grid, lengths, laboratory.either(0.0625, 0.125));
   std::string specs = grid.algorithm;
   for (const auto& [size, spec] : sizes) specs += "," + spec;
   const CaseResult result = laboratory.measure(
@@ -254,20 +256,22 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment grid_cell_size() {
-  return {.number = 5,
-          .name = "grid_cell_size",
-          .title = "The size of cells is a balancing act",
-          .claim =
-              "Thus it is important to hand tune the grid size so that the number of spanning calls are "
-              "limited and the number of elements in the subcollections are kept to a minimum. This is a "
-              "balancing act between the number of objects in a collection and the number of spanning calls "
-              "are needed.",
-          .section = "III",
-          .measured =
-              "The time of the paper's grid and of ours with cells from an eighth of a box up to the world, "
-              "and with the size that they choose, in five scenes, and on the bunny where it is there.",
-          .measure = measure,
-          .judge = judge};
+  return {
+      .number = 5,
+      .name = "grid_cell_size",
+      .title = "The size of cells is a balancing act",
+      .claim =
+          "Thus it is important to hand tune the grid size so that the number of spanning calls are "
+          "limited and the number of elements in the subcollections are kept to a minimum. This is a "
+          "balancing act between the number of objects in a collection and the number of spanning calls "
+          "are needed.",
+      .section = "III",
+      .measured =
+          "The time of the paper's grid, on 10,000 boxes, and of ours, on 40,000, with cells from an eighth "
+          "of a box up to the world, and with the size that they choose, in five scenes; and on the bunny, "
+          "where it is there.",
+      .measure = measure,
+      .judge = judge};
 }
 
 }  // namespace broadside::lab
