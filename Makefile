@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare paper paper-results bench test sanitize clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results bench test sanitize clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -35,6 +35,9 @@ bench: program ## The long comparison (also in build/bench.json), the claims abo
 	build/release/broadside compare --long --json build/bench.json
 	build/release/bench/motion
 	$(addprefix build/release/bench/,$(soak))
+
+pictures: program ## Draw the pictures of docs/algorithms.md anew
+	scripts/pictures build/release/broadside docs/pictures
 
 test: tests-release ## Build everything and run all tests
 

@@ -26,8 +26,8 @@ constexpr const char* style =
     ".t{font-size:15px;font-weight:600}.c{font-size:11.5px;fill:#57606a}"
     ".f{fill:#fff;stroke:#d0d7de}"
     ".b path{vector-effect:non-scaling-stroke;stroke-width:.8}"
-    ".a{fill:#8c959f;fill-opacity:.22;stroke:#6e7781}"
-    ".o{fill:#d4622a;fill-opacity:.28;stroke:#b9501c}"
+    ".a{fill:#8c959f;fill-opacity:.2;stroke:#6e7781}"
+    ".o{fill:#d4622a;fill-opacity:.2;stroke:#b9501c}"
     ".l path{vector-effect:non-scaling-stroke;fill:none;stroke:#1f6feb}"
     ".s{vector-effect:non-scaling-stroke;fill:#1a7f37;fill-opacity:.16;stroke:#1a7f37;stroke-width:1.6}";
 
@@ -148,9 +148,9 @@ std::string svg_of(const Drawing& drawing) {
   const int height = y + key_height;
   bool swept = false;
   for (const Panel& panel : panels) swept |= panel.layer != nullptr && !panel.layer->active.empty();
-  std::string key = fmt::format("{}: {} boxes", drawing.scene, drawing.boxes);
+  std::string key = fmt::format("{}, {} boxes", drawing.scene, drawing.boxes);
   if (drawing.of > drawing.boxes) key += fmt::format(" for {}", drawing.of);
-  key += ". Orange: overlaps another one.";
+  key += ". Orange: overlaps another.";
   if (swept) key += " Green: a sweep half way.";
 
   std::string text = fmt::format(

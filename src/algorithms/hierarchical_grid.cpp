@@ -17,7 +17,6 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/hierarchical_grid_cells.hpp"
 #include "algorithms/hierarchical_grid_tracker.hpp"
-#include "core/outline_text.hpp"
 #include "kernels/cell_blocks.hpp"
 
 namespace broadside::own {
@@ -41,23 +40,27 @@ class HierarchicalGrid final : public PairFinder<D>, public Outlined<D> {
     this->count({.tests = tests, .references = boxes.size(), .cells = cells_.cells()});
   }
 
-  /// The cells of each level that has boxes, the widest first.
+  /// The cells of each level that has boxes, the widest first; "6 / 46 boxes in 1 / 2 x 2 cells".
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
     cells_.build(boxes, boxes);
     const kernels::CellsView<D> view = cells_.view();
     Outline<D> outline;
     outline.kind = "cells";
+    std::string boxes_of;
+    std::string cells_of_levels;
     for (std::size_t i = view.levels.size(); i-- > 0;) {
       const kernels::CellLevel<D>& level = view.levels[i];
       if (level.boxes == 0) continue;
-      outline.levels.push_back(cells_of(level));
-      outline.caption += (outline.caption.empty() ? "" : ", ") + core::counted(level.boxes, "box");
-      if (level.boxes != 1) outline.caption.insert(outline.caption.size() - 1, "e");
-      outline.caption += " in ";
-      for (int axis = 0; axis < D; ++axis)
-        outline.caption += (axis == 0 ? "" : " x ") + std::to_string(static_cast<int>(level.last[axis]) + 1);
-      outline.caption += outline.levels.back().size() == 1 ? " cell" : " cells";
+      const std::vector<Box<D>>& cells = outline.levels.emplace_back(cells_of(level));
+      std::string count;
+      for (const float last : level.last)
+        count += (count.empty() ? "" : " x ") + std::to_string(static_cast<int>(last) + 1);
+      const std::string separator = boxes_of.empty() ? "" : " / ";
+      boxes_of += separator + std::to_string(level.boxes);
+      cells_of_levels += separator + (cells.size() == 1 ? "1" : count);
     }
+    outline.caption = boxes_of + (boxes.size() == 1 ? " box in " : " boxes in ") + cells_of_levels +
+                      (outline.levels.back().size() == 1 ? " cell" : " cells");
     return outline;
   }
 
