@@ -150,7 +150,7 @@ Table measure_fields(const Laboratory& laboratory) {
   };
   for (const Map& map : maps(laboratory)) {
     for (const std::string_view value : {"fastest", "fastest peer"}) {
-      if (value == "fastest peer" && !has_peers(map)) continue;
+      if (value == "fastest peer" && (!has_peers(map) || map.axis != "neighbours")) continue;
       table.charts.push_back(
           {.title = fmt::format("The {} {}", value == "fastest" ? "fastest of ours" : value, map.title),
            .kind = ChartKind::map,
