@@ -57,14 +57,13 @@ TEST(Experiments, AreThoseWhoseFilesEndInADescription) {
   EXPECT_THAT(listed, UnorderedElementsAreArray(described));
 }
 
-TEST(Experiments, AreDescribedFullyAndOnceByAscendingNumber) {
+TEST(Experiments, AreDescribedFullyAndOnceAndNumberedWithoutGaps) {
   int last = 0;
   std::set<std::string> names;
   std::set<std::string> titles;
   for (const Experiment& experiment : experiments()) {
     SCOPED_TRACE(experiment.name);
-    EXPECT_GT(experiment.number, last);
-    last = experiment.number;
+    EXPECT_EQ(experiment.number, ++last);
     EXPECT_TRUE(is_name(experiment.name));
     EXPECT_TRUE(names.insert(experiment.name).second);
     EXPECT_TRUE(titles.insert(experiment.title).second);
