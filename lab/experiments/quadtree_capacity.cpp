@@ -172,13 +172,14 @@ Finding judge(const std::vector<Table>& tables) {
       "{} "
       "to {} neighbours a box's references in them grow from {:.1f} to {:.1f}, where our mending ends the "
       "splitting, and the best leaf from {} to {} boxes. In the densest world they take {} tests a box where "
-      "{} "
-      "would do{}. The own quadtree's best leaves hold {} boxes there.",
+      "{} would do{}. The own quadtree takes up to {:.2f} times its best time in leaves of {}; its best in "
+      "the "
+      "sparsest world hold {}.",
       usual_capacity, worst, worst_at, sparsest.neighbours, densest.neighbours, sparsest.usual_references,
       densest.usual_references, sparsest.best_capacity, densest.best_capacity, rounded(densest.usual_tests),
       rounded(densest.fewest_tests),
       densest.usual_tests > 1.05 * densest.fewest_tests ? ", since a pair meets in many leaves" : "",
-      owned.back().best_capacity);
+      own_worst, own_capacity, owned.front().best_capacity);
   finding.figures = {{"worst_time_over_best", worst},
                      {"worst_at", worst_at, "neighbours"},
                      {"references_in_sparsest", sparsest.usual_references, "references a box"},
