@@ -62,10 +62,19 @@ std::string wrapped(std::string_view text) {
   return lines + "\n";
 }
 
+/// What the judge says; where it looks for a row that is not there, that is a matter of the tables too.
+Finding judged_by(const Experiment& experiment, const std::vector<Table>& tables) {
+  try {
+    return experiment.judge(tables);
+  } catch (const std::out_of_range&) {
+    throw std::invalid_argument("a table has too few rows, or no texts or numbers where it should");
+  }
+}
+
 }  // namespace
 
 Finding judged(const Experiment& experiment, const std::vector<Table>& tables) {
-  Finding finding = experiment.judge(tables);
+  Finding finding = judged_by(experiment, tables);
   std::set<std::string> names;
   for (const Figure& figure : finding.figures) {
     if (!std::isfinite(figure.value))

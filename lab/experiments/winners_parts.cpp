@@ -55,7 +55,7 @@ Table measure_instruction_sets(const Laboratory& laboratory) {
   const std::size_t boxes = laboratory.either<std::size_t>(10'000, 5'000);
   const Effort effort{.budget_seconds = 2,
                       .share_seconds = laboratory.either(0.05, 0.01),
-                      .least_samples = laboratory.either<std::size_t>(7, 3),
+                      .least_samples = laboratory.either<std::size_t>(5, 3),
                       .most_samples = 100,
                       .single_sample_seconds = 1};
   for (const int dimension : {2, 3}) {
@@ -107,7 +107,7 @@ Table measure_threads(const Laboratory& laboratory) {
   }
   const Effort effort{.budget_seconds = 2,
                       .share_seconds = laboratory.either(0.5, 0.02),
-                      .least_samples = laboratory.either<std::size_t>(7, 3),
+                      .least_samples = laboratory.either<std::size_t>(5, 3),
                       .most_samples = 100,
                       .single_sample_seconds = 1};
   for (const int dimension : {2, 3}) {

@@ -217,6 +217,10 @@ TEST(ExperimentResults, HaveFindingsWithFiniteFiguresOfDifferentNames) {
     return message_of<std::invalid_argument>([&] { judged(experiment, {}); });
   };
   EXPECT_THAT(with({{"growth", 0.0 / 0.0}}), AllOf(HasSubstr("'growth'"), HasSubstr("finite")));
+  experiment.judge = [](const std::vector<Table>& none) {
+    return Finding{.reason = none.at(0).name, .figures = {}};
+  };
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { judged(experiment, {}); }), HasSubstr("too few rows"));
   EXPECT_THAT(with({{"growth", 1}, {"share", 1}, {"growth", 2}}), HasSubstr("'growth' twice"));
 }
 
