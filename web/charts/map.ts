@@ -87,7 +87,7 @@ export function draw_map(spec: MapSpec, place: Place): Drawn {
         ...category_axis(ys, place),
         name: axis_name(spec.y),
         nameLocation: "end",
-        nameTextStyle: { color: place.theme.text, fontSize: 12, align: "right", padding: [0, 8, 0, 0] },
+        nameTextStyle: { color: place.theme.text, fontSize: 12, align: "left", padding: [0, 0, 0, 4 - left] },
         axisLabel: { color: place.theme.text, fontSize: 12, interval: 0 },
       },
       series: values.map((value, i) => {
