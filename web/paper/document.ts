@@ -10,6 +10,8 @@ export interface Sources {
   templates: Template[];
   experiments: { file: string; text: string };
   comparison: { file: string; text: string };
+  /** The names of those in docs/pictures/. */
+  pictures: string[];
 }
 
 /** Paths under docs/paper/ and what stands there. */
@@ -23,7 +25,7 @@ export function document_of(sources: Sources): Document {
   const experiments = read_experiments(sources.experiments.text, sources.experiments.file);
   const comparison = read_comparison(sources.comparison.text, sources.comparison.file);
   if (sources.templates.length === 0) throw new Problem("0 templates; expected at least one *.md");
-  const paper = new Paper(experiments, comparison, sources.comparison.file);
+  const paper = new Paper(experiments, comparison, sources.comparison.file, sources.pictures);
   const names = paper.names();
   let text = "";
   for (const pass of ["to number figures and sources", "to refer to them"]) {

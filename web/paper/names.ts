@@ -33,6 +33,12 @@ function drawing_name(experiment: Experiment, table: Table, chart: ChartSpec): s
   return table.charts.length === 1 ? name : `${name}_${table.charts.indexOf(chart) + 1}`;
 }
 
+/** The chart's title, and the table's where that says more. */
+function caption_of(table: Table, chart: ChartSpec): string {
+  const [begin = ""] = table.title.split(/[:;,]/, 1);
+  return chart.title.includes(begin) ? chart.title : `${chart.title}. ${table.title}`;
+}
+
 /** Results as templates name them. What is drawn, and how figures and sources are numbered, is kept here. */
 export class Paper {
   /** Of the pass that is going on, by the name of its file. */
@@ -47,6 +53,7 @@ export class Paper {
     private readonly results: Experiments,
     private readonly comparison: Comparison,
     comparison_file: string,
+    private readonly pictures: readonly string[],
   ) {
     this.experiments = by(results.experiments, (experiment) => experiment.name);
     this.facts = facts_of(comparison, comparison_file);
@@ -80,16 +87,19 @@ export class Paper {
     return one_of(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
   }
 
+  private show(path: string, name: string, caption: string): string {
+    const alternative = caption.replace(/[[\]]/g, "");
+    return `![${alternative}](${path})\n\n*Figure ${this.figures.next(name)}. ${plain(caption)}*`;
+  }
+
   private draw(name: string, drawing: Drawing): string {
-    const number = this.figures.next(name);
     this.drawings.set(name, drawing);
-    const alternative = drawing.caption.replace(/[[\]]/g, "");
-    return `![${alternative}](figures/${name}.svg)\n\n*Figure ${number}. ${plain(drawing.caption)}*`;
+    return this.show(`figures/${name}.svg`, name, drawing.caption);
   }
 
   private draw_chart(experiment: Experiment, table: Table, chart: ChartSpec): string {
     const draw = (place: Place) => draw_table_chart(table, chart, place);
-    return this.draw(drawing_name(experiment, table, chart), { caption: chart.title, draw });
+    return this.draw(drawing_name(experiment, table, chart), { caption: caption_of(table, chart), draw });
   }
 
   private see(names: readonly string[]): string {
@@ -148,6 +158,10 @@ export class Paper {
         lost: () => lost_list(this.facts),
         any_lost: () => this.facts.leads.some((lead) => lead.ratio < 1),
         standings: () => standings_table(this.facts),
+        picture: (name, caption) => {
+          const path = `../pictures/${one_of(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
+          return this.show(path, `picture ${name}`, caption);
+        },
         comparison_chart: (name) => this.draw(`comparison_${name}`, one_of(comparison, name, "chart of the comparison")),
         see_comparison: (name) => this.see([`comparison_${name}`]),
         cite: (source) => {

@@ -68,7 +68,8 @@ function write(document: Document, folder: string): void {
   for (const path of stale) rmSync(join(folder, path));
 }
 
-function document_from(experiments: string, comparison: string, templates: string): Document {
+function document_from(experiments: string, comparison: string, templates: string, folder: string): Document {
+  const pictures = join(folder, "..", "pictures");
   return document_of({
     templates: names_in(templates, ".md").map((name) => {
       const file = join(templates, name);
@@ -76,6 +77,7 @@ function document_from(experiments: string, comparison: string, templates: strin
     }),
     experiments: { file: experiments, text: read(experiments, "results of broadside experiment --json") },
     comparison: { file: comparison, text: read(comparison, "results of broadside compare --json") },
+    pictures: existsSync(pictures) ? names_in(pictures, ".svg") : [],
   });
 }
 
@@ -88,7 +90,7 @@ export function run(words: readonly string[], print: Print): number {
     return 2;
   }
   try {
-    const document = document_from(experiments, comparison, templates);
+    const document = document_from(experiments, comparison, templates, folder);
     const different = differences(document, folder);
     if (check && different.length > 0) {
       print.error(`${folder} is not what make paper writes: ${listed(different)}; expected no difference\n`);

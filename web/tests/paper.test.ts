@@ -20,6 +20,7 @@ function paper(template: string, given: Given = {}): Map<string, string> {
     templates: [{ file: "07_testing.md", text: template }],
     experiments: { file: "e.json", text: given.experiments ?? JSON.stringify(experiments()) },
     comparison: { file: "c.json", text: given.comparison ?? JSON.stringify(comparison()) },
+    pictures: ["grid.svg"],
   });
 }
 
@@ -79,8 +80,14 @@ test("charts are numbered, drawn and referred to before they stand there", () =>
   assert.match(made.get("paper.md")!, /See Figure 1\./);
   const [name] = [...made.keys()].filter((path) => path !== "paper.md");
   assert.equal(name, "figures/tests_times.svg");
-  assert.match(made.get(name!)!, /^<svg[^>]*><title>Time over boxes<\/title>/);
+  assert.match(made.get(name!)!, /^<svg[^>]*><title>Time over boxes\. Times<\/title>/);
 });
+
+test("pictures that the program drew are figures as well", () => {
+  assert.match(text_of('{{picture "grid" "Cells"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\*\n.*\n\n\*Figure 2/);
+});
+
+refuses("an unknown picture", '{{picture "x" "X"}}', /no picture 'x\.svg'; there are grid\.svg/);
 
 test("sources are numbered in their order, and cited by number", () => {
   assert.match(text_of('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
