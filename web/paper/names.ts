@@ -36,7 +36,7 @@ function drawing_name(experiment: Experiment, table: Table, chart: ChartSpec): s
 /** The chart's title, and the table's where that says more. */
 function caption_of(table: Table, chart: ChartSpec): string {
   const [begin = ""] = table.title.split(/[:;,]/, 1);
-  return chart.title.includes(begin) ? chart.title : `${chart.title}. ${table.title}`;
+  return chart.kind === "map" || chart.title.includes(begin) ? chart.title : `${chart.title}. ${table.title}`;
 }
 
 /** Results as templates name them. What is drawn, and how figures and sources are numbered, is kept here. */
