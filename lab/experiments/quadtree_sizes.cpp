@@ -210,6 +210,10 @@ Finding judge(const std::vector<Table>& tables) {
   const double own_references = growth_over_sizes(sizes, own, "references a box");
   const double time = growth_over_sizes(sizes, listing, "time");
 
+  if (sizes.numbers("size of a large box").empty() ||
+      sizes.where("algorithm", listing).numbers("pairs a box").empty())
+    throw std::invalid_argument("table 'sizes' has no sizes or no pairs a box; expected both");
+
   // Fourfold is what a box comes to that covers whole nodes; a box of a leaf's size must stay well below.
   const bool is_fourfold = largest_factor > 3 && largest_factor < 4.05 && unit_factor < 2.5;
   const bool is_burden = references >= 2;

@@ -253,6 +253,7 @@ Finding judge(const std::vector<Table>& tables) {
               : "a box passes as many others a frame, however many boxes there are";
   }
   const std::vector<double> passed = growth.where("world", plane).numbers("places moved a box");
+  if (passed.empty()) throw std::invalid_argument("table 'growth' has no places moved a box; expected some");
   finding.reason = fmt::format(
       "The places that boxes move grow as n^{:.2f} in a corridor, where as many boxes stand along each "
       "length, "
