@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -156,6 +157,41 @@ TEST_F(CommittedResults, AreJudgedOrRefusedWithoutAnyOneColumn) {
         tables[which].columns[column].name += "?";
         EXPECT_TRUE(is_judged_or_refused(*result.experiment, tables))
             << result.experiment->name << ": " << tables[which].columns[column].name;
+      }
+    }
+  }
+}
+
+/// The tables with one column of one of them replaced, cell by cell.
+std::vector<Table> with_column(std::vector<Table> tables, std::size_t which, std::size_t column,
+                               const std::function<Cell(const Cell&)>& changed) {
+  for (std::vector<Cell>& row : tables[which].rows) row[column] = changed(row[column]);
+  return tables;
+}
+
+TEST_F(CommittedResults, AreJudgedOrRefusedHoweverTheyAreDamaged) {
+  const std::vector<std::function<Cell(const Cell&)>> damages = {
+      [](const Cell&) { return Cell(); },
+      [](const Cell&) { return Cell(0.0); },
+      [](const Cell&) { return Cell(-1.0); },
+      [](const Cell&) { return Cell("else"); },
+      [](const Cell& cell) { return std::holds_alternative<double>(cell) ? Cell(1e300) : cell; },
+  };
+  for (const ExperimentResult& result : results_.results) {
+    for (std::size_t which = 0; which < result.tables.size(); ++which) {
+      const Table& table = result.tables[which];
+      SCOPED_TRACE(result.experiment->name + ", " + table.name);
+      for (const std::size_t rows : {0, 1, 2}) {
+        std::vector<Table> tables = result.tables;
+        tables[which].rows.resize(std::min(rows, table.rows.size()));
+        EXPECT_TRUE(is_judged_or_refused(*result.experiment, tables)) << rows << " rows";
+      }
+      for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        for (const auto& damage : damages) {
+          EXPECT_TRUE(
+              is_judged_or_refused(*result.experiment, with_column(result.tables, which, column, damage)))
+              << table.columns[column].name;
+        }
       }
     }
   }
