@@ -17,22 +17,22 @@ std::vector<Pair> without(std::span<const Pair> pairs, std::span<const Pair> oth
 }
 
 /// Calls `visit` with the boxes of each frame and what changed.
-template <int D, typename Visit>
-void replay(const History<D>& history, const Visit& visit) {
-  std::vector<Box<D>> boxes = history.boxes;
-  visit(Frame<D>{boxes, {}});
-  for (const Step<D>& step : history.steps) {
+template <int D, typename Real, typename Visit>
+void replay(const History<D, Real>& history, const Visit& visit) {
+  std::vector<Box<D, Real>> boxes = history.boxes;
+  visit(Frame<D, Real>{boxes, {}});
+  for (const Step<D, Real>& step : history.steps) {
     apply(step, boxes);
-    visit(Frame<D>{boxes, step.changed});
+    visit(Frame<D, Real>{boxes, step.changed});
   }
 }
 
-template <int D>
-ExpectedEvents events_by_definition(const History<D>& history) {
+template <int D, typename Real>
+ExpectedEvents events_by_definition(const History<D, Real>& history) {
   ExpectedEvents expected;
   std::vector<Pair> before;
-  replay(history, [&](const Frame<D>& frame) {
-    std::vector<Pair> now = reference_pairs<D>(frame.boxes);
+  replay(history, [&](const Frame<D, Real>& frame) {
+    std::vector<Pair> now = reference_pairs<D, Real>(frame.boxes);
     expected.frames.push_back({without(now, before), without(before, now)});
     before = std::move(now);
   });
@@ -41,14 +41,14 @@ ExpectedEvents events_by_definition(const History<D>& history) {
 
 }  // namespace
 
-template <int D>
-ExpectedEvents expected_events(const Reference& reference, const History<D>& history) {
+template <int D, typename Real>
+ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history) {
   if (reference.is_definition()) return events_by_definition(history);
   ExpectedEvents expected;
-  DiffTracker<D> tracker(reference.finder<D>());
+  DiffTracker<D, Real> tracker(reference.finder<D, Real>());
   std::vector<Pair> pairs;
-  std::vector<Box<D>> last;
-  replay(history, [&](const Frame<D>& frame) {
+  std::vector<Box<D, Real>> last;
+  replay(history, [&](const Frame<D, Real>& frame) {
     Events events;
     PairCollector begun(events.begun);
     PairCollector ended(events.ended);
@@ -60,9 +60,10 @@ ExpectedEvents expected_events(const Reference& reference, const History<D>& his
     if (expected.frames.size() == history.steps.size() + 1)
       last.assign(frame.boxes.begin(), frame.boxes.end());
   });
-  if (auto divergence = check_sample<D>(last, pairs)) {
+  if (auto divergence = check_sample<D, Real>(last, pairs)) {
     expected.fault =
-        explained<D>(*std::move(divergence), reference.text(), "reference:", history.steps.size(), last).text;
+        explained<D, Real>(*std::move(divergence), reference.text(), "reference:", history.steps.size(), last)
+            .text;
   }
   return expected;
 }
@@ -74,9 +75,9 @@ void EventHasher::add(const Events& events) noexcept {
   hash_ = (hash_ + hash_of(events.ended)) * odd + 1;
 }
 
-template <int D>
+template <int D, typename Real>
 std::string difference(const Events& found, const Events& expected, std::string_view name, std::size_t frame,
-                       std::span<const Box<D>> boxes) {
+                       BoxSpan<D, Real> boxes) {
   if (found == expected) return {};
   const bool begun_differs = found.begun != expected.begun;
   const std::vector<Pair>& list = begun_differs ? found.begun : found.ended;
@@ -85,14 +86,21 @@ std::string difference(const Events& found, const Events& expected, std::string_
     const Pair unsorted = *std::ranges::is_sorted_until(list);
     divergence = Divergence{Divergence::Kind::extra, unsorted, frame, "events are not sorted by id"};
   }
-  return explained<D>(*std::move(divergence), name, begun_differs ? "begun:" : "ended:", frame, boxes).text;
+  return explained<D, Real>(*std::move(divergence), name, begun_differs ? "begun:" : "ended:", frame, boxes)
+      .text;
 }
 
 template ExpectedEvents expected_events(const Reference&, const History<2>&);
 template ExpectedEvents expected_events(const Reference&, const History<3>&);
-template std::string difference(const Events&, const Events&, std::string_view, std::size_t,
-                                std::span<const Box<2>>);
-template std::string difference(const Events&, const Events&, std::string_view, std::size_t,
-                                std::span<const Box<3>>);
+template ExpectedEvents expected_events(const Reference&, const History<2, double>&);
+template ExpectedEvents expected_events(const Reference&, const History<3, double>&);
+template std::string difference<2, float>(const Events&, const Events&, std::string_view, std::size_t,
+                                          BoxSpan<2, float>);
+template std::string difference<3, float>(const Events&, const Events&, std::string_view, std::size_t,
+                                          BoxSpan<3, float>);
+template std::string difference<2, double>(const Events&, const Events&, std::string_view, std::size_t,
+                                           BoxSpan<2, double>);
+template std::string difference<3, double>(const Events&, const Events&, std::string_view, std::size_t,
+                                           BoxSpan<3, double>);
 
 }  // namespace broadside::lab

@@ -28,8 +28,8 @@ struct ExpectedEvents {
 /// The events of `history` by the reference: the definition's pairs in each frame and what differs from one
 /// to the next, or those of a DiffTracker over the reference's finder, whose pairs after the last frame are
 /// then sampled.
-template <int D>
-ExpectedEvents expected_events(const Reference& reference, const History<D>& history);
+template <int D, typename Real>
+ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history);
 
 /// Hashes the events of frame after frame: the same for any order within a frame, different for another
 /// frame, and for a pair that ends instead of beginning.
@@ -44,8 +44,8 @@ class EventHasher {
 
 /// What differs first, with `name`, the frame and the boxes in its text; empty if the events are equal and
 /// sorted.
-template <int D>
+template <int D, typename Real = float>
 std::string difference(const Events& found, const Events& expected, std::string_view name, std::size_t frame,
-                       std::span<const Box<D>> boxes);
+                       BoxSpan<D, Real> boxes);
 
 }  // namespace broadside::lab

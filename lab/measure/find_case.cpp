@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,12 @@ namespace {
 /// one only where these differ.
 constexpr std::size_t most_pairs_kept = 1'000'000;
 
+/// In the place of the floor where boxes are of doubles, of which it has none.
+struct NoFloor {
+  template <typename Boxes>
+  void run(const Boxes&, std::span<Pair>) const noexcept {}
+};
+
 /// What a search of one input must give.
 struct Expectation {
   Reference reference;
@@ -30,22 +37,22 @@ struct Expectation {
   std::string fault;        // of the reference itself
 };
 
-template <int D>
+template <int D, typename Real>
 struct Contestant {
   const Contender* contender;
   Measurement* entry;
-  std::unique_ptr<PairFinder<D>> finder{};
+  std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
   double spent_ms = 0;           // in timed calls
   bool done = false;
 };
 
-template <int D>
+template <int D, typename Real>
 class FindCase {
  public:
-  FindCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
+  FindCase(const Case& of, Histories<D, Real> inputs, const Contest& contest)
       : case_(of), inputs_(inputs), contest_(contest) {
-    for (const History<D>& input : inputs) extremes_.take<D>(input.boxes);
+    for (const History<D, Real>& input : inputs) extremes_.template take<D, Real>(input.boxes);
   }
 
   CaseResult run() {
@@ -55,15 +62,16 @@ class FindCase {
       if (let_in(contest_.contenders[i], entries[i]))
         contestants_.push_back({&contest_.contenders[i], &entries[i]});
     }
-    for (Contestant<D>& contestant : contestants_) first_call(contestant);
-    has_floor_ = !contestants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
+    for (Contestant<D, Real>& contestant : contestants_) first_call(contestant);
+    has_floor_ =
+        std::is_same_v<Real, float> && !contestants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // to have it warm
     for (std::size_t round = 0; round < contest_.effort.most_samples; ++round) play(round);
     return {case_, std::move(entries), std::move(floor_ms_)};
   }
 
  private:
-  std::span<const Box<D>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
+  std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
@@ -72,9 +80,9 @@ class FindCase {
     const double budget = contest_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
       contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
-      std::vector<Box<D>> some;
+      std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
-      return call(*make_finder<D>(*contender.algorithm, contender.spec), some) / 1e3;
+      return call(*make_finder<D, Real>(*contender.algorithm, contender.spec), some) / 1e3;
     };
     const std::string fault = fault_of(entry, [&]() -> std::string {
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
@@ -87,7 +95,7 @@ class FindCase {
 
   /// Makes the finder and calls it for the first time: to see what memory it takes, and to have it warm.
   /// Where this takes too long to be done again, it is the one sample.
-  void first_call(Contestant<D>& contestant) {
+  void first_call(Contestant<D, Real>& contestant) {
     Measurement& entry = *contestant.entry;
     contest_.watch.at(entry.algorithm + ", checking");
     const Expectation& expected = expectation(*contestant.contender->algorithm, 0);
@@ -96,7 +104,8 @@ class FindCase {
     pairs_.reserve(expected.count);
     settle(contestant, fault_of(entry, [&] {
              const AllocationMeter meter;
-             contestant.finder = make_finder<D>(*contestant.contender->algorithm, contestant.contender->spec);
+             contestant.finder =
+                 make_finder<D, Real>(*contestant.contender->algorithm, contestant.contender->spec);
              const double milliseconds = call(*contestant.finder, boxes_of(0));
              count_memory(entry, *contestant.contender->algorithm, meter.read());
              entry.pairs = pairs_.size();
@@ -124,7 +133,7 @@ class FindCase {
     }
   }
 
-  void sample(Contestant<D>& contestant, std::size_t input, std::size_t round) {
+  void sample(Contestant<D, Real>& contestant, std::size_t input, std::size_t round) {
     if (contestant.done) return;
     Measurement& entry = *contestant.entry;
     contest_.watch.at(fmt::format("{}, round {}", entry.algorithm, round + 1));
@@ -140,7 +149,7 @@ class FindCase {
 
   /// Goes on as long as any contestant does.
   void sample_floor(std::size_t input) {
-    const bool last = std::ranges::all_of(contestants_, &Contestant<D>::done);
+    const bool last = std::ranges::all_of(contestants_, &Contestant<D, Real>::done);
     if (last && floor_ms_.size() >= contest_.effort.least_samples) return;
     contest_.watch.at("the floor");
     floor_ms_.push_back(call_floor(input));
@@ -165,7 +174,7 @@ class FindCase {
   }
 
   /// Milliseconds for one search, whose pairs are then in pairs_.
-  double call(PairFinder<D>& finder, std::span<const Box<D>> boxes) {
+  double call(PairFinder<D, Real>& finder, std::span<const Box<D, Real>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);
     const Stopwatch watch;
@@ -173,7 +182,7 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  void settle(Contestant<D>& contestant, const std::string& fault) {
+  void settle(Contestant<D, Real>& contestant, const std::string& fault) {
     contestant.entry->outcome = Outcome::verified;
     if (fault.empty()) return;
     fail(*contestant.entry, fault);
@@ -181,18 +190,19 @@ class FindCase {
   }
 
   /// What is wrong with pairs_; empty if nothing is.
-  std::string check(Contestant<D>& contestant, std::size_t input) {
+  std::string check(Contestant<D, Real>& contestant, std::size_t input) {
     const Expectation& expected = expectation(*contestant.contender->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;
     const bool equal = pairs_.size() == expected.count && hash_of(pairs_) == expected.hash;
     const bool kept = expected.pairs.size() == expected.count;
     if (equal && (contestant.compared[input] || !kept)) return {};
     contestant.compared[input] = true;
-    auto divergence = kept ? compare_pairs(pairs_, expected.pairs)
-                           : compare_pairs(pairs_, expected.reference.template pairs<D>(boxes_of(input)));
+    auto divergence =
+        kept ? compare_pairs(pairs_, expected.pairs)
+             : compare_pairs(pairs_, expected.reference.template pairs<D, Real>(boxes_of(input)));
     if (!divergence) return {};
-    return explained<D>(*std::move(divergence), contestant.entry->algorithm,
-                        fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
+    return explained<D, Real>(*std::move(divergence), contestant.entry->algorithm,
+                              fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
         .text;
   }
 
@@ -202,12 +212,13 @@ class FindCase {
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
-    std::vector<Pair> pairs = reference.pairs<D>(boxes_of(input));
+    std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input));
     Expectation expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
     if (!reference.is_definition()) {
-      if (auto divergence = check_sample<D>(boxes_of(input), pairs))
+      if (auto divergence = check_sample<D, Real>(boxes_of(input), pairs))
         expected.fault =
-            explained<D>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input)).text;
+            explained<D, Real>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input))
+                .text;
     }
     if (pairs.size() <= most_pairs_kept) expected.pairs = std::move(pairs);
     expectations_.push_back(std::make_unique<Expectation>(std::move(expected)));
@@ -215,25 +226,27 @@ class FindCase {
   }
 
   const Case& case_;
-  std::span<const History<D>> inputs_;
+  Histories<D, Real> inputs_;
   const Contest& contest_;
   Extremes extremes_;
-  std::vector<Contestant<D>> contestants_;
+  std::vector<Contestant<D, Real>> contestants_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
-  Floor<D> floor_;
+  std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;
   bool has_floor_ = false;
   std::vector<double> floor_ms_;
 };
 
 }  // namespace
 
-template <int D>
-CaseResult measure_find(const Case& of, std::span<const History<D>> inputs, const Contest& contest) {
-  return FindCase<D>(of, inputs, contest).run();
+template <int D, typename Real>
+CaseResult measure_find(const Case& of, Histories<D, Real> inputs, const Contest& contest) {
+  return FindCase<D, Real>(of, inputs, contest).run();
 }
 
-template CaseResult measure_find(const Case&, std::span<const History<2>>, const Contest&);
-template CaseResult measure_find(const Case&, std::span<const History<3>>, const Contest&);
+template CaseResult measure_find<2, float>(const Case&, Histories<2, float>, const Contest&);
+template CaseResult measure_find<3, float>(const Case&, Histories<3, float>, const Contest&);
+template CaseResult measure_find<2, double>(const Case&, Histories<2, double>, const Contest&);
+template CaseResult measure_find<3, double>(const Case&, Histories<3, double>, const Contest&);
 
 }  // namespace broadside::lab

@@ -23,12 +23,12 @@ struct Expectation {
   ExpectedEvents events;
 };
 
-template <int D>
+template <int D, typename Real>
 struct Contestant {
   const Contender* contender;
   Measurement* entry;
-  std::unique_ptr<PairTracker<D>> tracker{};  // of this pass
-  const ExpectedEvents* expected = nullptr;   // of this pass
+  std::unique_ptr<PairTracker<D, Real>> tracker{};  // of this pass
+  const ExpectedEvents* expected = nullptr;         // of this pass
   EventHasher hasher{};
   std::vector<double> frames_ms{};  // of this pass
   std::vector<double> builds_ms{};  // the first frames of all passes
@@ -42,21 +42,21 @@ struct Contestant {
 };
 
 /// Some of the boxes of a history and its first steps, as a history of their own.
-template <int D>
-History<D> thinned(const History<D>& history, std::size_t count, std::size_t most_steps) {
+template <int D, typename Real>
+History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std::size_t most_steps) {
   constexpr std::size_t left_out = static_cast<std::size_t>(-1);
   std::size_t size = history.boxes.size();
-  for (const Step<D>& step : history.steps) size = std::max(size, step.size);
+  for (const Step<D, Real>& step : history.steps) size = std::max(size, step.size);
   std::vector<std::size_t> place(size, left_out);
-  History<D> thin;
+  History<D, Real> thin;
   std::size_t next = 0;
   for (const std::size_t i : sample_of(size, count)) {
     place[i] = next++;
-    thin.boxes.push_back(i < history.boxes.size() ? history.boxes[i] : absent_box<D>());
+    thin.boxes.push_back(i < history.boxes.size() ? history.boxes[i] : absent_box<D, Real>());
   }
   for (std::size_t s = 0; s < std::min(most_steps, history.steps.size()); ++s) {
-    const Step<D>& step = history.steps[s];
-    Step<D> few{thin.boxes.size(), {}, {}};
+    const Step<D, Real>& step = history.steps[s];
+    Step<D, Real> few{thin.boxes.size(), {}, {}};
     for (std::size_t i = 0; i < step.changed.size(); ++i) {
       if (place[index(step.changed[i])] == left_out) continue;
       few.changed.push_back(BoxId(place[index(step.changed[i])]));
@@ -67,15 +67,15 @@ History<D> thinned(const History<D>& history, std::size_t count, std::size_t mos
   return thin;
 }
 
-template <int D>
+template <int D, typename Real>
 class TrackCase {
  public:
-  TrackCase(const Case& of, std::span<const History<D>> inputs, const Contest& contest)
+  TrackCase(const Case& of, Histories<D, Real> inputs, const Contest& contest)
       : case_(of), inputs_(inputs), contest_(contest) {
-    for (const History<D>& input : inputs) {
-      extremes_.take<D>(input.boxes);
-      for (const Step<D>& step : input.steps) {
-        extremes_.take<D>(step.boxes);
+    for (const History<D, Real>& input : inputs) {
+      extremes_.template take<D, Real>(input.boxes);
+      for (const Step<D, Real>& step : input.steps) {
+        extremes_.template take<D, Real>(step.boxes);
         extremes_.boxes = std::max(extremes_.boxes, step.size);
       }
     }
@@ -91,20 +91,20 @@ class TrackCase {
     // The first pass sees what memory is taken; where it takes too long to be done again, it is timed as
     // well.
     pass(0, true);
-    for (Contestant<D>& contestant : contestants_) close_first_pass(contestant);
+    for (Contestant<D, Real>& contestant : contestants_) close_first_pass(contestant);
     for (std::size_t round = 1; std::ranges::any_of(contestants_, is_on); ++round) {
       pass(round % inputs_.size(), false);
-      for (Contestant<D>& contestant : contestants_) close_pass(contestant);
+      for (Contestant<D, Real>& contestant : contestants_) close_pass(contestant);
     }
     return entries;
   }
 
  private:
-  static bool is_on(const Contestant<D>& contestant) { return !contestant.done; }
+  static bool is_on(const Contestant<D, Real>& contestant) { return !contestant.done; }
 
   /// Fills in why not, if the contender is not let in.
   bool let_in(const Contender& contender, Measurement& entry) {
-    const History<D>& history = inputs_[0];
+    const History<D, Real>& history = inputs_[0];
     entry.reason = unfit(contender, D, extremes_);
     if (!entry.reason.empty()) return false;
     const double budget = contest_.effort.history_seconds;
@@ -124,16 +124,16 @@ class TrackCase {
 
   /// Seconds for as many frames as the case has, by a history's first frame and the mean of its others; of
   /// two tries the shorter one where they are short, since those are easily disturbed.
-  double seconds_of(const Contender& contender, const History<D>& history) {
+  double seconds_of(const Contender& contender, const History<D, Real>& history) {
     constexpr double is_short = 0.02;  // for all frames
     double least = INFINITY;
     for (int attempt = 0; attempt < 2; ++attempt) {
       if (attempt > 0 && least > is_short) break;
-      const auto tracker = make_tracker<D>(*contender.algorithm, contender.spec);
-      std::vector<Box<D>> boxes = history.boxes;
+      const auto tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
+      std::vector<Box<D, Real>> boxes = history.boxes;
       const double first = update(*tracker, {boxes, {}});
       double others = 0;
-      for (const Step<D>& step : history.steps) {
+      for (const Step<D, Real>& step : history.steps) {
         apply(step, boxes);
         others += update(*tracker, {boxes, step.changed});
       }
@@ -145,7 +145,7 @@ class TrackCase {
   }
 
   /// Milliseconds for one frame, whose events are then in events_.
-  double update(PairTracker<D>& tracker, const Frame<D>& frame) {
+  double update(PairTracker<D, Real>& tracker, const Frame<D, Real>& frame) {
     events_.begun.clear();
     events_.ended.clear();
     PairCollector begun(events_.begun);
@@ -157,9 +157,9 @@ class TrackCase {
 
   /// Lets all that are not done track an input from its first frame to its last.
   void pass(std::size_t input, bool is_first) {
-    const History<D>& history = inputs_[input];
-    std::vector<Box<D>> boxes = history.boxes;
-    for (Contestant<D>& contestant : contestants_) {
+    const History<D, Real>& history = inputs_[input];
+    std::vector<Box<D, Real>> boxes = history.boxes;
+    for (Contestant<D, Real>& contestant : contestants_) {
       if (contestant.done) continue;
       contest_.watch.at(contestant.entry->algorithm + ", checking");
       contestant.expected = &expectation(contestant, input);
@@ -169,9 +169,10 @@ class TrackCase {
     }
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
-      const Frame<D> now{boxes, frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
+      const Frame<D, Real> now{boxes,
+                               frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
       for (const std::size_t seat : turns(contestants_.size(), frame)) {
-        Contestant<D>& contestant = contestants_[seat];
+        Contestant<D, Real>& contestant = contestants_[seat];
         if (contestant.done) continue;
         contest_.watch.at(fmt::format("{}, frame {}", contestant.entry->algorithm, frame));
         const std::string fault =
@@ -184,26 +185,29 @@ class TrackCase {
   }
 
   /// One frame of one contestant; what is wrong with its events.
-  std::string take(Contestant<D>& contestant, const Frame<D>& now, std::size_t frame, bool is_first) {
+  std::string take(Contestant<D, Real>& contestant, const Frame<D, Real>& now, std::size_t frame,
+                   bool is_first) {
     const ExpectedEvents& expected = *contestant.expected;
     if (!expected.fault.empty()) return expected.fault;
     events_.begun.reserve(expected.frames[frame].begun.size());
     events_.ended.reserve(expected.frames[frame].ended.size());
     const auto make_and_update = [&] {
       if (!contestant.tracker)
-        contestant.tracker = make_tracker<D>(*contestant.contender->algorithm, contestant.contender->spec);
+        contestant.tracker =
+            make_tracker<D, Real>(*contestant.contender->algorithm, contestant.contender->spec);
       return update(*contestant.tracker, now);
     };
     const double milliseconds = is_first ? counted(contestant, make_and_update) : make_and_update();
     contestant.pass_ms += milliseconds;
     (frame > 0 ? contestant.frames_ms : contestant.builds_ms).push_back(milliseconds);
     if (is_first) note(contestant, frame);
-    return difference(events_, expected.frames[frame], contestant.entry->algorithm, frame, now.boxes);
+    return difference<D, Real>(events_, expected.frames[frame], contestant.entry->algorithm, frame,
+                               now.boxes);
   }
 
   /// Runs one frame and adds the memory it takes to the contestant's.
   template <typename Run>
-  double counted(Contestant<D>& contestant, const Run& run) {
+  double counted(Contestant<D, Real>& contestant, const Run& run) {
     const AllocationMeter meter;
     const double milliseconds = run();
     if (const auto allocation = meter.read()) {
@@ -216,7 +220,7 @@ class TrackCase {
   }
 
   /// Notes what is counted in the first pass.
-  void note(Contestant<D>& contestant, std::size_t frame) {
+  void note(Contestant<D, Real>& contestant, std::size_t frame) {
     contestant.hasher.add(events_);
     contestant.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
@@ -227,7 +231,7 @@ class TrackCase {
     contestant.entry->statistics = Statistics{contestant.tests / frame, contestant.references / frame};
   }
 
-  void close_first_pass(Contestant<D>& contestant) {
+  void close_first_pass(Contestant<D, Real>& contestant) {
     if (contestant.done) return;
     Measurement& entry = *contestant.entry;
     entry.outcome = Outcome::verified;
@@ -241,7 +245,7 @@ class TrackCase {
     }
   }
 
-  void close_pass(Contestant<D>& contestant) {
+  void close_pass(Contestant<D, Real>& contestant) {
     if (contestant.done) return;
     Measurement& entry = *contestant.entry;
     entry.samples_ms.insert(entry.samples_ms.end(), contestant.frames_ms.begin(), contestant.frames_ms.end());
@@ -255,7 +259,7 @@ class TrackCase {
   }
 
   /// What the contestant must report on the input; computed when first asked for.
-  const ExpectedEvents& expectation(Contestant<D>& contestant, std::size_t input) {
+  const ExpectedEvents& expectation(Contestant<D, Real>& contestant, std::size_t input) {
     const Reference reference(*contestant.contender->algorithm, contest_.known, case_.boxes,
                               most_tracked_boxes_by_definition);
     contestant.entry->verified_by = reference.text();
@@ -268,23 +272,24 @@ class TrackCase {
   }
 
   const Case& case_;
-  std::span<const History<D>> inputs_;
+  Histories<D, Real> inputs_;
   const Contest& contest_;
   Extremes extremes_;
-  std::vector<Contestant<D>> contestants_;
+  std::vector<Contestant<D, Real>> contestants_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   Events events_;  // of the last update; its memory serves all
 };
 
 }  // namespace
 
-template <int D>
-std::vector<Measurement> measure_track(const Case& of, std::span<const History<D>> inputs,
-                                       const Contest& contest) {
-  return TrackCase<D>(of, inputs, contest).run();
+template <int D, typename Real>
+std::vector<Measurement> measure_track(const Case& of, Histories<D, Real> inputs, const Contest& contest) {
+  return TrackCase<D, Real>(of, inputs, contest).run();
 }
 
-template std::vector<Measurement> measure_track(const Case&, std::span<const History<2>>, const Contest&);
-template std::vector<Measurement> measure_track(const Case&, std::span<const History<3>>, const Contest&);
+template std::vector<Measurement> measure_track<2, float>(const Case&, Histories<2, float>, const Contest&);
+template std::vector<Measurement> measure_track<3, float>(const Case&, Histories<3, float>, const Contest&);
+template std::vector<Measurement> measure_track<2, double>(const Case&, Histories<2, double>, const Contest&);
+template std::vector<Measurement> measure_track<3, double>(const Case&, Histories<3, double>, const Contest&);
 
 }  // namespace broadside::lab

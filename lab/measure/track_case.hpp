@@ -14,8 +14,7 @@ namespace broadside::lab {
 /// in their order.
 ///
 /// Throws Stopped. What a contender throws is its failure and no error.
-template <int D>
-std::vector<Measurement> measure_track(const Case& of, std::span<const History<D>> inputs,
-                                       const Contest& contest);
+template <int D, typename Real = float>
+std::vector<Measurement> measure_track(const Case& of, Histories<D, Real> inputs, const Contest& contest);
 
 }  // namespace broadside::lab
