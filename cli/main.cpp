@@ -42,6 +42,7 @@ Exit run(const std::vector<std::string>& arguments) {
       "130 interrupted.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
       {"compare", broadside::cli::add_compare(program, arguments)},
+      {"advise", broadside::cli::add_advise(program, arguments)},
       {"experiment", broadside::cli::add_experiment(program, arguments)},
       {"pairs", broadside::cli::add_pairs(program)},
       {"info", broadside::cli::add_info(program)},

@@ -17,6 +17,7 @@ enum class Exit { fine = 0, failed = 1, unusable = 2, interrupted = 130 };
 using Verb = std::function<Exit()>;
 
 /// `arguments` are the program's, itself first, for what reports say of it; they outlive the verb.
+Verb add_advise(CLI::App& program, std::span<const std::string> arguments);
 Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
 Verb add_experiment(CLI::App& program, std::span<const std::string> arguments);
 Verb add_scene(CLI::App& program);

@@ -42,23 +42,6 @@ double moving_fraction(const History<D>& history) {
   return history.steps.empty() ? 0 : sum / static_cast<double>(history.steps.size());
 }
 
-/// Refuses boxes with so many pairs that keeping them would fill the machine: about how many there are shows
-/// in a sample.
-template <int D>
-void check_pair_count(std::span<const Box<D>> boxes) {
-  constexpr double most = 250e6;  // 2 GB
-  std::vector<Box<D>> some;
-  for (const std::size_t i : sample_of(boxes.size(), 1'000)) some.push_back(boxes[i]);
-  const double scale =
-      static_cast<double>(boxes.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
-  const double pairs = static_cast<double>(reference_pairs<D>(some).size()) * scale * scale;
-  if (pairs > most) {
-    throw std::runtime_error(fmt::format(
-        "{} boxes with about {:.1e} pairs; expected at most {:.1e}, since pairs are kept to be checked",
-        grouped(boxes.size()), pairs, most));
-  }
-}
-
 /// Refuses motion whose steps, and the events that are to be expected of them, would fill the machine.
 template <int D>
 void check_steps(const CaseRequest& request) {

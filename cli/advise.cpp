@@ -1,0 +1,226 @@
+// broadside advise: which algorithm suits somebody's boxes, and why.
+#include "lab/advise/advise.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/input_options.hpp"
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/motion_options.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/unusable.hpp"
+#include "cli/values.hpp"
+#include "cli/verbs.hpp"
+#include "lab/readers/write_file.hpp"
+#include "lab/scenes/motion.hpp"
+
+namespace broadside::cli {
+namespace {
+
+struct AdviseArguments {
+  std::string input;
+  InputOptions read;
+  std::string boxes;
+  std::optional<double> moving;
+  std::string frames;
+  MotionOptions motion;
+  std::optional<std::uint64_t> seed;
+  std::string algorithms = "own";
+  std::vector<std::string> threads = {"1"};
+  std::optional<double> budget;
+  std::string json;
+};
+
+using AnyHistory =
+    std::variant<lab::History<2>, lab::History<3>, lab::History<2, double>, lab::History<3, double>>;
+
+/// What is advised on.
+struct Boxes {
+  std::string name;
+  std::string warning;
+  AnyHistory history;
+};
+
+bool is_set_moving(const AdviseArguments& arguments) {
+  return arguments.moving || !arguments.frames.empty() || arguments.motion.any();
+}
+
+lab::SceneRequest request_of(const AdviseArguments& arguments) {
+  constexpr std::size_t standard_boxes = 10'000;
+  constexpr std::size_t standard_frames = 20;
+  lab::SceneRequest request;
+  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.seed = arguments.seed.value_or(request.seed);
+  if (is_set_moving(arguments))
+    request.frames = arguments.frames.empty() ? standard_frames : read_count("--frames", arguments.frames);
+  request.moving = arguments.moving.value_or(request.moving);
+  request.drift = arguments.motion.drift_or_standard();
+  request.teleport = arguments.motion.teleport_or_standard();
+  return request;
+}
+
+template <int D, typename Real>
+AnyHistory whole(lab::FrameReader<D, Real>& frames, std::string& warning) {
+  lab::History<D, Real> history = lab::read_all(frames);
+  warning = frames.warning();
+  return history;
+}
+
+Boxes read_file(const AdviseArguments& arguments) {
+  if (!arguments.boxes.empty() || arguments.seed)
+    throw Unusable(fmt::format("-n or --seed with the file '{}'; expected none, its boxes are its own",
+                               arguments.input));
+  lab::ReadOptions options = read_options(arguments.read, arguments.input);
+  // What is set moving is of floats.
+  if (is_set_moving(arguments)) {
+    if (options.precision == lab::Precision::float64)
+      throw Unusable("--precision is double for boxes that are set moving; expected float");
+    options.precision = lab::Precision::float32;
+  }
+  lab::BoxFile file = lab::open_file(arguments.input, options);
+  Boxes boxes{file.name, {}, {}};
+  boxes.history = std::visit([&](const auto& frames) { return whole(*frames, boxes.warning); }, file.frames);
+  if (!is_set_moving(arguments)) return boxes;
+  const lab::SceneRequest request = request_of(arguments);
+  std::visit(
+      [&]<int D, typename Real>(lab::History<D, Real>& history) {
+        if (!history.steps.empty())
+          throw Unusable(fmt::format(
+              "--moving, --frames, --drift or --teleport with '{}'; expected none, its boxes move already",
+              arguments.input));
+        if constexpr (std::is_same_v<Real, float>)
+          history = lab::set_moving<D>(std::move(history.boxes), request, false);
+      },
+      boxes.history);
+  return boxes;
+}
+
+Boxes make_scene(const AdviseArguments& arguments) {
+  const lab::NamedScene named = lab::find_scene(arguments.input, read_options(arguments.read));
+  if (!arguments.read.precision.empty())
+    throw Unusable(
+        fmt::format("--precision with the scene '{}', which is of floats; expected a file", arguments.input));
+  lab::SceneRequest request = request_of(arguments);
+  const int dimension = arguments.read.dimension != 0  ? arguments.read.dimension
+                        : named.scene.has_dimension(2) ? 2
+                                                       : 3;
+  // Scenes that move by themselves have nothing to show while they are still.
+  constexpr std::size_t frames_of_motion = 30;
+  const bool moves = dimension == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d);
+  if (moves && request.frames == 0) request.frames = frames_of_motion;
+  if (dimension == 2)
+    return {named.spec.text(), named.scene.warning, lab::make_history<2>(named.scene, named.spec, request)};
+  return {named.spec.text(), named.scene.warning, lab::make_history<3>(named.scene, named.spec, request)};
+}
+
+bool is_file(const std::string& input) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(input, ignored) || lab::is_path(input);
+}
+
+void check(const AdviseArguments& arguments) {
+  if (arguments.moving) check_fraction("--moving", *arguments.moving);
+  check(arguments.motion);
+  if (arguments.budget && !(*arguments.budget > 0 && *arguments.budget <= 3600))
+    throw Unusable(
+        fmt::format("--budget is {}; expected a number of seconds above 0, at most 3600", *arguments.budget));
+  if (arguments.json.empty()) return;
+  check_writable("--json", arguments.json);
+  check_is_other_file("--json", arguments.json, arguments.input);
+}
+
+Exit run(const AdviseArguments& arguments, std::span<const std::string> command) {
+  on_signal(OnSignal::end);
+  check(arguments);
+  ProgressLine progress;
+  lab::AdviseOptions options;
+  options.algorithms = arguments.algorithms;
+  options.threads.clear();
+  for (const std::string& text : arguments.threads) {
+    const std::size_t threads = read_threads(text);
+    if (std::ranges::find(options.threads, threads) == options.threads.end())
+      options.threads.push_back(threads);
+  }
+  options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
+  options.watch.stop = interrupted;
+  options.watch.progress = [&](std::string_view what) { progress.show(what); };
+  const lab::Catalogue catalogue;
+  catalogue.select(options.algorithms);  // known before the file is read
+  Boxes boxes = is_file(arguments.input) ? read_file(arguments) : make_scene(arguments);
+
+  on_signal(OnSignal::note_then_end);
+  lab::Advice advice;
+  try {
+    advice =
+        std::visit([&](const auto& history) { return lab::advise(catalogue, boxes.name, history, options); },
+                   boxes.history);
+  } catch (const lab::Stopped&) {
+    throw Interruption();
+  }
+  progress.clear();
+  advice.warning = boxes.warning;
+  if (!advice.warning.empty()) say(advice.warning);
+  print(lab::text_of(advice));
+  flush_output();
+  if (!arguments.json.empty()) {
+    on_signal(OnSignal::note);
+    const std::string text = lab::json_of(advice, command);
+    lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
+  }
+  return advice.all_verified() ? Exit::fine : Exit::failed;
+}
+
+}  // namespace
+
+Verb add_advise(CLI::App& program, std::span<const std::string> command) {
+  const auto arguments = std::make_shared<AdviseArguments>();
+  CLI::App* const verb = program.add_subcommand(
+      "advise",
+      "Says which algorithm suits your boxes, and why: measures what the boxes are like and the algorithms "
+      "on "
+      "them, every result verified, and prints a ranking, the spec and the lines of C++ for it.");
+  verb->add_option(
+          "input", arguments->input,
+          "A file of boxes, still or moving (a recording of your engine), - for standard input; or the "
+          "name or spec of a scene")
+      ->required();
+  add_input_options(*verb, arguments->read);
+  verb->add_option("-n", arguments->boxes,
+                   "Number of boxes of a scene, such as 1000, 100k (standard: 10000)");
+  verb->add_option("--moving", arguments->moving,
+                   "Fraction of the boxes that move, from 0 to 1, where these are still (standard: 0.1 if "
+                   "--frames is given)");
+  verb->add_option("--frames", arguments->frames, "Frames that they move (standard: 20)");
+  add_motion_options(*verb, arguments->motion);
+  verb->add_option("--seed", arguments->seed, "Seed of a scene (standard: 1)")->check(is_seed);
+  verb->add_option(
+          "--algorithms", arguments->algorithms,
+          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
+          "Peers are shown, but never advised")
+      ->capture_default_str();
+  verb->add_option("--threads", arguments->threads,
+                   "Threads that a search may use, 0 for as many as there are; of several, such as 1,2, the "
+                   "others are tried with the best, and advised where they pay")
+      ->delimiter(',')
+      ->capture_default_str();
+  verb->add_option("--budget", arguments->budget,
+                   fmt::format("Seconds that measuring may take, about (standard: {})",
+                               lab::AdviseOptions{}.budget_seconds));
+  verb->add_option("--json", arguments->json,
+                   "Write the advice and all that it is based on to this file as well")
+      ->type_name("FILE");
+  return [arguments, command] { return run(*arguments, command); };
+}
+
+}  // namespace broadside::cli

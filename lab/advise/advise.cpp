@@ -1,0 +1,258 @@
+// Measures what boxes are like, and which algorithm suits them.
+#include "lab/advise/advise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "lab/advise/snippet.hpp"
+#include "lab/advise/variants.hpp"
+#include "lab/measure/find_case.hpp"
+#include "lab/measure/reference.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/measure/track_case.hpp"
+#include "lab/report/ranking.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// Who takes more than this many times the best one's time is not worth another look.
+constexpr double margin_of_finalists = 1.6;
+constexpr std::size_t most_finalists = 4;
+
+/// So many of the best have their tunables tried.
+constexpr std::size_t most_with_variants = 2;
+
+/// The frames of a history that are measured: as many as the budget allows, from the middle, where boxes have
+/// come to do what they usually do.
+template <int D, typename Real>
+History<D, Real> window(const History<D, Real>& history, double budget_seconds, Advice& advice) {
+  const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
+  double most = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
+  // The definition is asked about every frame.
+  if (places <= static_cast<double>(most_tracked_boxes_by_definition))
+    most = std::min(most, std::max(budget_seconds * 2e8 / (places * places), 8.0));
+  advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(most));
+  advice.first_frame = (history.steps.size() - advice.frames) / 2;
+  History<D, Real> part{history.boxes, {}};
+  for (std::size_t i = 0; i < advice.first_frame; ++i) apply(history.steps[i], part.boxes);
+  const auto begin = history.steps.begin() + static_cast<std::ptrdiff_t>(advice.first_frame);
+  part.steps.assign(begin, begin + static_cast<std::ptrdiff_t>(advice.frames));
+  return part;
+}
+
+/// A box as a mirror shows it that stands across the axes whose bits are set. Exact.
+template <int D, typename Real>
+Box<D, Real> mirrored(const Box<D, Real>& box, std::size_t axes) {
+  Box<D, Real> image = box;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    if ((axes >> axis & 1) == 0) continue;
+    image.min[axis] = -box.max[axis];
+    image.max[axis] = -box.min[axis];
+  }
+  return image;
+}
+
+/// The boxes themselves, their mirror images, and the same with the array begun at another place: on the
+/// same boxes again and again, the branch predictor learns what it never would of a user's.
+template <int D, typename Real>
+std::vector<History<D, Real>> images_of(const History<D, Real>& history, std::size_t count) {
+  std::vector<History<D, Real>> images;
+  for (std::size_t i = 0; i < count; ++i) {
+    History<D, Real> image = history;
+    const auto mirror = [&](Box<D, Real>& box) { box = mirrored(box, i); };
+    std::ranges::for_each(image.boxes, mirror);
+    for (Step<D, Real>& step : image.steps) std::ranges::for_each(step.boxes, mirror);
+    const std::size_t turn = image.boxes.size() * (i >> D) / ((count >> D) + 1);
+    // Changes name places, which then stay.
+    if (image.steps.empty())
+      std::rotate(image.boxes.begin(), image.boxes.begin() + static_cast<std::ptrdiff_t>(turn),
+                  image.boxes.end());
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+std::size_t image_count(std::size_t boxes, Mode mode) {
+  if (mode == Mode::track) return boxes <= 20'000 ? 2 : 1;
+  return boxes <= 2'000 ? 32 : boxes <= 200'000 ? 4 : 1;
+}
+
+template <int D, typename Real>
+class Adviser {
+ public:
+  Adviser(const Catalogue& catalogue, const std::string& input, const History<D, Real>& history,
+          const AdviseOptions& options)
+      : catalogue_(catalogue), options_(options) {
+    advice_.input = input;
+    options_.watch.at("looking at the boxes");
+    advice_.signals = signals_of(history);
+    check_pair_count<D, Real>(history.boxes);
+    advice_.mode = history.steps.empty() ? Mode::find : Mode::track;
+    const History<D, Real> part = window(history, options.budget_seconds, advice_);
+    const std::size_t boxes = places_of(part);
+    images_ = images_of(part, image_count(boxes, advice_.mode));
+    case_ = {.scene = input,
+             .parameters = {},
+             .seeds = {},
+             .dimension = D,
+             .boxes = boxes,
+             .frames = part.steps.size(),
+             .moving = advice_.signals.motion ? advice_.signals.motion->moving : 0,
+             .mode = advice_.mode};
+    for (std::size_t i = 0; i < images_.size(); ++i) case_.seeds.push_back(i + 1);
+  }
+
+  Advice run() {
+    const std::vector<Contender> plain =
+        with_threads(catalogue_.select(options_.algorithms), std::span(options_.threads).first(1));
+    std::vector<Measurement> first = measure(plain, first_effort(plain.size()));
+    std::vector<bool> variant;
+    const std::vector<Contender> finalists = finalists_of(plain, first, variant);
+    if (!finalists.empty()) {
+      std::vector<Measurement> second = measure(finalists, final_effort(finalists.size()));
+      for (std::size_t i = 0; i < second.size(); ++i) add(std::move(second[i]), variant[i], true);
+    }
+    for (Measurement& measurement : first) {
+      const auto same = [&](const Ranked& ranked) {
+        return ranked.measurement.algorithm == measurement.algorithm;
+      };
+      if (std::ranges::none_of(advice_.ranking, same)) add(std::move(measurement), false, false);
+    }
+    std::ranges::stable_sort(advice_.ranking, {}, [](const Ranked& ranked) {
+      return std::tuple(!is_timed(ranked.measurement), !ranked.is_finalist, ranked.milliseconds);
+    });
+    conclude();
+    return std::move(advice_);
+  }
+
+ private:
+  /// The time that counts of one that was measured.
+  double time(const Measurement& measurement) const {
+    return is_timed(measurement)
+               ? undisturbed(measurement.samples_ms, images_.size() * std::max<std::size_t>(case_.frames, 1))
+               : time_of(measurement);
+  }
+
+  void add(Measurement measurement, bool is_variant, bool is_finalist) {
+    const double milliseconds = time(measurement);
+    advice_.ranking.push_back({std::move(measurement), milliseconds, is_variant, is_finalist});
+  }
+
+  Effort first_effort(std::size_t contenders) const {
+    const double budget = options_.budget_seconds;
+    return {.budget_seconds = budget / 12,
+            .history_seconds = budget / 3,
+            .share_seconds = 0.3 * budget / static_cast<double>(contenders),
+            .least_samples = 6,
+            .most_samples = 64,
+            .single_sample_seconds = budget / 20};
+  }
+
+  Effort final_effort(std::size_t contenders) const {
+    const double budget = options_.budget_seconds;
+    return {.budget_seconds = budget,
+            .history_seconds = budget,
+            .share_seconds = 0.6 * budget / static_cast<double>(contenders),
+            .least_samples = 9,
+            .most_samples = 400,
+            .single_sample_seconds = budget / 8};
+  }
+
+  std::vector<Measurement> measure(std::span<const Contender> contenders, const Effort& effort) {
+    const Contest contest{contenders, catalogue_.algorithms(), effort, options_.watch};
+    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, contest);
+    CaseResult result = measure_find<D, Real>(case_, images_, contest);
+    if (!result.floor_ms.empty()) advice_.floor_ms = median(result.floor_ms);
+    return std::move(result.measurements);
+  }
+
+  /// The best, auto, and variants of the best; for each, whether it is a variant.
+  std::vector<Contender> finalists_of(const std::vector<Contender>& plain,
+                                      const std::vector<Measurement>& first, std::vector<bool>& variant) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i].outcome == Outcome::verified) order.push_back(i);
+    }
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(time(first[i]), i); });
+    const auto is_auto = [&](std::size_t i) { return plain[i].algorithm->name == default_algorithm; };
+    std::vector<Contender> finalists;
+    std::vector<Contender> tried;
+    std::size_t with_variants = 0;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+      const std::size_t i = order[rank];
+      const bool is_near =
+          rank < most_finalists && time(first[i]) <= margin_of_finalists * time(first[order[0]]);
+      if (!is_near && !is_auto(i)) continue;
+      finalists.push_back(plain[i]);
+      if (is_auto(i) || with_variants++ < most_with_variants) add_variants(plain[i], tried);
+    }
+    variant.assign(finalists.size(), false);
+    for (Contender& contender : tried) {
+      finalists.push_back(std::move(contender));
+      variant.push_back(true);
+    }
+    return finalists;
+  }
+
+  void add_variants(const Contender& contender, std::vector<Contender>& tried) const {
+    for (Contender& other : variants_of(contender, advice_.signals)) tried.push_back(std::move(other));
+    if (options_.threads.size() < 2) return;
+    // As asked for first, without the number of threads that with_threads() gave it.
+    Contender bare = contender;
+    std::erase_if(bare.spec.values, [](const auto& value) { return value.first == "threads"; });
+    for (Contender& other : with_threads({bare}, std::span(options_.threads).subspan(1))) {
+      if (other.spec.text() != contender.spec.text()) tried.push_back(std::move(other));
+    }
+  }
+
+  void conclude() {
+    std::vector<Rival> rivals;
+    for (const Ranked& ranked : advice_.ranking) {
+      if (!ranked.is_finalist) break;
+      rivals.push_back({&ranked.measurement, ranked.milliseconds, ranked.is_variant});
+    }
+    for (const Ranked& ranked : advice_.ranking) {
+      const auto& pairs = ranked.measurement.pairs;
+      if (ranked.measurement.outcome != Outcome::verified || !pairs || advice_.signals.boxes == 0) continue;
+      advice_.signals.overlaps = 2 * static_cast<double>(*pairs) / static_cast<double>(advice_.signals.boxes);
+      break;
+    }
+    advice_.choice = choose(rivals);
+    if (!advice_.choice) return;
+    const Measurement& chosen = advice_.ranking[advice_.choice->chosen].measurement;
+    advice_.spec = chosen.algorithm;
+    advice_.milliseconds = advice_.ranking[advice_.choice->chosen].milliseconds;
+    advice_.p99_ms = percentile(chosen.samples_ms, 0.99);
+    advice_.reasons = reasons_of(advice_);
+    advice_.changes = changes_of(advice_);
+    advice_.snippet = snippet(advice_.spec, advice_.mode, D, precision_of<Real>);
+  }
+
+  const Catalogue& catalogue_;
+  const AdviseOptions& options_;
+  std::vector<History<D, Real>> images_;
+  Case case_;
+  Advice advice_;
+};
+
+}  // namespace
+
+bool Advice::all_verified() const {
+  const auto failed = [](const Ranked& ranked) { return ranked.measurement.outcome == Outcome::failed; };
+  return choice.has_value() && std::ranges::none_of(ranking, failed);
+}
+
+template <int D, typename Real>
+Advice advise(const Catalogue& catalogue, const std::string& input, const History<D, Real>& history,
+              const AdviseOptions& options) {
+  return Adviser<D, Real>(catalogue, input, history, options).run();
+}
+
+template Advice advise(const Catalogue&, const std::string&, const History<2, float>&, const AdviseOptions&);
+template Advice advise(const Catalogue&, const std::string&, const History<3, float>&, const AdviseOptions&);
+template Advice advise(const Catalogue&, const std::string&, const History<2, double>&, const AdviseOptions&);
+template Advice advise(const Catalogue&, const std::string&, const History<3, double>&, const AdviseOptions&);
+
+}  // namespace broadside::lab

@@ -1,0 +1,74 @@
+// Which algorithm is to be advised, given what was measured.
+#include "lab/advise/choice.hpp"
+
+#include <algorithm>
+
+#include "lab/report/ranking.hpp"
+
+namespace broadside::lab {
+namespace {
+
+bool is_eligible(const Rival& rival) {
+  return rival.measurement->outcome == Outcome::verified && is_timed(*rival.measurement);
+}
+
+bool is_peer(const Rival& rival) { return rival.measurement->kind == AlgorithmKind::peer; }
+
+/// The fastest of those that `counts`; empty if there are none.
+template <typename Counts>
+std::optional<std::size_t> fastest(std::span<const Rival> rivals, const Counts& counts) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (!is_eligible(rivals[i]) || !counts(rivals[i])) continue;
+    if (!best || rivals[i].milliseconds < rivals[*best].milliseconds) best = i;
+  }
+  return best;
+}
+
+/// "auto", whatever threads it has.
+bool is_auto(const Rival& rival) {
+  const std::string& spec = rival.measurement->algorithm;
+  return !rival.is_variant && spec.substr(0, spec.find(':')) == default_algorithm;
+}
+
+bool is_clearly_faster(const Rival& variant, const Rival& plain) {
+  return variant.milliseconds * margin_of_variants <= plain.milliseconds &&
+         plain.milliseconds - variant.milliseconds > indifferent_ms &&
+         part_of_rounds(variant.measurement->samples_ms, plain.measurement->samples_ms) >= rounds_of_variants;
+}
+
+}  // namespace
+
+double part_of_rounds(std::span<const double> a, std::span<const double> b) {
+  const std::size_t rounds = std::min(a.size(), b.size());
+  std::size_t longer = 0;
+  for (std::size_t i = 0; i < rounds; ++i) longer += static_cast<std::size_t>(b[i] > a[i]);
+  return rounds == 0 ? 0 : static_cast<double>(longer) / static_cast<double>(rounds);
+}
+
+std::optional<Choice> choose(std::span<const Rival> rivals) {
+  const auto plain = fastest(rivals, [](const Rival& rival) { return !rival.is_variant && !is_peer(rival); });
+  if (!plain) return std::nullopt;
+  const double least = rivals[*plain].milliseconds;
+  Choice choice{*plain, is_auto(rivals[*plain]) ? Why::automatic : Why::fastest, *plain, {}};
+  const auto automatic = fastest(rivals, is_auto);
+  if (automatic) {
+    const double time = rivals[*automatic].milliseconds;
+    if (time <= least * margin_of_auto || time - least <= indifferent_ms) {
+      choice.chosen = *automatic;
+      choice.why = Why::automatic;
+    }
+  }
+  const auto variant = fastest(rivals, [&](const Rival& rival) {
+    return rival.is_variant && !is_peer(rival) && is_clearly_faster(rival, rivals[*plain]);
+  });
+  if (variant) {
+    choice.chosen = *variant;
+    choice.why = Why::variant;
+  }
+  const auto peer = fastest(rivals, is_peer);
+  if (peer && rivals[*peer].milliseconds < rivals[choice.chosen].milliseconds) choice.peer = peer;
+  return choice;
+}
+
+}  // namespace broadside::lab

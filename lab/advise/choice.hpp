@@ -1,0 +1,58 @@
+// Which algorithm is to be advised, given what was measured: rules that ask for nothing else.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lab/measure/measurement.hpp"
+
+namespace broadside::lab {
+
+/// By how much a variant (a tunable that is set, more threads) must be faster than every plain algorithm to
+/// be advised: a plain one chooses its tunables itself, and so goes on suiting boxes that change.
+inline constexpr double margin_of_variants = 1.05;
+
+/// In how large a part of the rounds that both took part in it must be the faster one.
+inline constexpr double rounds_of_variants = 0.7;
+
+/// Up to how many times the fastest plain algorithm's time `auto` is advised for it, since it goes on
+/// choosing.
+inline constexpr double margin_of_auto = 1.04;
+
+/// Times that differ by less than this are the same: a clock and a call cost as much.
+inline constexpr double indifferent_ms = 0.0002;
+
+/// One that was measured.
+struct Rival {
+  const Measurement* measurement;
+  double milliseconds;      ///< the time that counts, where it was verified
+  bool is_variant = false;  ///< whether a tunable is set that the user did not ask for
+};
+
+/// Why the chosen one was chosen.
+enum class Why {
+  fastest,    ///< it is the fastest plain algorithm
+  automatic,  ///< it is auto, and the fastest plain algorithm is hardly faster
+  variant     ///< it is a variant that is clearly faster than all plain algorithms
+};
+
+/// The choice. Places are those of the rivals.
+struct Choice {
+  std::size_t chosen;
+  Why why;
+  std::size_t fastest_plain;  ///< the fastest algorithm whose tunables are its own choice
+  std::optional<std::size_t>
+      peer{};  ///< another library that is faster than what was chosen, the fastest one
+};
+
+/// In which part of the rounds `b` took longer than `a`. Samples are matched in their order, in which all
+/// take turns; where one has fewer, the first ones count. 0 where there are none.
+double part_of_rounds(std::span<const double> a, std::span<const double> b);
+
+/// Chooses among those that were verified; empty if none of ours and the paper's was. Of equals the first is
+/// taken.
+std::optional<Choice> choose(std::span<const Rival> rivals);
+
+}  // namespace broadside::lab

@@ -1,0 +1,233 @@
+// Why an algorithm is advised and the others are not: sentences that come from the signals and the times.
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lab/advise/advise.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/ranking.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// From so many times as many boxes near each other as evenly spread ones have, they stand in clusters.
+constexpr double clustered = 2;
+
+/// Sizes are much alike if 99 % of the boxes are at most so many times as long as the median.
+constexpr double alike = 4;
+
+/// Who takes up to so many times the time is no slower, as far as sentences go.
+constexpr double as_fast = 1.05;
+constexpr std::size_t most_others = 5;
+
+std::string base_of(std::string_view spec) { return std::string(spec.substr(0, spec.find(':'))); }
+
+std::optional<double> tests_of(const Measurement& measurement, const Signals& signals) {
+  if (!measurement.statistics || measurement.statistics->tests == 0 || signals.boxes == 0) return {};
+  return static_cast<double>(measurement.statistics->tests) / static_cast<double>(signals.boxes);
+}
+
+std::string tests_text(const Measurement& measurement, const Signals& signals) {
+  const auto tests = tests_of(measurement, signals);
+  return tests ? fmt::format("{} tests a box", rounded(*tests)) : "tests that it does not count";
+}
+
+/// What in the boxes suits the algorithm.
+std::string suits(const std::string& algorithm, const Measurement& measurement, const Signals& signals) {
+  const std::string tests = tests_text(measurement, signals);
+  if (algorithm == "brute_force")
+    return signals.motion ? fmt::format("comparing what changed with all {} boxes needs no structure",
+                                        grouped(signals.boxes))
+                          : fmt::format("{} are so few that comparing all costs less than any order",
+                                        counted(signals.boxes, "box", "boxes"));
+  if (algorithm == "sweep_and_prune") {
+    const std::size_t axis = signals.best_axis();
+    return fmt::format("along {} only {} intervals overlap a box's: {}", axis_name(axis),
+                       rounded(signals.axis_tests[axis]), tests);
+  }
+  if (algorithm == "bvh") {
+    if (signals.clustering >= clustered)
+      return fmt::format("boxes stand in clusters, to which its bounds fit themselves: {}", tests);
+    if (signals.overlaps.value_or(0) >= 6)
+      return fmt::format("a box overlaps {} others, which cells would only repeat: {}",
+                         rounded(*signals.overlaps), tests);
+    return fmt::format("its bounds fit themselves to the boxes: {}", tests);
+  }
+  if (algorithm == "grid" || algorithm == "hierarchical_grid") {
+    const bool even = signals.sizes[4] <= alike * signals.sizes[2];
+    if (signals.clustering < clustered && even)
+      return fmt::format("boxes of much the same size, spread evenly, suit its cells: {}", tests);
+    if (even) return fmt::format("boxes of much the same size suit its cells: {}", tests);
+    return fmt::format("its levels of cells take small boxes and large ones: {}", tests);
+  }
+  return fmt::format("it makes {}", tests);
+}
+
+/// What a sweep along the best axis leaves, and stripes of a second one where they leave less.
+std::string sweep_text(double tests, const Signals& signals) {
+  const std::size_t axis = signals.best_axis();
+  const double along = signals.axis_tests[axis];
+  if (signals.motion || tests > 0.8 * along)
+    return fmt::format("its best axis, {}, leaves {} tests a box", axis_name(axis), rounded(tests));
+  return fmt::format("its best axis, {}, leaves {} tests a box, and stripes of another one {}",
+                     axis_name(axis), rounded(along), rounded(tests));
+}
+
+/// Why it takes longer than the chosen one.
+std::string hinders(const Measurement& slow, const Measurement& chosen, const Signals& signals) {
+  const std::string name = base_of(slow.algorithm);
+  if (name == "brute_force" && !signals.motion)
+    return fmt::format("it tests each box against all others, {} tests a box",
+                       rounded(static_cast<double>(std::max<std::size_t>(signals.boxes, 1) - 1) / 2));
+  const auto tests = tests_of(slow, signals);
+  const auto fewest = tests_of(chosen, signals);
+  if (!tests) return slow.own_bytes ? fmt::format("it keeps {}", bytes(*slow.own_bytes)) : "";
+  if (name == "sweep_and_prune" && (!fewest || *tests > *fewest)) return sweep_text(*tests, signals);
+  if (fewest && *tests >= 1.5 * *fewest)
+    return fmt::format("it makes {} tests a box where {} makes {}", rounded(*tests), chosen.algorithm,
+                       rounded(*fewest));
+  // What is not spent on tests goes into the structure.
+  return fmt::format("its {} tests a box save less than its structure{} costs", rounded(*tests),
+                     slow.own_bytes ? fmt::format(" of {}", bytes(*slow.own_bytes)) : "");
+}
+
+/// "1.23 times".
+std::string times(double ratio) { return ratio_text(ratio) + " times"; }
+
+}  // namespace
+
+std::vector<std::string> reasons_of(const Advice& advice) {
+  std::vector<std::string> reasons;
+  if (!advice.choice) return reasons;
+  const Choice& choice = *advice.choice;
+  const Measurement& chosen = advice.ranking[choice.chosen].measurement;
+  const Measurement& fastest = advice.ranking[choice.fastest_plain].measurement;
+  const std::string name = base_of(chosen.algorithm);
+  const double time = advice.milliseconds;
+  const double least = advice.ranking[choice.fastest_plain].milliseconds;
+  if (advice.signals.boxes < 2 && !advice.signals.motion)
+    return {fmt::format(
+        "with fewer than two boxes there are no pairs, whatever finds them; {} chooses once there are",
+        default_algorithm)};
+  switch (choice.why) {
+    case Why::automatic: {
+      std::string text = choice.chosen == choice.fastest_plain
+                             ? fmt::format("{} is the fastest", chosen.algorithm)
+                             : fmt::format(
+                                   "{} takes {} the time of {}, the fastest, which is within what "
+                                   "repeated measurements differ by",
+                                   chosen.algorithm, times(time / least), fastest.algorithm);
+      text += ", and it chooses anew when the boxes change";
+      if (!chosen.explanation.empty()) text += fmt::format(". Here it takes {}", chosen.explanation);
+      reasons.push_back(text);
+      break;
+    }
+    case Why::fastest:
+      reasons.push_back(
+          fmt::format("{} is the fastest: {}", chosen.algorithm, suits(name, chosen, advice.signals)));
+      break;
+    case Why::variant:
+      reasons.push_back(fmt::format(
+          "{} takes {:.0f} % less time than {}, the fastest that chooses by itself, and is the faster one in "
+          "{:.0f} % of the rounds; it is for boxes like these only",
+          chosen.algorithm, (1 - time / least) * 100, fastest.algorithm,
+          part_of_rounds(chosen.samples_ms, fastest.samples_ms) * 100));
+      break;
+  }
+  std::size_t others = 0;
+  for (const Ranked& ranked : advice.ranking) {
+    const Measurement& other = ranked.measurement;
+    if (ranked.is_variant || &other == &chosen || !is_timed(other) || other.kind == AlgorithmKind::peer)
+      continue;
+    const double ratio = ranked.milliseconds / time;
+    if (ratio <= as_fast || ++others > most_others) continue;
+    const bool says_why = !other.explanation.empty() && base_of(other.algorithm) == default_algorithm;
+    const std::string why =
+        says_why ? "it takes " + other.explanation : hinders(other, chosen, advice.signals);
+    reasons.push_back(
+        fmt::format("{} takes {} as long{}{}", other.algorithm, times(ratio), why.empty() ? "" : ": ", why));
+  }
+  if (choice.peer) {
+    const Measurement& peer = advice.ranking[*choice.peer].measurement;
+    reasons.push_back(fmt::format(
+        "{}, which is not part of Broadside, is faster here: {} takes {} as long as it", peer.algorithm,
+        chosen.algorithm, times(time / advice.ranking[*choice.peer].milliseconds)));
+  }
+  return reasons;
+}
+
+namespace {
+
+const Ranked* find(const Advice& advice, std::string_view spec) {
+  for (const Ranked& ranked : advice.ranking) {
+    if (ranked.measurement.algorithm == spec && is_timed(ranked.measurement)) return &ranked;
+  }
+  return nullptr;
+}
+
+/// From which moving fraction on finding anew is the cheaper way, by the times of both ways here.
+std::string break_even(const Advice& advice) {
+  const Ranked* const rebuild = find(advice, "auto:way=rebuild");
+  const Ranked* const follow = find(advice, "auto:way=incremental");
+  const double moving = advice.signals.motion ? advice.signals.motion->moving : 0;
+  if (rebuild == nullptr || follow == nullptr || !(moving > 0)) return "";
+  const double anew = rebuild->milliseconds;
+  const double followed = follow->milliseconds;
+  const std::string both = fmt::format("following what moves takes {} a frame, finding all anew {}",
+                                       duration(followed / 1e3), duration(anew / 1e3));
+  if (followed >= anew)
+    return fmt::format(
+        "so much moves here ({:.3g} % of the boxes a frame) that following it does not pay: {}", moving * 100,
+        both);
+  const double from = moving * anew / followed;
+  if (from >= 1) return fmt::format("following pays however many boxes move: {}", both);
+  return fmt::format(
+      "{}: from about {:.2g} % moving on, if each mover costs what it does here, finding anew "
+      "is the cheaper one; auto changes over by itself",
+      both, from * 100);
+}
+
+}  // namespace
+
+std::vector<std::string> changes_of(const Advice& advice) {
+  std::vector<std::string> changes;
+  if (!advice.choice) return changes;
+  const Measurement& chosen = advice.ranking[advice.choice->chosen].measurement;
+  const double time = advice.milliseconds;
+  if (const std::string text = break_even(advice); !text.empty()) changes.push_back(text);
+  const Ranked* leanest = nullptr;
+  const Ranked* steadiest = nullptr;
+  for (const Ranked& ranked : advice.ranking) {
+    const Measurement& other = ranked.measurement;
+    if (!is_timed(other) || other.kind == AlgorithmKind::peer || ranked.is_variant || &other == &chosen)
+      continue;
+    if (chosen.peak_bytes && other.peak_bytes && *other.peak_bytes * 5 <= *chosen.peak_bytes * 3 &&
+        ranked.milliseconds <= 8 * time && *chosen.peak_bytes > 1'000'000 &&
+        (leanest == nullptr || *other.peak_bytes < *leanest->measurement.peak_bytes))
+      leanest = &ranked;
+    if (advice.mode == Mode::track && ranked.milliseconds <= 1.3 * time &&
+        percentile(other.samples_ms, 0.99) * 1.5 <= percentile(chosen.samples_ms, 0.99) &&
+        (steadiest == nullptr ||
+         percentile(other.samples_ms, 0.99) < percentile(steadiest->measurement.samples_ms, 0.99)))
+      steadiest = &ranked;
+  }
+  if (leanest != nullptr)
+    changes.push_back(
+        fmt::format("if memory matters more than time: {} holds at most {} where {} holds {}, "
+                    "at {} the time",
+                    leanest->measurement.algorithm, bytes(*leanest->measurement.peak_bytes), chosen.algorithm,
+                    bytes(*chosen.peak_bytes), times(leanest->milliseconds / time)));
+  if (steadiest != nullptr)
+    changes.push_back(fmt::format(
+        "if the slowest frames matter most: {} has a p99 of {} where {} has {}, at {} the median",
+        steadiest->measurement.algorithm, duration(percentile(steadiest->measurement.samples_ms, 0.99) / 1e3),
+        chosen.algorithm, duration(percentile(chosen.samples_ms, 0.99) / 1e3),
+        times(steadiest->milliseconds / time)));
+  return changes;
+}
+
+}  // namespace broadside::lab

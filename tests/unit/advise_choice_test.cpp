@@ -1,0 +1,186 @@
+// Which algorithm is chosen, from measurements made up by hand.
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lab/advise/advise.hpp"
+#include "lab/advise/choice.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Rivals, each with the same time in ten rounds.
+class Field {
+ public:
+  Field& add(const std::string& spec, double milliseconds, bool is_variant = false) {
+    Measurement measurement;
+    measurement.algorithm = spec;
+    measurement.outcome = Outcome::verified;
+    measurement.samples_ms.assign(10, milliseconds);
+    measurements_.push_back(measurement);
+    rivals_.push_back({&measurements_.back(), milliseconds, is_variant});
+    return *this;
+  }
+  Field& variant(const std::string& spec, double milliseconds) { return add(spec, milliseconds, true); }
+  Measurement& last() { return measurements_.back(); }
+
+  std::optional<Choice> choice() const { return choose(rivals_); }
+  std::string chosen() const {
+    const auto choice = choose(rivals_);
+    return choice ? rivals_[choice->chosen].measurement->algorithm : "";
+  }
+
+ private:
+  std::deque<Measurement> measurements_;
+  std::vector<Rival> rivals_;
+};
+
+TEST(Choice, TakesTheFastest) {
+  Field field;
+  field.add("bvh", 3).add("grid", 2).add("quadtree", 4);
+  EXPECT_EQ(field.chosen(), "grid");
+  EXPECT_EQ(field.choice()->why, Why::fastest);
+}
+
+TEST(Choice, TakesTheFirstOfTwoThatAreEquallyFast) {
+  EXPECT_EQ(Field().add("bvh", 2).add("grid", 2).chosen(), "bvh");
+}
+
+TEST(Choice, PrefersAutoWhereItIsHardlySlower) {
+  Field near;
+  near.add("grid", 1).add("auto", 1.03);
+  EXPECT_EQ(near.chosen(), "auto");
+  EXPECT_EQ(near.choice()->why, Why::automatic);
+  EXPECT_EQ(near.choice()->fastest_plain, 0u);
+  EXPECT_EQ(Field().add("grid", 1).add("auto", 1.05).chosen(), "grid");
+  // Under the clock's own noise all are the same.
+  EXPECT_EQ(Field().add("brute_force", 0.0001).add("auto", 0.00025).chosen(), "auto");
+}
+
+TEST(Choice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
+  EXPECT_EQ(Field().add("grid", 1).variant("grid:cell=2", 0.96).chosen(), "grid");
+  Field clear;
+  clear.add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 0.9).variant("grid:cell=4", 0.92);
+  EXPECT_EQ(clear.chosen(), "grid:cell=2");
+  EXPECT_EQ(clear.choice()->why, Why::variant);
+  EXPECT_EQ(Field().add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 1.1).chosen(), "bvh");
+}
+
+TEST(Choice, DoesNotTakeAVariantThatIsFasterInFewRounds) {
+  Field field;
+  field.add("grid", 1).variant("grid:cell=2", 0.8);
+  field.last().samples_ms = {2, 2, 2, 2, 0.8, 0.8, 0.8, 0.8, 0.8, 0.8};
+  EXPECT_EQ(field.chosen(), "grid");
+  field.last().samples_ms[0] = 0.8;
+  EXPECT_EQ(field.chosen(), "grid:cell=2");
+}
+
+TEST(Choice, LeavesOutWhatFailedAndWhatWasSkipped) {
+  Field field;
+  field.add("grid", 1);
+  field.last().outcome = Outcome::failed;
+  EXPECT_EQ(field.choice(), std::nullopt);
+  field.add("bvh", 2);
+  field.last().outcome = Outcome::skipped;
+  EXPECT_EQ(field.choice(), std::nullopt);
+  field.add("quadtree", 3);
+  EXPECT_EQ(field.chosen(), "quadtree");
+}
+
+TEST(Choice, NamesAPeerThatIsFasterAndAdvisesOneOfOurs) {
+  Field field;
+  field.add("grid", 2).add("boost_rtree", 1);
+  field.last().kind = AlgorithmKind::peer;
+  EXPECT_EQ(field.chosen(), "grid");
+  EXPECT_EQ(field.choice()->peer, 1u);
+  Field slow;
+  slow.add("grid", 2).add("boost_rtree", 3);
+  slow.last().kind = AlgorithmKind::peer;
+  EXPECT_EQ(slow.choice()->peer, std::nullopt);
+  Field alone;
+  alone.add("boost_rtree", 3);
+  alone.last().kind = AlgorithmKind::peer;
+  EXPECT_EQ(alone.choice(), std::nullopt);
+}
+
+TEST(Choice, AutoWithThreadsIsAuto) {
+  EXPECT_EQ(Field().add("grid:threads=2", 1).add("auto:threads=2", 1.01).chosen(), "auto:threads=2");
+}
+
+TEST(PartOfRounds, CountsTheRoundsThatBothTookPartIn) {
+  EXPECT_EQ(part_of_rounds(std::vector<double>{1, 2, 3, 4, 5}, std::vector<double>{2, 2, 4, 4}), 0.5);
+  EXPECT_EQ(part_of_rounds({}, {}), 0);
+}
+
+/// Advice by hand: two algorithms on still boxes.
+Advice made_up() {
+  Advice advice;
+  advice.signals.boxes = 1000;
+  advice.signals.axis_tests = {88, 120};
+  advice.milliseconds = 1;
+  for (const auto& [spec, time, tests] : std::vector<std::tuple<std::string, double, std::uint64_t>>{
+           {"grid", 1, 4000}, {"sweep_and_prune", 3.1, 88'000}}) {
+    Ranked ranked;
+    ranked.measurement.algorithm = spec;
+    ranked.measurement.outcome = Outcome::verified;
+    ranked.measurement.samples_ms.assign(5, time);
+    ranked.measurement.statistics = Statistics{.tests = tests};
+    ranked.measurement.peak_bytes = spec == "grid" ? 4'000'000 : 1'000'000;
+    ranked.milliseconds = time;
+    ranked.is_finalist = true;
+    advice.ranking.push_back(ranked);
+  }
+  advice.choice = Choice{0, Why::fastest, 0};
+  return advice;
+}
+
+TEST(Reasons, ComeFromSignalsAndMeasurements) {
+  const std::vector<std::string> reasons = reasons_of(made_up());
+  ASSERT_EQ(reasons.size(), 2u);
+  EXPECT_EQ(
+      reasons[0],
+      "grid is the fastest: boxes of much the same size, spread evenly, suit its cells: 4.00 tests a box");
+  EXPECT_EQ(reasons[1],
+            "sweep_and_prune takes 3.10 times as long: its best axis, x, leaves 88.0 tests a box");
+}
+
+TEST(Reasons, SayHonestlyThatAPeerIsFaster) {
+  Advice advice = made_up();
+  advice.ranking.push_back(advice.ranking[0]);
+  advice.ranking[2].measurement.algorithm = "boost_rtree";
+  advice.ranking[2].measurement.kind = AlgorithmKind::peer;
+  advice.ranking[2].milliseconds = 0.5;
+  advice.choice->peer = 2;
+  EXPECT_THAT(
+      reasons_of(advice),
+      Contains("boost_rtree, which is not part of Broadside, is faster here: grid takes 2.00 times as "
+               "long as it"));
+}
+
+TEST(Changes, NameWhatHoldsLessMemory) {
+  Advice advice = made_up();
+  EXPECT_THAT(changes_of(advice), Contains(HasSubstr("sweep_and_prune holds at most 1.00 MB where grid holds "
+                                                     "4.00 MB, at 3.10 times the time")));
+  advice.ranking[1].measurement.peak_bytes = 3'900'000;
+  EXPECT_THAT(changes_of(advice), IsEmpty());
+}
+
+TEST(Changes, TellFromWhichFractionOnFollowingDoesNotPay) {
+  Advice advice = made_up();
+  advice.ranking[1].measurement.peak_bytes.reset();
+  advice.mode = Mode::track;
+  advice.signals.motion = MotionSignals{.frames = 10, .moving = 0.1};
+  advice.ranking[0].measurement.algorithm = "auto:way=incremental";
+  advice.ranking[1].measurement.algorithm = "auto:way=rebuild";
+  EXPECT_THAT(changes_of(advice), Contains(HasSubstr("from about 31 % moving on")));
+}
+
+}  // namespace
+}  // namespace broadside::lab
