@@ -9,6 +9,7 @@
 #include "lab/advise/snippet.hpp"
 #include "lab/advise/variants.hpp"
 #include "lab/measure/find_case.hpp"
+#include "lab/measure/pair_count.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/track_case.hpp"
@@ -177,17 +178,24 @@ class Adviser {
     }
     std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(time(first[i]), i); });
     const auto is_auto = [&](std::size_t i) { return plain[i].algorithm->name == default_algorithm; };
+    const auto is_peer = [&](std::size_t i) { return plain[i].algorithm->kind == AlgorithmKind::peer; };
+    const auto best = std::ranges::find_if_not(order, is_peer);
+    if (best == order.end()) return {};
     std::vector<Contender> finalists;
     std::vector<Contender> tried;
+    std::size_t ours = 0;
     std::size_t with_variants = 0;
-    for (std::size_t rank = 0; rank < order.size(); ++rank) {
-      const std::size_t i = order[rank];
-      const bool is_near =
-          rank < most_finalists && time(first[i]) <= margin_of_finalists * time(first[order[0]]);
+    for (const std::size_t i : order) {
+      const bool is_near = time(first[i]) <= margin_of_finalists * time(first[*best]) &&
+                           (is_peer(i) || ours++ < most_finalists);
       if (!is_near && !is_auto(i)) continue;
       finalists.push_back(plain[i]);
-      if (is_auto(i) || with_variants++ < most_with_variants) add_variants(plain[i], tried);
+      if (is_auto(i) || (!is_peer(i) && with_variants++ < most_with_variants)) add_variants(plain[i], tried);
     }
+    std::erase_if(tried, [&](const Contender& contender) {
+      return std::ranges::any_of(
+          plain, [&](const Contender& other) { return other.spec.text() == contender.spec.text(); });
+    });
     variant.assign(finalists.size(), false);
     for (Contender& contender : tried) {
       finalists.push_back(std::move(contender));

@@ -2,7 +2,9 @@
 #include "lab/advise/choice.hpp"
 
 #include <algorithm>
+#include <vector>
 
+#include "lab/measure/samples.hpp"
 #include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
@@ -38,6 +40,14 @@ bool is_clearly_faster(const Rival& variant, const Rival& plain) {
 }
 
 }  // namespace
+
+double undisturbed(std::span<const double> samples, std::size_t inputs) {
+  std::vector<double> least(samples.begin(),
+                            samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
+  for (std::size_t i = least.size(); i < samples.size(); ++i)
+    least[i % inputs] = std::min(least[i % inputs], samples[i]);
+  return median(least);
+}
 
 double part_of_rounds(std::span<const double> a, std::span<const double> b) {
   const std::size_t rounds = std::min(a.size(), b.size());

@@ -47,6 +47,11 @@ struct Choice {
       peer{};  ///< another library that is faster than what was chosen, the fastest one
 };
 
+/// What samples come to where the machine was disturbed, since other work on it adds to times and never takes
+/// away: the samples are of `inputs` inputs in rotation; of each the least counts, and the median of these is
+/// the result. Throws std::invalid_argument if there are none.
+double undisturbed(std::span<const double> samples, std::size_t inputs);
+
 /// In which part of the rounds `b` took longer than `a`. Samples are matched in their order, in which all
 /// take turns; where one has fewer, the first ones count. 0 where there are none.
 double part_of_rounds(std::span<const double> a, std::span<const double> b);

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "lab/measure/find_case.hpp"
-#include "lab/measure/reference.hpp"
+#include "lab/measure/pair_count.hpp"
 #include "lab/measure/track_case.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"

@@ -16,7 +16,6 @@
 #include "lab/measure/allocation.hpp"
 #include "lab/measure/estimate.hpp"
 #include "lab/measure/measurement.hpp"
-#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 
@@ -42,10 +41,6 @@ struct Contest {
   Effort effort;
   Watch watch;
 };
-
-/// The inputs of a case, for a function that is told their dimension and precision.
-template <int D, typename Real>
-using Histories = std::type_identity_t<std::span<const History<D, Real>>>;
 
 /// Milliseconds since it was made, to the nanosecond.
 class Stopwatch {

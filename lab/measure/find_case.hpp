@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lab/measure/contest.hpp"
+#include "lab/measure/histories.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {

@@ -6,14 +6,11 @@
 #include <iterator>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "broadside/sinks.hpp"
-
-#include "lab/numbers.hpp"
 
 namespace broadside::lab {
 
@@ -68,21 +65,6 @@ std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const P
   return compare_pairs(std::move(found), expected);
 }
 
-template <int D, typename Real>
-void check_pair_count(BoxSpan<D, Real> boxes) {
-  constexpr double most = 250e6;  // 2 GB
-  std::vector<Box<D, Real>> some;
-  for (const std::size_t i : sample_of(boxes.size(), 1'000)) some.push_back(boxes[i]);
-  const double scale =
-      static_cast<double>(boxes.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
-  const double pairs = static_cast<double>(reference_pairs<D, Real>(some).size()) * scale * scale;
-  if (pairs > most) {
-    throw std::runtime_error(fmt::format(
-        "{} boxes with about {:.1e} pairs; expected at most {:.1e}, since pairs are kept to be checked",
-        grouped(boxes.size()), pairs, most));
-  }
-}
-
 std::uint64_t hash_of(std::span<const Pair> pairs) noexcept {
   std::uint64_t sum = 0;
   for (const Pair pair : pairs) sum += hash(pair);
@@ -111,9 +93,5 @@ template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std
 template std::unique_ptr<PairFinder<3, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>) const;
 template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>);
-template void check_pair_count<2, float>(BoxSpan<2, float>);
-template void check_pair_count<3, float>(BoxSpan<3, float>);
-template void check_pair_count<2, double>(BoxSpan<2, double>);
-template void check_pair_count<3, double>(BoxSpan<3, double>);
 
 }  // namespace broadside::lab

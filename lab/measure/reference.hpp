@@ -59,11 +59,6 @@ class Reference {
 template <int D, typename Real = float>
 std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs);
 
-/// Throws std::runtime_error where boxes have so many pairs that keeping them would fill the machine: about
-/// how many there are shows in a sample.
-template <int D, typename Real = float>
-void check_pair_count(BoxSpan<D, Real> boxes);
-
 /// The hash of a set of pairs, as PairHasher computes it.
 std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;
 

@@ -30,14 +30,6 @@ double percentile(std::span<const double> samples, double fraction) {
   return order[static_cast<std::size_t>(std::clamp(rank, 1.0, static_cast<double>(order.size()))) - 1];
 }
 
-double undisturbed(std::span<const double> samples, std::size_t inputs) {
-  std::vector<double> least(samples.begin(),
-                            samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
-  for (std::size_t i = least.size(); i < samples.size(); ++i)
-    least[i % inputs] = std::min(least[i % inputs], samples[i]);
-  return median(least);
-}
-
 double geometric_mean(std::span<const double> numbers) {
   if (numbers.empty()) throw std::invalid_argument("0 numbers; expected at least 1");
   double sum = 0;

@@ -1,7 +1,6 @@
 // What a list of measured times comes to.
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 namespace broadside::lab {
@@ -12,11 +11,6 @@ double median(std::span<const double> samples);
 /// The smallest sample that at least `fraction` of all are not above: 0.99 for p99. Throws
 /// std::invalid_argument if there are none.
 double percentile(std::span<const double> samples, double fraction);
-
-/// What samples come to where the machine was disturbed: the samples are of `inputs` inputs in rotation; of
-/// each the least counts, and the median of these is the result. Throws std::invalid_argument if there are
-/// none.
-double undisturbed(std::span<const double> samples, std::size_t inputs);
 
 /// The geometric mean of positive numbers. Throws std::invalid_argument if there are none.
 double geometric_mean(std::span<const double> numbers);

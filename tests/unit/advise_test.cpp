@@ -1,12 +1,16 @@
 // Advice on boxes: what is measured of them, and what is tried.
 #include "lab/advise/advise.hpp"
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "broadside/pair_finder.hpp"
 
 #include "lab/advise/variants.hpp"
 #include "lab/measure/find_case.hpp"
@@ -35,6 +39,11 @@ History<2, double> row(int count) {
   for (int i = 0; i < count; ++i) history.boxes.push_back({{i + 0.1, 0}, {i + 1.1, 1}});
   return history;
 }
+
+/// Finds nothing.
+class Blind final : public PairFinder<2> {
+  void find_valid(std::span<const Box2>, PairSink&) override {}
+};
 
 std::vector<std::string> texts(const std::vector<Contender>& contenders) {
   std::vector<std::string> specs;
@@ -94,16 +103,11 @@ TEST(Advise, MeasuresAPartOfALongHistoryFromItsMiddle) {
 
 TEST(Advise, OffersNothingWhereNothingIsVerified) {
   Catalogue catalogue;
-  catalogue.add({.name = "blind", .summary = {}, .source = {}, .finder_2d = [](const Settings&) {
-                   return std::unique_ptr<PairFinder<2>>();
-                 }});
-  // It throws rather than finds; and the row's boxes overlap.
-  Algorithm thrower{.name = "thrower", .summary = {}, .source = {}};
-  thrower.finder_2d = [](const Settings&) -> std::unique_ptr<PairFinder<2>> {
-    throw std::runtime_error("no such thing");
-  };
-  catalogue.add(thrower);
-  const Advice advice = advise(catalogue, "row", row(10), quickly("thrower"));
+  Algorithm blind{.name = "blind", .summary = {}, .source = {}};
+  blind.finder_2d = [](const Settings&) { return std::make_unique<Blind>(); };
+  catalogue.add(blind);
+  const History<2> two = {{{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}}, {}};
+  const Advice advice = advise(catalogue, "two", two, quickly("blind"));
   EXPECT_FALSE(advice.choice);
   EXPECT_FALSE(advice.all_verified());
   EXPECT_THAT(text_of(advice), AllOf(HasSubstr("nothing to advise"), HasSubstr("FAILED")));
