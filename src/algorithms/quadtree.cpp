@@ -241,8 +241,11 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     lane.stack.resize(top);
   }
 
+  // Inline here and below: since lay_out() calls them too, g++ 12 would not do it by itself in a search.
+
   /// Chooses on which axes to split and where. False if no axis would separate the boxes.
-  bool choose_split(const Lane& lane, std::size_t begin, std::size_t end, Split& split) const {
+  [[gnu::always_inline]] bool choose_split(const Lane& lane, std::size_t begin, std::size_t end,
+                                           Split& split) const {
     split.axis_count = 0;
     const std::size_t count = end - begin;
     std::array<float, node_samples> minima;
@@ -309,8 +312,9 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
   }
 
   /// Pushes the references of all children, one child after the other.
-  void push_children(Lane& lane, std::size_t begin, std::size_t end, const Split& split,
-                     const std::array<std::size_t, most_children>& sizes) const {
+  [[gnu::always_inline]] void push_children(Lane& lane, std::size_t begin, std::size_t end,
+                                            const Split& split,
+                                            const std::array<std::size_t, most_children>& sizes) const {
     std::array<std::size_t, most_children> next;
     std::size_t top = lane.stack.size();
     for (std::uint32_t child = 0; child < most_children; ++child) {
