@@ -5,6 +5,7 @@ import { fill, type Template } from "./fill.ts";
 import { Paper } from "./names.ts";
 import { listed, Problem } from "./problem.ts";
 import { read_comparison, read_experiments } from "./results.ts";
+import { wrapped } from "./wrap.ts";
 
 export interface Sources {
   templates: Template[];
@@ -37,7 +38,7 @@ export function document_of(sources: Sources): Document {
   const uncited = paper.uncited();
   if (uncited.length > 0) throw new Problem(`nothing cites the source ${listed(uncited)}; expected every one cited`);
 
-  const document: Document = new Map([["paper.md", `${notice}${text}\n`]]);
+  const document: Document = new Map([["paper.md", `${notice}${wrapped(text)}\n`]]);
   for (const [name, { caption, draw }] of paper.drawings) {
     const drawn = draw({ theme: light, width });
     document.set(`figures/${name}.svg`, svg_of(drawn, { width, background: light.background, title: caption }));
