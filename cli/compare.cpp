@@ -6,6 +6,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -16,12 +17,13 @@
 #include "cli/message.hpp"
 #include "cli/motion_options.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/result_files.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/numbers.hpp"
-#include "lab/readers/write_file.hpp"
 #include "lab/report/json.hpp"
+#include "lab/report/machine.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::cli {
@@ -39,7 +41,7 @@ struct CompareArguments {
   std::vector<std::string> threads = {"1"};
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
-  std::string json;
+  ResultFiles files;
   bool is_long = false;
 };
 
@@ -75,10 +77,12 @@ void check(const CompareArguments& arguments) {
     throw Unusable("--drift and --teleport say how boxes move; expected --moving or --frames as well");
   if (arguments.budget && !(*arguments.budget > 0))
     throw Unusable(fmt::format("--budget is {}; expected a number of seconds above 0", *arguments.budget));
-  if (std::ranges::find(arguments.scenes, arguments.json) != arguments.scenes.end())
-    throw Unusable(
-        fmt::format("--json is {}, which is a scene as well; expected another file", arguments.json));
-  if (!arguments.json.empty()) check_writable("--json", arguments.json);
+  for (const auto& [option, path] :
+       {std::pair("--json", arguments.files.json), std::pair("--report", arguments.files.report)}) {
+    if (std::ranges::find(arguments.scenes, path) != arguments.scenes.end())
+      throw Unusable(fmt::format("{} is {}, which is a scene as well; expected another file", option, path));
+  }
+  check(arguments.files);
 }
 
 /// Says which options mean nothing to a scene that was asked for.
@@ -128,15 +132,17 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
   print(lab::summary_of(comparison));
-  if (!arguments.json.empty() && (!comparison.stopped || !comparison.cases.empty())) {
+  if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::note);
-    const std::string text = lab::json_of(comparison, command);
-    lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
+    const std::string json = lab::json_of(comparison, command);
+    write(arguments.files, json, [&] {
+      return lab::PageContent{.date = lab::today(), .comparison = json, .experiments = {}, .drawings = {}};
+    });
     if (comparison.stopped)
-      say(fmt::format("stopped; {} holds the {} that had ended", arguments.json,
+      say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
                       lab::counted(comparison.cases.size(), "case", "cases")));
-  } else if (!arguments.json.empty()) {
-    say(fmt::format("stopped before a case had ended; {} is not written", arguments.json));
+  } else if (arguments.files.any()) {
+    say(fmt::format("stopped before a case had ended; {} is not written", arguments.files.names()));
   }
   if (comparison.stopped) return Exit::interrupted;
   return comparison.all_verified() ? Exit::fine : Exit::failed;
@@ -184,7 +190,7 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
                                "skipped and its time estimated (standard: {} and {}, with --long {})",
                                lab::Effort{}.budget_seconds, lab::Effort{}.history_seconds,
                                lab::long_effort().budget_seconds));
-  verb->add_option("--json", arguments->json, "Write the results to this file as well")->type_name("FILE");
+  add_result_files(*verb, arguments->files);
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   return [arguments, command] { return run(*arguments, command); };
 }

@@ -12,12 +12,11 @@
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/result_files.hpp"
 #include "cli/unusable.hpp"
-#include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/experiments/results.hpp"
 #include "lab/numbers.hpp"
-#include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -27,7 +26,7 @@ struct ExperimentArguments {
   bool is_quick = false;
   bool is_list = false;
   std::string from;
-  std::string json;
+  ResultFiles files;
 };
 
 /// Those that were named, each once, by number; all if none was.
@@ -98,21 +97,21 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
     print_list();
     return Exit::fine;
   }
-  if (!arguments.json.empty()) check_writable("--json", arguments.json);
-  if (!arguments.json.empty() && !arguments.from.empty())
-    check_is_other_file("--json", arguments.json, arguments.from);
+  check(arguments.files, arguments.from);
   const lab::ExperimentResults results =
       arguments.from.empty() ? measure(arguments, command) : read(arguments);
   print(lab::summary_of(results));
-  if (!arguments.json.empty() && !results.results.empty()) {
+  if (arguments.files.any() && !results.results.empty()) {
     on_signal(OnSignal::note);
-    const std::string text = lab::json_of(results);
-    lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
+    const std::string json = lab::json_of(results);
+    write(arguments.files, json, [&] {
+      return lab::PageContent{.date = results.date, .comparison = {}, .experiments = json, .drawings = {}};
+    });
     if (results.stopped && arguments.from.empty())
-      say(fmt::format("stopped; {} holds the {} that had ended", arguments.json,
+      say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
                       lab::counted(results.results.size(), "experiment", "experiments")));
-  } else if (!arguments.json.empty()) {
-    say(fmt::format("stopped before an experiment had ended; {} is not written", arguments.json));
+  } else if (arguments.files.any()) {
+    say(fmt::format("stopped before an experiment had ended; {} is not written", arguments.files.names()));
   }
   // Results that were read may be of a run that was stopped; this one was not.
   return results.stopped && arguments.from.empty() ? Exit::interrupted : Exit::fine;
@@ -133,7 +132,7 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--from", arguments->from,
                    "Measure nothing; judge the results in this file, which --json has written")
       ->type_name("FILE");
-  verb->add_option("--json", arguments->json, "Write the results to this file as well")->type_name("FILE");
+  add_result_files(*verb, arguments->files);
   return [arguments, command] { return run(*arguments, command); };
 }
 

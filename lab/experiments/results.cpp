@@ -2,13 +2,10 @@
 #include "lab/experiments/results.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <set>
 #include <stdexcept>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "broadside/instruction_set.hpp"
@@ -87,11 +84,10 @@ Finding judged(const Experiment& experiment, const std::vector<Table>& tables) {
 }
 
 ExperimentResults begin_results(std::span<const std::string> command, bool quick) {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {.machine = this_machine(),
           .build = this_build(),
           .target = instruction_set(),
-          .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(now)),
+          .date = today(),
           .command = {command.begin(), command.end()},
           .quick = quick};
 }

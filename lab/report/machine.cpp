@@ -1,9 +1,13 @@
 // Where and from what a measurement came. The BROADSIDE_BUILD_... texts come from the build.
 #include "lab/report/machine.hpp"
 
+#include <chrono>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -51,6 +55,11 @@ Build this_build() {
       .type = BROADSIDE_BUILD_TYPE,
       .flags = BROADSIDE_BUILD_FLAGS,
   };
+}
+
+std::string today() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// Where and from what a measurement came: the machine and the build.
+// Where, when and from what a measurement came: the machine, the date and the build.
 #pragma once
 
 #include <cstdint>
@@ -24,5 +24,8 @@ struct Build {
   std::string flags;  ///< the compiler's, but for the warnings
 };
 Build this_build();
+
+/// The date in UTC: "2026-11-21".
+std::string today();
 
 }  // namespace broadside::lab

@@ -71,7 +71,7 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
           left: Math.max(0, ...labels.map(text_width)) + 12, right: single ? 56 : 20, top: legend + 6, bottom: 50,
           outerBoundsMode: "none",
         }
-        : { left: 4, right: 20, top: legend + 30, bottom: 30, outerBoundsMode: "same", outerBoundsContain: "all" },
+        : { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
       xAxis: lying
         ? { ...number_axis, ...below(axis_name(spec.y), place) }
         : { ...label_axis, ...below(axis_name(spec.x), place) },

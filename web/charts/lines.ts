@@ -65,7 +65,7 @@ export function draw_lines(spec: LinesSpec, place: Place): Drawn {
     height,
     option: {
       ...frame(names, description, place),
-      grid: { left: 4, right: 20, top: legend + 30, bottom: 30, outerBoundsMode: "same", outerBoundsContain: "all" },
+      grid: { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
       xAxis: { ...x, ...below(axis_name(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
       yAxis: {
         ...value_axis(spec.y, [...all.map(([, at]) => at), ...levels], place),

@@ -1,0 +1,24 @@
+// Results as a page: one file with charts, tables and pictures, which opens in a browser and asks nothing of
+// a network.
+#pragma once
+
+#include <string>
+
+namespace broadside::lab {
+
+/// What a page shows, each as JSON and empty where there is none.
+struct PageContent {
+  std::string date;         ///< "2026-11-21"; plain text, no JSON
+  std::string comparison;   ///< by the schema "broadside.results/1"
+  std::string experiments;  ///< by the schema "broadside.experiments/1"
+  std::string drawings;     ///< a list of scenes, as lab/report/drawing.hpp draws them
+};
+
+/// Why no page can be made: Node or the npm packages of web/ were missing when the program was configured.
+/// Empty where it can.
+std::string page_missing();
+
+/// The page, in HTML. Throws std::runtime_error with page_missing() where that says something.
+std::string page_of(const PageContent& content);
+
+}  // namespace broadside::lab

@@ -1,0 +1,193 @@
+// The comparison: who is fastest where, by how much, and every measurement.
+import { cases_of, is_timed, label_of, lead_of, ranking, standings } from "../charts/comparison.ts";
+import type { Case } from "../charts/comparison.ts";
+import {
+  draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings, draw_winners, scaled_scenes,
+} from "../charts/comparison_charts.ts";
+import type { Comparison, Measurement } from "../charts/data.ts";
+import { bytes_text, geometric_mean, grouped, ratio_text, rounded, time_text } from "../charts/numbers.ts";
+import { data_table } from "./data_table.ts";
+import type { DataColumn } from "./data_table.ts";
+import { add, choices, el, picker } from "./dom.ts";
+import { csv_of_comparison, download_button } from "./downloads.ts";
+import { chart_figure } from "./figure.ts";
+import { facts, tile } from "./summary.ts";
+
+function outcome_of(measurement: Measurement): string {
+  return measurement.verified === null ? "skipped" : measurement.verified ? "verified" : "FAILED";
+}
+
+function plural(count: number, one: string): string {
+  return `${grouped(count)} ${one}${count === 1 ? "" : "s"}`;
+}
+
+function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
+  const best = standings(cases)[0];
+  const leads = cases.flatMap((of) => {
+    const lead = lead_of(of);
+    return lead === undefined ? [] : [{ of, ...lead }];
+  });
+  const worst = leads.reduce<(typeof leads)[number] | undefined>(
+    (least, lead) => (least === undefined || lead.ratio < least.ratio ? lead : least), undefined);
+  const failed = comparison.measurements.filter(({ verified }) => verified === false);
+  const skipped = comparison.measurements.filter(({ verified }) => verified === null).length;
+  const measured = comparison.measurements.length - skipped;
+  return el("dl", { class: "tiles" },
+    best !== undefined && tile("Fastest over all", best.algorithm,
+      `${ratio_text(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
+    leads.length > 0 && tile("Ours against the fastest peer",
+      `${ratio_text(geometric_mean(leads.map(({ ratio }) => ratio)))} times`,
+      `as fast, the fastest of each; geometric mean of ${plural(leads.length, "case")}`),
+    worst !== undefined && tile("At the least", `${ratio_text(worst.ratio)} times`, `as fast: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
+    tile("Verified", failed.length === 0 ? `all ${grouped(measured)}` : `${grouped(failed.length)} FAILED`,
+      `${plural(measured, "measurement")} in ${plural(cases.length, "case")}; ${grouped(skipped)} skipped` +
+        (comparison.stopped ? "; stopped before the end" : "")));
+}
+
+function failures(comparison: Comparison): HTMLElement | null {
+  const failed = comparison.measurements.filter(({ verified }) => verified === false);
+  if (failed.length === 0) return null;
+  return el("div", { class: "card" }, el("h3", {}, "Failed"), el("ul", {}, ...failed.map((measurement) =>
+    el("li", {}, `${measurement.algorithm} on ${measurement.scene}, ${measurement.dimension}D, ${grouped(measurement.boxes)} boxes: ` +
+      `${measurement.skipped ?? "its pairs are not those of " + (measurement.verified_by ?? "the reference")}`))));
+}
+
+const kinds: [string, string, Measurement["kind"][]][] = [
+  ["own", "ours", ["own", "user"]],
+  ["all", "all", ["own", "paper", "peer", "user"]],
+  ["paper", "the paper's", ["paper"]],
+  ["peer", "other libraries", ["peer"]],
+];
+
+function scaling(cases: readonly Case[]): HTMLElement | null {
+  const scenes = scaled_scenes(cases);
+  const [first] = scenes;
+  if (first === undefined) return null;
+  let scene = first;
+  let kind = kinds[0]?.[2] ?? [];
+  const caption = (): string => `Time over the number of boxes: ${scene.scene}, ${scene.dimension}D`;
+  const draw = (): void => figure.show(caption(), (place) => draw_scaling(cases, scene, place, kind));
+  const figure = chart_figure(caption(), (place) => draw_scaling(cases, scene, place, kind), "Both axes are logarithmic; at most eight algorithms.");
+  const there = kinds.filter(([, , some]) => cases.some((of) => of.measurements.some((m) => is_timed(m) && some.includes(m.kind))));
+  return el("div", { class: "card", id: "scaling" }, el("h3", {}, "How time grows"), el("div", { class: "controls" },
+    scenes.length > 1 && picker("Scene", scenes.map((one, i) => [String(i), `${one.scene}, ${one.dimension}D${one.mode === "track" ? ", moving" : ""}`]), (value) => {
+      scene = scenes[Number(value)] ?? scene;
+      draw();
+    }),
+    there.length > 1 && choices("Algorithms", there.map(([value, text]) => [value, text]), (value) => {
+      kind = kinds.find(([name]) => name === value)?.[2] ?? kind;
+      draw();
+    })), figure.element);
+}
+
+const time = (value: number | null): string => (value === null ? "–" : time_text(value));
+const number = (value: number | null): string => (value === null ? "–" : rounded(value));
+
+function case_table(of: Case): HTMLElement {
+  const best = ranking(of)[0]?.median_ms ?? 1;
+  return data_table<Measurement>({
+    caption: of.name,
+    rows: [...ranking(of), ...of.measurements.filter((measurement) => !is_timed(measurement))],
+    columns: [
+      { title: "algorithm", value: label_of },
+      { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
+      { title: "ratio", value: (m) => (m.median_ms === null ? null : m.median_ms / best), text: (m) => (m.median_ms === null ? "–" : ratio_text(m.median_ms / best)) },
+      { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
+      { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
+      { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
+      { title: "remarks", long: true, value: (m) => m.skipped ?? m.explanation, text: (m) => m.skipped ?? m.explanation ?? "" },
+    ],
+  });
+}
+
+/** One case after the other: ratios, frames, all that was measured. */
+function case_view(cases: readonly Case[]): HTMLElement | null {
+  let of = cases[0];
+  if (of === undefined) return null;
+  const first = of;
+  const ratios = chart_figure(`Multiples of the fastest: ${of.name}`, (place) => draw_ratios(first, place));
+  const frames = chart_figure("", (place) => draw_frames(first, place), "At most the six fastest; dashed: each one's 99th percentile.");
+  const table = el("div");
+  const floor = el("p", { class: "note" });
+  const show = (): void => {
+    const chosen = of;
+    if (chosen === undefined) return;
+    ratios.show(`Multiples of the fastest: ${chosen.name}`, (place) => draw_ratios(chosen, place));
+    frames.element.hidden = chosen.mode !== "track";
+    if (chosen.mode === "track") frames.show(`Time of each frame: ${chosen.name}`, (place) => draw_frames(chosen, place));
+    table.replaceChildren(case_table(chosen));
+    floor.textContent = chosen.floor_ms === null ? "" : `Floor, the time it takes to read the boxes and to write the pairs: ${time_text(chosen.floor_ms)}.`;
+  };
+  const box = el("div", { class: "card", id: "cases" }, el("h3", {}, "Case by case"), el("div", { class: "controls" },
+    cases.length > 1 && picker("Case", cases.map((one, i) => [String(i), one.name]), (value) => {
+      of = cases[Number(value)];
+      show();
+    })), el("div", { class: "charts" }, ratios.element, frames.element), floor, table);
+  show();
+  return box;
+}
+
+function measurements_table(comparison: Comparison): HTMLElement {
+  const columns: DataColumn<Measurement>[] = [
+    { title: "scene", value: (m) => m.scene },
+    { title: "D", value: (m) => m.dimension },
+    { title: "boxes", value: (m) => m.boxes, text: (m) => grouped(m.boxes) },
+    { title: "moving", value: (m) => (m.mode === "track" ? m.moving : null), text: (m) => (m.mode === "track" ? `${rounded(m.moving * 100)} %` : "–") },
+    { title: "algorithm", value: label_of },
+    { title: "kind", value: (m) => m.kind },
+    { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
+    { title: "least", value: (m) => m.min_ms, text: (m) => time(m.min_ms) },
+    { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
+    { title: "ns a box", value: (m) => m.ns_per_box, text: (m) => number(m.ns_per_box) },
+    { title: "pairs", value: (m) => m.pairs, text: (m) => (m.pairs === null ? "–" : grouped(m.pairs)) },
+    { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
+    { title: "references", value: (m) => m.references, text: (m) => number(m.references) },
+    { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
+    { title: "outcome", value: outcome_of },
+    { title: "remarks", long: true, value: (m) => m.skipped ?? m.explanation, text: (m) => m.skipped ?? m.explanation ?? "" },
+  ];
+  return data_table({
+    caption: "All measurements",
+    rows: comparison.measurements,
+    columns,
+    search: true,
+    filters: [
+      { title: "Scene", value: (m) => m.scene },
+      { title: "Dimension", value: (m) => `${m.dimension}D` },
+      { title: "Kind", value: (m) => m.kind },
+      { title: "Algorithm", value: label_of },
+      { title: "Outcome", value: outcome_of },
+    ],
+  });
+}
+
+/** The sections of a comparison, each [id, title, element]. */
+export function comparison_sections(comparison: Comparison, date: string): [string, string, HTMLElement][] {
+  const cases = cases_of(comparison.measurements);
+  const target = comparison.measurements.find((measurement) => measurement.target !== null)?.target ?? null;
+  const leads = cases.some((of) => lead_of(of) !== undefined);
+  const summary = el("section", {}, tiles(comparison, cases), failures(comparison),
+    el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts({ ...comparison, date, target }),
+      el("p", { class: "downloads", style: "margin: 1rem 0 0" },
+        download_button("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(comparison)), " ",
+        download_button("Save as CSV", "comparison.csv", "text/csv", () => csv_of_comparison(comparison)))));
+  const charts = el("section", {});
+  if (cases.length > 1) {
+    add(charts, el("div", { class: "pair" },
+      el("div", { class: "card" }, el("h3", {}, "Over all cases"), chart_figure(
+        "Times as multiples of the fastest", (place) => draw_standings(cases, place),
+        "Geometric mean over the cases that an algorithm does.").element),
+      el("div", { class: "card" }, el("h3", {}, "Who wins where"), chart_figure(
+        "The fastest in each case", (place) => draw_winners(cases, place),
+        "Scene, boxes and, where they move, how many of them.").element)),
+    leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chart_figure(
+      "How many times as fast as the fastest peer the fastest of ours is", (place) => draw_leads(cases, place),
+      "Left of 1, the peer is faster. Each bar has the colour of the one of ours.").element));
+  }
+  add(charts, scaling(cases), case_view(cases));
+  return [
+    ["summary", "Summary", summary],
+    ["charts", "Charts", charts],
+    ["measurements", "Measurements", el("section", {}, el("div", { class: "card" }, measurements_table(comparison)))],
+  ];
+}

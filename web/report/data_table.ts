@@ -1,0 +1,126 @@
+// Tables that sort and filter: a real <table>, buttons in its head, aria-sort, and how many rows are left told aloud.
+import { grouped } from "../charts/numbers.ts";
+import { el, new_id, picker, say } from "./dom.ts";
+
+export interface DataColumn<Row> {
+  title: string;
+  /** What is sorted by; null stands last either way. */
+  value: (row: Row) => number | string | null;
+  /** Standard: the value as it is. */
+  text?: (row: Row) => string;
+  /** May be long, and is broken. */
+  long?: boolean;
+}
+
+export interface DataFilter<Row> {
+  title: string;
+  value: (row: Row) => string;
+}
+
+export interface DataTableSpec<Row> {
+  caption: string;
+  columns: readonly DataColumn<Row>[];
+  rows: readonly Row[];
+  /** A list to choose from for each; those that would offer one choice are left out. */
+  filters?: readonly DataFilter<Row>[];
+  /** With a field in which rows are searched by their texts. */
+  search?: boolean;
+}
+
+const page_rows = 100;
+
+function text_of<Row>(column: DataColumn<Row>, row: Row): string {
+  return column.text?.(row) ?? String(column.value(row) ?? "–");
+}
+
+function compare(a: number | string | null, b: number | string | null, direction: number): number {
+  if (a === null || b === null) return a === b ? 0 : a === null ? 1 : -1;
+  if (typeof a === "number" && typeof b === "number") return direction * (a - b);
+  return direction * String(a).localeCompare(String(b), "en", { numeric: true });
+}
+
+export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
+  const chosen = new Map<DataFilter<Row>, string>();
+  let searched = "";
+  let sorted = -1;
+  let direction = 1;
+  let most = page_rows;
+
+  const numeric = spec.columns.map((column) => spec.rows.every((row) => typeof column.value(row) !== "string"));
+  const class_of = (i: number): string => (numeric[i] === true ? "number" : spec.columns[i]?.long === true ? "long" : "");
+  const body = el("tbody");
+  const count = el("p", { class: "note" });
+  const more = el("button", { type: "button", class: "more", onclick: () => {
+    most = Infinity;
+    show();
+  } });
+  const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: class_of(i) },
+    el("button", { type: "button", onclick: () => sort_by(i) }, column.title)));
+
+  function sort_by(i: number): void {
+    direction = sorted === i ? -direction : 1;
+    sorted = i;
+    heads.forEach((head, at) => {
+      if (at === i) head.setAttribute("aria-sort", direction > 0 ? "ascending" : "descending");
+      else head.removeAttribute("aria-sort");
+    });
+    show();
+    say(`sorted by ${spec.columns[i]?.title ?? ""}, ${direction > 0 ? "ascending" : "descending"}`);
+  }
+
+  function rows_left(): Row[] {
+    const words = searched.toLowerCase().split(/\s+/).filter((word) => word !== "");
+    const left = spec.rows.filter((row) =>
+      [...chosen].every(([filter, value]) => filter.value(row) === value) &&
+      (words.length === 0 || (() => {
+        const text = spec.columns.map((column) => text_of(column, row)).join(" ").toLowerCase();
+        return words.every((word) => text.includes(word));
+      })()));
+    const column = spec.columns[sorted];
+    return column === undefined ? left : left.sort((a, b) => compare(column.value(a), column.value(b), direction));
+  }
+
+  function show(): void {
+    const left = rows_left();
+    const shown = left.slice(0, most);
+    body.replaceChildren(...shown.map((row) =>
+      el("tr", {}, ...spec.columns.map((column, i) => el("td", { class: class_of(i) }, text_of(column, row))))));
+    const rows = left.length === 1 ? "row" : "rows";
+    count.textContent = left.length === spec.rows.length
+      ? `${grouped(left.length)} ${rows}` : `${grouped(left.length)} of ${grouped(spec.rows.length)} rows`;
+    more.hidden = shown.length === left.length;
+    more.textContent = `Show all ${grouped(left.length)} rows`;
+  }
+
+  function filtered(): void {
+    most = page_rows;
+    show();
+    say(count.textContent ?? "");
+  }
+
+  const controls = (spec.filters ?? []).flatMap((filter) => {
+    const values = [...new Set(spec.rows.map(filter.value))];
+    if (values.length < 2) return [];
+    return [picker(filter.title, [["", "all"], ...values.map((value) => [value, value] as const)], (value) => {
+      if (value === "") chosen.delete(filter);
+      else chosen.set(filter, value);
+      filtered();
+    })];
+  });
+  if (spec.search === true) {
+    const input = el("input", { type: "search", autocomplete: "off", oninput: () => {
+      searched = input.value;
+      filtered();
+    } });
+    controls.push(el("label", {}, "Search", input));
+  }
+  const id = new_id("table");
+  show();
+  return el("div", { class: "data-table" },
+    controls.length > 0 && el("div", { class: "controls" }, ...controls),
+    // A region that scrolls must be reachable by the keyboard.
+    el("div", { class: "scroll", role: "region", tabindex: 0, "aria-labelledby": id },
+      el("table", {}, el("caption", { id }, spec.caption), el("thead", {}, el("tr", {}, ...heads)), body)),
+    (controls.length > 0 || spec.rows.length > page_rows) && count,
+    more);
+}

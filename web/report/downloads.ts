@@ -1,0 +1,36 @@
+// The data behind the page, to be saved: made here, so nothing is asked of a network.
+import type { Comparison, Table } from "../charts/data.ts";
+import { el } from "./dom.ts";
+
+function save(name: string, type: string, text: string): void {
+  const address = URL.createObjectURL(new Blob([text], { type }));
+  const link = el("a", { href: address, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+}
+
+export function download_button(label: string, name: string, type: "application/json" | "text/csv", text: () => string): HTMLElement {
+  return el("button", { type: "button", onclick: () => save(name, type, text()) }, label);
+}
+
+function field(value: unknown): string {
+  if (value === null || value === undefined) return "";
+  const text = Array.isArray(value) ? value.join(" ") : typeof value === "object" ? JSON.stringify(value) : String(value);
+  return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
+
+export function csv_of_rows(heads: readonly string[], rows: readonly (readonly unknown[])[]): string {
+  return [heads, ...rows].map((row) => row.map(field).join(",") + "\r\n").join("");
+}
+
+/** A line for each measurement; its samples stand in one field, a space between. */
+export function csv_of_comparison({ measurements }: Comparison): string {
+  const names = Object.keys(measurements[0] ?? {}) as (keyof (typeof measurements)[number])[];
+  return csv_of_rows(names, measurements.map((measurement) => names.map((name) => measurement[name])));
+}
+
+export function csv_of_table(table: Table): string {
+  return csv_of_rows(table.columns.map(({ name, unit }) => (unit === "" ? name : `${name} (${unit})`)), table.rows);
+}

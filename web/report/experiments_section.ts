@@ -1,0 +1,76 @@
+// The experiments: each claim, its verdict and what it rests on.
+import type { Cell, Experiment, Experiments, Table } from "../charts/data.ts";
+import { grouped, rounded } from "../charts/numbers.ts";
+import { cell_text, draw_table_chart } from "../charts/table_chart.ts";
+import { data_table } from "./data_table.ts";
+import { el } from "./dom.ts";
+import { csv_of_table, download_button } from "./downloads.ts";
+import { chart_figure } from "./figure.ts";
+import { facts, tile } from "./summary.ts";
+
+const looks = { "holds": ["good", "✓"], "holds when": ["fair", "◐"], "does not hold": ["bad", "✕"] } as const;
+
+function badge(experiment: Experiment): HTMLElement {
+  const [look, sign] = looks[experiment.verdict];
+  const text = experiment.verdict === "holds when" ? `holds when ${experiment.condition}` : experiment.verdict;
+  return el("span", { class: `badge ${look}` }, el("span", { "aria-hidden": "true" }, `${sign} `), text);
+}
+
+function table_view(table: Table): HTMLElement {
+  return el("div", {}, data_table<Cell[]>({
+    caption: table.title,
+    rows: table.rows,
+    search: table.rows.length > 12,
+    columns: table.columns.map((column, i) => ({
+      title: column.unit === "" ? column.name : `${column.name} (${column.unit})`,
+      value: (row) => row[i] ?? null,
+      text: (row) => cell_text(row[i] ?? null),
+    })),
+  }), el("p", { class: "downloads", style: "margin: .5rem 0 1rem" },
+    download_button("Save as CSV", `${table.name}.csv`, "text/csv", () => csv_of_table(table))));
+}
+
+function figures(experiment: Experiment): HTMLElement | null {
+  const all = Object.entries(experiment.figures);
+  if (all.length === 0) return null;
+  return el("ul", { class: "figures" }, ...all.map(([name, { value, unit }]) =>
+    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, rounded(value) + (unit === "" ? "" : ` ${unit}`)))));
+}
+
+function view(experiment: Experiment): HTMLElement {
+  const charts = experiment.tables.flatMap((table) => table.charts.map((chart) =>
+    chart_figure(chart.title, (place) => draw_table_chart(table, chart, place)).element));
+  const rows = experiment.tables.reduce((sum, table) => sum + table.rows.length, 0);
+  const section = experiment.section === "beyond" ? "beyond the paper" : `section ${experiment.section} of the paper`;
+  return el("article", { class: "card", id: experiment.name, "aria-labelledby": `${experiment.name}-title` },
+    el("h3", { id: `${experiment.name}-title` }, `${experiment.number}. ${experiment.title}`),
+    el("p", {}, badge(experiment), el("span", { class: "note" }, `  ${section}`)),
+    el("blockquote", {}, experiment.claim),
+    el("p", {}, experiment.reason),
+    figures(experiment),
+    el("p", { class: "note" }, `Measured: ${experiment.measured}`),
+    charts.length > 0 && el("div", { class: "charts" }, ...charts),
+    el("details", {}, el("summary", {}, `What was measured, as tables (${grouped(rows)} rows)`), ...experiment.tables.map(table_view)));
+}
+
+/** The sections of experiments, each [id, title, element]. */
+export function experiment_sections(results: Experiments): [string, string, HTMLElement][] {
+  const { experiments } = results;
+  const count = (verdict: Experiment["verdict"]): string => String(experiments.filter((one) => one.verdict === verdict).length);
+  const seconds = experiments.reduce((sum, one) => sum + one.seconds, 0);
+  const summary = el("section", {},
+    el("dl", { class: "tiles" },
+      tile("Claims that hold", count("holds"), `of ${experiments.length}`),
+      tile("That hold under a condition", count("holds when")),
+      tile("That do not hold", count("does not hold")),
+      tile("Measured in", `${rounded(seconds)} s`, (results.quick ? "quickly: fewer boxes, fewer samples" : "thoroughly") + (results.stopped ? "; stopped before the end" : ""))),
+    el("div", { class: "card" }, el("h3", {}, "Verdicts"), el("ol", { class: "verdicts" }, ...experiments.map((one) =>
+      el("li", {}, el("span", {}, `${one.number}.`), el("a", { href: `#${one.name}` }, one.title), el("span", {}, badge(one)))))),
+    el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts(results),
+      el("p", { class: "downloads", style: "margin: 1rem 0 0" },
+        download_button("Save as JSON", "experiments.json", "application/json", () => JSON.stringify(results)))));
+  return [
+    ["verdicts", "Verdicts", summary],
+    ["experiments", "Experiments", el("section", {}, ...experiments.map(view))],
+  ];
+}

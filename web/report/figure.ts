@@ -1,0 +1,86 @@
+// Charts on the page: drawn when they come near the window, and again for another theme or width.
+import { echarts } from "../charts/echarts.ts";
+import type { Drawn, Place } from "../charts/frame.ts";
+import { el } from "./dom.ts";
+import { is_printing, on_theme, theme } from "./themes.ts";
+
+type Draw = (place: Place) => Drawn;
+
+const print_width = 660;
+
+export interface ChartFigure {
+  element: HTMLElement;
+  /** Shows another chart in its place. */
+  show(caption: string, draw: Draw): void;
+}
+
+class ChartView {
+  readonly element = el("div", { class: "chart" });
+  private chart: ReturnType<typeof echarts.init> | undefined;
+  private width = 0;
+  private near = false;
+
+  constructor(private draw: Draw) {}
+
+  show(draw: Draw): void {
+    this.draw = draw;
+    this.redraw();
+  }
+
+  come_near(): void {
+    if (this.near) return;
+    this.near = true;
+    this.redraw();
+  }
+
+  fit(width: number): void {
+    if (Math.abs(width - this.width) < 2) return;
+    this.redraw();
+  }
+
+  redraw(): void {
+    if (!this.near && !is_printing()) return;
+    const width = is_printing() ? print_width : this.element.clientWidth;
+    if (width === 0) return;
+    this.width = width;
+    const drawn = this.draw({ theme: theme(), width });
+    this.element.style.height = `${drawn.height}px`;
+    this.chart ??= echarts.init(this.element, null, { renderer: "svg", width, height: drawn.height });
+    this.chart.resize({ width, height: drawn.height });
+    this.chart.setOption(drawn.option, { notMerge: true });
+    this.element.setAttribute("role", "img");
+    this.element.setAttribute("aria-label", drawn.description);
+  }
+}
+
+const views = new Map<Element, ChartView>();
+
+const sights = new IntersectionObserver((entries) => {
+  for (const entry of entries) {
+    if (entry.isIntersecting) views.get(entry.target)?.come_near();
+  }
+}, { rootMargin: "500px" });
+
+const sizes = new ResizeObserver((entries) => {
+  for (const entry of entries) views.get(entry.target)?.fit(entry.contentRect.width);
+});
+
+on_theme(() => {
+  for (const view of views.values()) view.redraw();
+});
+
+/** A chart under its caption. */
+export function chart_figure(caption: string, draw: Draw, note = ""): ChartFigure {
+  const view = new ChartView(draw);
+  views.set(view.element, view);
+  sights.observe(view.element);
+  sizes.observe(view.element);
+  const title = document.createTextNode(caption);
+  return {
+    element: el("figure", {}, el("figcaption", {}, title, note !== "" && el("span", { class: "note" }, note)), view.element),
+    show(other, draw) {
+      title.data = other;
+      view.show(draw);
+    },
+  };
+}

@@ -1,0 +1,45 @@
+// The report: builds the page from the document that the program put into it.
+import type { Comparison, Experiments } from "../charts/data.ts";
+import { comparison_sections } from "./comparison_section.ts";
+import { add, el } from "./dom.ts";
+import { drawing_section } from "./drawing_section.ts";
+import type { Drawing } from "./drawing_section.ts";
+import { experiment_sections } from "./experiments_section.ts";
+import { begin_themes } from "./themes.ts";
+
+/** What lab/report/page.cpp puts together. */
+interface ReportDocument {
+  date: string;
+  comparison: Comparison | null;
+  experiments: Experiments | null;
+  drawings: Drawing[];
+}
+
+function build(report: ReportDocument): void {
+  const { comparison, experiments, drawings } = report;
+  const sections: [string, string, HTMLElement][] = [];
+  if (comparison !== null) sections.push(...comparison_sections(comparison, report.date));
+  if (experiments !== null) sections.push(...experiment_sections(experiments));
+  const pictures = drawing_section(drawings);
+  if (pictures !== undefined) sections.push(pictures);
+
+  const title = comparison !== null ? "Every algorithm on every scene" : "The paper's claims, tested";
+  const intro = comparison !== null
+    ? "Ways of finding all overlapping pairs of axis-aligned boxes, timed on the same boxes. Every result that has a time was verified in the same run."
+    : "Each claim of the paper about broad-phase collision detection, what was measured to test it, and the verdict that the figures give.";
+  document.title = `Broadside: ${title.toLowerCase()}${report.date === "" ? "" : `, ${report.date}`}`;
+  const main = document.getElementById("main");
+  const nav = document.getElementById("sections");
+  if (main === null || nav === null) return;
+  add(nav, el("ul", {}, ...sections.map(([id, name]) => el("li", {}, el("a", { href: `#${id}` }, name)))));
+  add(main, el("div", { class: "intro" }, el("h1", {}, title), el("p", {}, intro)));
+  for (const [id, name, section] of sections) {
+    section.id = id;
+    section.setAttribute("aria-labelledby", `${id}-heading`);
+    section.prepend(el("h2", { id: `${id}-heading` }, name));
+    add(main, section);
+  }
+}
+
+begin_themes();
+build(JSON.parse(document.getElementById("document")?.textContent ?? "null") as ReportDocument);
