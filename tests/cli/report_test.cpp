@@ -59,7 +59,7 @@ TEST_F(Report, OfAComparisonHoldsItsResults) {
 
 TEST_F(Report, OfExperimentsHoldsWhatTheyCameTo) {
   const std::string results =
-      folder_.put("results.json", experiments_json("[10, 100, 45, 45, 0.1], [20, 400, 190, 190, 0.4]"));
+      folder_.put("results.json", experiments_json("[100, 10000, 4950, 4950, 0.1], [1000, 1000000, 499500, 499500, 9.5]"));
   const Ended ended = run({"experiment", "--from", results, "--report", page_});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   const nlohmann::json document = document_of(text_of(page_));

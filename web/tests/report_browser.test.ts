@@ -1,0 +1,281 @@
+// The report in a real browser, as a reader meets it. Takes Chromium and, in BROADSIDE_PROGRAM, the program that writes
+// the pages; without one of them these tests are skipped.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import type { Browser, Page } from "playwright-core";
+
+import { comparison } from "./fixture.ts";
+
+const program = process.env["BROADSIDE_PROGRAM"] ?? "";
+const web = process.env["BROADSIDE_WEB"] ?? "";
+const chromium_path = process.env["CHROMIUM"] ?? "/usr/bin/chromium";
+const missing = !existsSync(chromium_path) ? `chromium is missing at ${chromium_path}`
+  : !existsSync(program) ? "BROADSIDE_PROGRAM names no program" : "";
+if (missing !== "") console.log(`skipped: ${missing}`);
+
+/** What a page must not do. */
+interface Watched {
+  page: Page;
+  problems: string[];
+}
+
+const drawing = (scene: string, dimension: number): object => ({
+  scene, dimension, boxes: 2, of: 10,
+  views: (dimension === 2 ? ["xy"] : ["xy", "xz", "yz"]).map((axes) => ({
+    axes, width: 1000, height: 500, boxes: "M10 10h50v50h-50zM40 40h50v50h-50z",
+    layers: [{ algorithm: "grid", caption: "2 x 1 cells", levels: ["M500 0v500"] },
+      { algorithm: "quadtree", caption: "2 levels", levels: ["M0 0h1000v500h-1000z", "M250 0v250"] }],
+  })),
+});
+
+const experiments = {
+  schema: "broadside.experiments/1", machine: comparison.machine, build: comparison.build, target: "AVX2", date: "2026-11-21",
+  command: ["broadside", "experiment"], quick: true, stopped: false,
+  experiments: [{
+    name: "brute_force_tests", seconds: 1, tables: [{
+      name: "tests", title: "Tests",
+      columns: [{ name: "boxes", unit: "" }, { name: "all pairs", unit: "" }, { name: "unique pairs", unit: "" },
+        { name: "tests", unit: "" }, { name: "time", unit: "ms" }],
+      charts: [{ title: "Time", kind: "lines", x: "boxes", y: "time", series: "", value: "", log_x: true, log_y: true, where: [] }],
+      rows: [[100, 10000, 4950, 4950, 0.1], [1000, 1000000, 499500, 499500, 9.5]],
+    }],
+  }],
+};
+
+/** As many measurements as the quick comparison has, with as many samples. */
+function quick_comparison(): object {
+  const [first] = comparison.measurements;
+  const measurements = Array.from({ length: 1050 }, (_, i) => ({
+    ...first, scene: `scene_${Math.floor(i / 54)}`, dimension: 2 + Math.floor(i / 27) % 2, algorithm: `algorithm_${i % 27}`,
+    median_ms: 0.1 + (i % 27) / 7, seeds: Array.from({ length: 100 }, (_, seed) => seed + 1),
+    samples_ms: Array.from({ length: 18 }, (_, at) => 0.123456 * (1 + at + i % 27)),
+    explanation: "bvh, since 1000 boxes are too few for cells to pay",
+  }));
+  return { ...comparison, measurements };
+}
+
+describe("the report", { skip: missing !== "" && missing }, () => {
+  let folder: string;
+  let browser: Browser;
+
+  /** The page of the program with another document in it. */
+  function page_with(name: string, report: object): string {
+    const page = readFileSync(join(folder, "comparison.html"), "utf8");
+    const [begin, end] = [page.indexOf(">", page.indexOf('id="document"')) + 1, page.lastIndexOf("</script>\n<script>")];
+    const path = join(folder, name);
+    writeFileSync(path, page.slice(0, begin) + JSON.stringify(report) + page.slice(end));
+    return path;
+  }
+
+  async function open(name: string, options: { width?: number; dark?: boolean } = {}): Promise<Watched> {
+    const page = await browser.newPage({
+      viewport: { width: options.width ?? 1280, height: 900 }, colorScheme: options.dark === true ? "dark" : "light",
+    });
+    const problems: string[] = [];
+    const path = join(folder, name);
+    page.on("console", (message) => ["error", "warning"].includes(message.type()) && problems.push(message.text()));
+    page.on("pageerror", (error) => problems.push(String(error)));
+    page.on("request", (request) => {
+      if (request.url() !== `file://${path}` && !/^(blob|data):/.test(request.url())) problems.push(`request: ${request.url()}`);
+    });
+    await page.goto(`file://${path}`);
+    await page.waitForSelector("nav a");
+    return { page, problems };
+  }
+
+  /** Scrolls through all of a page, so that all of it is drawn. */
+  async function read({ page }: Watched): Promise<void> {
+    const height = await page.evaluate(() => document.documentElement.scrollHeight);
+    for (let y = 0; y < height + 900; y += 500) {
+      await page.evaluate((to) => window.scrollTo(0, to), y);
+      await page.waitForTimeout(20);
+    }
+    await page.waitForFunction(() =>
+      [...document.querySelectorAll(".chart")].every((chart) => chart.clientWidth === 0 || chart.querySelector("svg path") !== null));
+  }
+
+  async function texts(page: Page, selector: string): Promise<string[]> {
+    return page.locator(selector).allInnerTexts();
+  }
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), "broadside-report-"));
+    execFileSync(program, ["compare", "--scenes", "uniform,churn", "-n", "100,1000", "--frames", "5", "--dimension", "2",
+      "--algorithms", "grid,bvh,brute_force,paper_grid", "--budget", "2", "--report", join(folder, "comparison.html")]);
+    writeFileSync(join(folder, "experiments.json"), JSON.stringify(experiments));
+    execFileSync(program, ["experiment", "--from", join(folder, "experiments.json"), "--report", join(folder, "experiments.html")]);
+    page_with("fixture.html", {
+      date: "2026-11-21", comparison, experiments: null, drawings: [drawing("uniform", 2), drawing("clustered", 3)],
+    });
+    page_with("quick.html", { date: "2026-11-21", comparison: quick_comparison(), experiments: null, drawings: [] });
+    const playwright = createRequire(`${web}/`)("playwright-core") as typeof import("playwright-core");
+    browser = await playwright.chromium.launch({ executablePath: chromium_path, args: ["--no-sandbox"] });
+  }, { timeout: 300_000 });
+
+  after(async () => {
+    await browser?.close();
+    rmSync(folder, { recursive: true, force: true });
+  });
+
+  for (const name of ["comparison.html", "experiments.html", "fixture.html"]) {
+    for (const dark of [false, true]) {
+      for (const width of [1280, 400]) {
+        test(`draws every chart, asks no network, says no error: ${name}, ${dark ? "dark" : "light"}, ${width} px`, async () => {
+          const opened = await open(name, { dark, width });
+          await read(opened);
+          const charts = opened.page.locator(".chart:visible");
+          assert.ok(await charts.count() >= 1);
+          for (const label of await charts.evaluateAll((all) => all.map((chart) => chart.getAttribute("aria-label"))))
+            assert.match(label ?? "", /chart|Map/);
+          const [wide, window_width] = await opened.page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth] as const);
+          assert.ok(wide <= window_width, `the page is ${wide} px wide in a window of ${window_width}`);
+          assert.deepEqual(opened.problems, []);
+          await opened.page.close();
+        });
+      }
+    }
+  }
+
+  test("filters and searches its measurements, and says how many are left", async () => {
+    const { page } = await open("fixture.html");
+    const rows = "#measurements tbody tr";
+    assert.equal(await page.locator(rows).count(), comparison.measurements.length);
+    await page.getByLabel("Outcome").selectOption("skipped");
+    assert.equal(await page.locator(rows).count(), 1);
+    assert.match(await page.locator("#said").innerText(), /1 of 11 rows/);
+    await page.getByLabel("Outcome").selectOption("");
+    await page.getByLabel("Kind").selectOption("peer");
+    assert.equal(await page.locator(rows).count(), 3);
+    await page.locator("#measurements").getByLabel("Search").fill("churn");
+    assert.equal(await page.locator(rows).count(), 1);
+    await page.close();
+  });
+
+  test("sorts by a column, by the keyboard alone, and back", async () => {
+    const { page } = await open("fixture.html");
+    const head = page.locator("#measurements th", { hasText: "median" });
+    await head.getByRole("button").focus();
+    await page.keyboard.press("Enter");
+    assert.equal(await head.getAttribute("aria-sort"), "ascending");
+    const medians = await texts(page, "#measurements tbody td:nth-child(7)");
+    assert.equal(medians[0], "50 µs");
+    assert.equal(medians[medians.length - 1], "–");
+    await page.keyboard.press("Enter");
+    assert.equal(await head.getAttribute("aria-sort"), "descending");
+    assert.equal((await texts(page, "#measurements tbody td:nth-child(7)"))[0], "20 ms");
+    await page.close();
+  });
+
+  test("shows another case when one is chosen, with its frames where it moves", async () => {
+    const { page } = await open("fixture.html");
+    assert.equal(await page.locator("#cases figure:visible").count(), 1);
+    await page.getByRole("combobox", { name: "Case", exact: true }).selectOption({ label: "churn, 2D, 1,000 boxes, 25 % moving" });
+    await page.locator("#cases").scrollIntoViewIfNeeded();
+    assert.equal(await page.locator("#cases figure:visible").count(), 2);
+    await page.waitForSelector("#cases figure:nth-child(2) svg path");
+    assert.match((await texts(page, "#cases caption"))[0] ?? "", /churn/);
+    await page.close();
+  });
+
+  test("changes its theme", async () => {
+    const { page } = await open("fixture.html");
+    const background = (): Promise<string> => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    await page.waitForSelector(".chart svg text");
+    const ink = (): Promise<string | null> => page.locator(".chart svg text").first().getAttribute("fill");
+    const [before, ink_before] = [await background(), await ink()];
+    await page.getByRole("button", { name: "Dark theme" }).click();
+    assert.notEqual(await background(), before);
+    assert.notEqual(await ink(), ink_before);
+    await page.getByRole("button", { name: "Light theme" }).click();
+    assert.equal(await background(), before);
+    await page.close();
+  });
+
+  test("shows scenes, layers and projections, and zooms by keys", async () => {
+    const { page } = await open("fixture.html");
+    const picture = page.locator(".picture");
+    assert.equal(await picture.locator(".level").count(), 1);
+    await page.getByText("quadtree", { exact: true }).last().click();
+    assert.equal(await picture.locator(".level").count(), 2);
+    await page.locator("#scenes").getByRole("combobox", { name: "Scene", exact: true }).selectOption({ label: "clustered, 3D" });
+    assert.equal(await page.locator("#scenes").getByRole("radio", { name: /^(x|y) and (y|z)$/ }).count(), 3);
+    const view_box = (): Promise<string | null> => picture.locator("svg").getAttribute("viewBox");
+    assert.equal(await view_box(), "0.00 0.00 1000.00 500.00");
+    await picture.focus();
+    await page.keyboard.press("+");
+    assert.equal(await view_box(), "100.00 50.00 800.00 400.00");
+    await page.keyboard.press("ArrowRight");
+    assert.notEqual(await view_box(), "100.00 50.00 800.00 400.00");
+    await page.keyboard.press("0");
+    assert.equal(await view_box(), "0.00 0.00 1000.00 500.00");
+    await page.close();
+  });
+
+  test("hands out its data as JSON and CSV", async () => {
+    const { page, problems } = await open("fixture.html");
+    const save = async (name: string): Promise<string> => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+      return readFileSync(await download.path(), "utf8");
+    };
+    assert.deepEqual(JSON.parse(await save("Save as JSON")), comparison);
+    const lines = (await save("Save as CSV")).trim().split("\r\n");
+    assert.equal(lines.length, comparison.measurements.length + 1);
+    assert.match(lines[0] ?? "", /^scene,scene_parameters,/);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
+  test("is reached by the keyboard: past the head, and each thing that acts is named", async () => {
+    const { page } = await open("fixture.html");
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement?.textContent), "Skip to the content");
+    await page.keyboard.press("Enter");
+    assert.equal(await page.evaluate(() => document.activeElement?.id), "main");
+    const nameless = await page.locator("button, select, input, [tabindex='0']").evaluateAll((all) => all
+      .filter((one) => !(one.textContent?.trim() || one.getAttribute("aria-label") || one.getAttribute("aria-labelledby") ||
+        (one as HTMLInputElement).labels?.length))
+      .map((one) => one.outerHTML));
+    assert.deepEqual(nameless, []);
+    assert.equal(await page.locator("main").count(), 1);
+    assert.equal(await page.locator("h1").count(), 1);
+    await page.close();
+  });
+
+  test("tells an experiment's claim, verdict and figures", async () => {
+    const { page } = await open("experiments.html");
+    assert.match((await texts(page, "#brute_force_tests .badge"))[0] ?? "", /holds/);
+    assert.match(await page.locator("#brute_force_tests").innerText(), /499|0\.4995/);
+    await page.locator("summary").click();
+    assert.equal(await page.locator("#brute_force_tests tbody tr").count(), 2);
+    await page.close();
+  });
+
+  test("prints in light colours, with every chart", async () => {
+    const { page, problems } = await open("fixture.html", { dark: true });
+    await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+    assert.equal(await page.evaluate(() => document.documentElement.dataset["theme"]), "light");
+    const empty = await page.locator(".chart:visible").evaluateAll((all) => all.filter((chart) => chart.querySelector("svg path") === null).length);
+    assert.equal(empty, 0);
+    await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+    assert.equal(await page.evaluate(() => document.documentElement.dataset["theme"]), "dark");
+    assert.ok((await page.pdf({ format: "A4" })).length > 10_000);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
+  test("of as much as the quick comparison is under 3 MB and opens at once", async (context) => {
+    const megabytes = statSync(join(folder, "quick.html")).size / 1e6;
+    const { page } = await open("quick.html");
+    const opened = await page.evaluate(() => (performance.getEntriesByType("navigation")[0] as PerformanceNavigationTiming).domComplete);
+    context.diagnostic(`${megabytes.toFixed(2)} MB, opened in ${Math.round(opened)} ms`);
+    assert.ok(megabytes < 3, `${megabytes} MB`);
+    // No limit of speed, but of sense: other tests run at the same time.
+    assert.ok(opened < 30_000, `${opened} ms`);
+    await page.close();
+  });
+});
