@@ -24,6 +24,7 @@
 #include "lab/numbers.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
+#include "lab/report/scene_drawings.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::cli {
@@ -136,7 +137,11 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(comparison, command);
     write(arguments.files, json, [&] {
-      return lab::PageContent{.date = lab::today(), .comparison = json, .experiments = {}, .drawings = {}};
+      return lab::PageContent{.date = lab::today(),
+                              .comparison = json,
+                              .experiments = {},
+                              .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
+                                                           catalogue.select(arguments.algorithms))};
     });
     if (comparison.stopped)
       say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),

@@ -17,6 +17,7 @@
 #include "cli/verbs.hpp"
 #include "lab/experiments/results.hpp"
 #include "lab/numbers.hpp"
+#include "lab/report/scene_drawings.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -105,7 +106,13 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(results);
     write(arguments.files, json, [&] {
-      return lab::PageContent{.date = results.date, .comparison = {}, .experiments = json, .drawings = {}};
+      const lab::Catalogue catalogue;
+      const auto find = [](std::string_view scene) { return lab::find_scene(scene); };
+      return lab::PageContent{
+          .date = results.date,
+          .comparison = {},
+          .experiments = json,
+          .drawings = lab::drawings_of(lab::scenes_of_experiments(), find, catalogue.select("own,paper"))};
     });
     if (results.stopped && arguments.from.empty())
       say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
