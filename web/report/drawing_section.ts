@@ -137,7 +137,7 @@ export function drawing_section(drawings: readonly Drawing[]): [string, string, 
     if (view === undefined) return;
     const layer = view.layers.find((one) => one.algorithm === algorithm);
     picture.show(view, drawing, layer);
-    const shown = drawing.boxes === drawing.of ? `all ${grouped(drawing.of)} boxes` : `${grouped(drawing.boxes)} of ${grouped(drawing.of)} boxes`;
+    const shown = drawing.boxes === drawing.of ? `all ${grouped(drawing.of)} boxes` : `drawn with ${grouped(drawing.boxes)} boxes, as dense as its ${grouped(drawing.of)}`;
     caption.textContent = `${drawing.scene}, ${drawing.dimension}D: ${shown}${layer === undefined ? "" : `. ${layer.algorithm}: ${layer.caption}`}.`;
   };
   const begin = (): void => {
