@@ -177,7 +177,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     await page.locator("#cases select").selectOption({ label: "churn, 2D, 1,000 boxes, 25 % moving" });
     await page.locator("#cases").scrollIntoViewIfNeeded();
     assert.equal(await page.locator("#cases figure:visible").count(), 2);
-    await page.waitForSelector("#cases figure:nth-child(2) svg path");
+    await page.waitForSelector("#cases figure:nth-child(2) svg path", { state: "attached" });
     assert.match((await texts(page, "#cases caption"))[0] ?? "", /churn/);
     await page.close();
   });
