@@ -31,6 +31,7 @@ export function machine_data(results: Experiments): Record<string, unknown> {
       hold: count("holds"),
       hold_when: count("holds when"),
       fail: count("does not hold"),
+      any_fail: experiments.some((one) => one.verdict === "does not hold"),
       time: time_text(1000 * experiments.reduce((sum, one) => sum + one.seconds, 0)),
       command: results.command.join(" "),
       quick: results.quick,
