@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/broad_phase.hpp"
@@ -49,6 +50,10 @@ constexpr double clustered = D == 2 ? 2.2 : 3;
 constexpr double near = 1.0 / 16;
 
 constexpr std::size_t most_compared = 96;
+
+/// Below so many overlaps among the sampled boxes, how many there are is chance: one of them stands for n /
+/// 9,000 tests a box.
+constexpr double telling_overlaps = 8;
 
 /// What is chosen, and what for.
 enum class Choice { few, one_axis, tree, dense, clusters, cells };
@@ -114,13 +119,32 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     sample_.take(boxes, most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
-    tests_ = count * sample_[best].overlap / 2;
+    tests_ = tests_along(best, count);
     if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= many_overlaps<D>) return Choice::dense;
     clustering_ = clustering(boxes);
     return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
+  }
+
+  /// About how many tests a box a sweep of `count` boxes along the axis takes.
+  double tests_along(int axis, double count) const {
+    const core::AxisSample& sample = sample_[axis];
+    const std::vector<float>& minima = sample.minima;
+    const auto size = static_cast<double>(minima.size());
+    const double measured = count * sample.overlap / 2;
+    if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps) return measured;
+    // How many begin within a box's extent, by how close the sampled boxes near it stand to each other: so
+    // clusters count for what they are.
+    constexpr std::size_t apart = 4;
+    double density = 0;  // of all boxes, those that begin in a unit of length
+    for (std::size_t i = 0; i + apart < minima.size(); ++i) {
+      const double distance = static_cast<double>(minima[i + apart]) - minima[i];
+      if (!(distance > 0)) return measured;
+      density += (apart - 1) / (distance * size * (size - apart));
+    }
+    return count * density * sample.mean_extent;
   }
 
   /// How many times as many pairs of boxes are near on all axes as the single axes would let expect: 1 where
