@@ -109,6 +109,7 @@ class CommittedResults : public testing::Test {
 
 TEST_F(CommittedResults, AreOfEveryExperimentAndOfAWholeRun) {
   EXPECT_FALSE(results_.stopped);
+  EXPECT_FALSE(results_.quick);
   ASSERT_EQ(results_.results.size(), experiments().size());
   for (std::size_t i = 0; i < experiments().size(); ++i)
     EXPECT_EQ(results_.results[i].experiment, &experiments()[i]);
