@@ -35,13 +35,12 @@ export function time_text(milliseconds: number): string {
   return milliseconds < 1 ? rounded(milliseconds * 1000) + " µs" : rounded(milliseconds) + " ms";
 }
 
+/** A size in the unit that suits it, as in the program's tables: 1 kB is 1,000 bytes. */
 export function bytes_text(bytes: number): string {
-  let value = bytes;
-  for (const unit of ["bytes", "KiB", "MiB", "GiB"]) {
-    if (value < 1024 || unit === "GiB") return rounded(value) + " " + unit;
-    value /= 1024;
-  }
-  return "";
+  if (bytes < 1000) return `${Math.round(bytes)} B`;
+  if (bytes < 999.5e3) return `${rounded(bytes / 1e3)} kB`;
+  if (bytes < 999.5e6) return `${rounded(bytes / 1e6)} MB`;
+  return `${rounded(bytes / 1e9)} GB`;
 }
 
 export function geometric_mean(values: readonly number[]): number {

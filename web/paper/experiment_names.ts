@@ -1,8 +1,8 @@
 // What the experiments and their machine come to, as texts and tables.
 import type { Experiment, Experiments, Table } from "../charts/data.ts";
-import { time_text } from "../charts/numbers.ts";
+import { bytes_text, time_text } from "../charts/numbers.ts";
 import { plain, table_text } from "./markdown.ts";
-import { bytes, shown, with_unit } from "./words.ts";
+import { shown, with_unit } from "./words.ts";
 
 /** The verdict with its condition, which goes on after "holds when". */
 export function verdict_text({ verdict, condition }: Experiment): string {
@@ -20,7 +20,7 @@ export function machine_data(results: Experiments): Record<string, unknown> {
     machine: {
       cpu: (machine.cpu ?? "").replace(/\((R|TM)\)/g, ""),
       cores: shown(machine.cores ?? 0),
-      memory: bytes(machine.memory_bytes ?? 0),
+      memory: bytes_text(machine.memory_bytes ?? 0),
       os: machine.os,
       instruction_set: results.target,
     },
@@ -70,7 +70,7 @@ export function results_table(table: Table): string {
     row.map((cell, i) => {
       if (cell === null) return "-";
       if (typeof cell === "string") return plain(cell);
-      return table.columns[i]?.unit === "bytes" ? bytes(cell) : shown(cell);
+      return table.columns[i]?.unit === "bytes" ? bytes_text(cell) : shown(cell);
     }),
   );
   return table_text(columns, rows);

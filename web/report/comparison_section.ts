@@ -116,7 +116,7 @@ function case_view(cases: readonly Case[]): HTMLElement | null {
     frames.element.hidden = chosen.mode !== "track";
     if (chosen.mode === "track") frames.show(`Time of each frame: ${chosen.name}`, (place) => draw_frames(chosen, place));
     table.replaceChildren(case_table(chosen));
-    floor.textContent = chosen.floor_ms === null ? "" : `Floor, the time it takes to read the boxes and to write the pairs: ${time_text(chosen.floor_ms)}.`;
+    floor.textContent = chosen.floor_ms === null ? "" : `The floor, boxes sorted and gathered and as many pairs written: ${time_text(chosen.floor_ms)}.`;
   };
   const box = el("div", { class: "card", id: "cases" }, el("h3", {}, "Case by case"), el("div", { class: "controls" },
     cases.length > 1 && picker("Case", cases.map((one, i) => [String(i), one.name]), (value) => {

@@ -96,7 +96,7 @@ test("numbers are told with three digits", () => {
   assert.deepEqual([1000, 250000, 0.05, 2e6].map(short), ["1k", "250k", "0.05", "2M"]);
   assert.deepEqual([0.0123, 1.5, 2500, 0.0002].map(time_text), ["12.3 µs", "1.50 ms", "2.50 s", "200 ns"]);
   assert.equal(grouped(-1234.5), "-1,234.5");
-  assert.equal(bytes_text(1536), "1.50 KiB");
+  assert.deepEqual([168, 1536, 2.04e7].map(bytes_text), ["168 B", "1.54 kB", "20.4 MB"]);
 });
 
 const cases = cases_of(comparison.measurements);
