@@ -53,6 +53,7 @@ std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const Dr
 Exit run(const DrawArguments& arguments) {
   on_signal(OnSignal::end);
   check_writable("-o", arguments.output);
+  check_is_other_file("-o", arguments.output, arguments.scene);
   const lab::Catalogue catalogue;
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));

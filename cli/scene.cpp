@@ -84,6 +84,7 @@ Exit run(const SceneArguments& arguments) {
   if (arguments.moving) check_fraction("--moving", *arguments.moving);
   check(arguments.motion);
   check_writable("-o", arguments.output);
+  check_is_other_file("-o", arguments.output, arguments.scene);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));

@@ -160,6 +160,15 @@ Cell read_cell(const Json& json, const std::string& where) {
       fmt::format("{}: {}; expected a finite number, a text or null", where, json.dump().substr(0, 40)));
 }
 
+/// A column is of numbers or of texts: whoever judges by numbers would not see that one is missing.
+void check_kinds(const Table& table, const std::string& where) {
+  for (const Column& column : table.columns) {
+    if (table.numbers(column.name).empty() || table.texts(column.name).empty()) continue;
+    throw FileError(fmt::format("{}, column '{}': numbers and the text '{}'; expected either", where,
+                                column.name, table.texts(column.name).front()));
+  }
+}
+
 Table read_table(const Json& json, const std::string& where_all) {
   const Reader reader(json, where_all);
   Table table{.name = reader.get<std::string>("name", "a text"),
@@ -187,6 +196,7 @@ Table read_table(const Json& json, const std::string& where_all) {
       cells.push_back(read_cell(row[i], fmt::format("{}, column '{}'", where_row, table.columns[i].name)));
     table.add(std::move(cells));
   }
+  check_kinds(table, where);
   return table;
 }
 

@@ -82,7 +82,11 @@ class FindCase {
       contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
-      return call(*make_finder<D, Real>(*contender.algorithm, contender.spec), some) / 1e3;
+      const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+      const double first = call(*finder, some);
+      // Where the machine stalls for a moment, a short call seems many times as long as it is.
+      constexpr double is_short_ms = 50;
+      return (first < is_short_ms ? std::min(first, call(*finder, some)) : first) / 1e3;
     };
     const std::string fault = fault_of(entry, [&]() -> std::string {
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))

@@ -1,4 +1,5 @@
 // broadside draw: the pictures it writes and what it refuses.
+#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -51,6 +52,15 @@ TEST(DrawVerb, RefusesWhatItCannotDraw) {
                            {"'paper_grid'", "does not do 3D", "expected --dimension 2"}},
                           {{"uniform", "-o", "/nowhere/at/all.svg"}, {"/nowhere/at/all.svg"}},
                           {{"uniform"}, {"--output"}}});
+}
+
+TEST(DrawVerb, DoesNotReplaceItsInput) {
+  const TemporaryFolder folder;
+  const std::string boxes = folder.file("boxes.csv");
+  std::ofstream(boxes) << "0,0,1,1\n";
+  for (const char* const verb : {"draw", "scene"})
+    expect_refused(verb, {{{boxes, "-o", boxes}, {boxes, "which is the input", "expected another file"}}});
+  EXPECT_EQ(text_of(boxes), "0,0,1,1\n");
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ TEST_F(Report, OfAComparisonHoldsItsResults) {
 
 TEST_F(Report, OfExperimentsHoldsWhatTheyCameTo) {
   const std::string results =
-      folder_.put("results.json", experiments_json("[100, 10000, 4950, 4950, 0.1], [1000, 1000000, 499500, 499500, 9.5]"));
+      folder_.put("results.json",
+                  experiments_json("[100, 10000, 4950, 4950, 0.1], [1000, 1000000, 499500, 499500, 9.5]"));
   const Ended ended = run({"experiment", "--from", results, "--report", page_});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   const nlohmann::json document = document_of(text_of(page_));
@@ -110,6 +111,12 @@ TEST_F(Report, IsNotTouchedWhereResultsCannotBeRead) {
 TEST(ReportHelp, NamesTheOption) {
   EXPECT_THAT(run({"compare", "--help"}).output, HasSubstr("--report"));
   EXPECT_THAT(run({"experiment", "--help"}).output, HasSubstr("--report"));
+}
+
+TEST(ResultFiles, AreNotWrittenAmongTheTables) {
+  expect_refused("compare", {{{"--json", "-"}, {"--json is '-'", "expected a file"}},
+                             {{"--report", "-"}, {"--report is '-'", "expected a file"}}});
+  expect_refused("experiment", {{{"--json", "-"}, {"--json is '-'", "expected a file"}}});
 }
 
 }  // namespace

@@ -157,6 +157,8 @@ TEST(ExperimentResults, AreRefusedWhereTheirTablesAreNotWhatTheExperimentJudgesB
                 for (Json& row : table(json)["rows"]) row[4] = "1 ms";
               }),
               HasSubstr("experiment 'brute_force_tests'"));
+  EXPECT_THAT(refusal_after([](Json& json) { table(json)["rows"][0][4] = "1 ms"; }),
+              AllOf(HasSubstr("column 'time'"), HasSubstr("the text '1 ms'"), HasSubstr("expected either")));
   EXPECT_THAT(refusal_after([](Json& json) { table(json)["rows"].erase(0); }), HasSubstr("points"));
   EXPECT_THAT(refusal_after([](Json& json) { table(json)["name"] = "others"; }), HasSubstr("'tests'"));
   EXPECT_THAT(refusal_after([](Json& json) { first(json)["tables"] = Json::array(); }), HasSubstr("'tests'"));
