@@ -70,8 +70,8 @@ struct Refusal {
 
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
-      {{}, {"no verb", "expected one of: compare, pairs, info, verify"}},
-      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, pairs, info, verify"}},
+      {{}, {"no verb", "expected one of: compare, advise, experiment, pairs"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, experiment, pairs"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
       {{"compare", "--algorithms", "gird"}, {"'gird'", "expected one of: ", "grid"}},
       {{"compare", "--algorithms", "grid:cell=-1"}, {"grid: cell is '-1'", "expected a number"}},
