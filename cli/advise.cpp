@@ -156,7 +156,14 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
   const lab::Catalogue catalogue;
-  catalogue.select(options.algorithms);  // known before the file is read
+  // Refused before the file is read.
+  const auto is_peer = [](const lab::Contender& contender) {
+    return contender.algorithm->kind == AlgorithmKind::peer;
+  };
+  if (std::ranges::all_of(catalogue.select(options.algorithms), is_peer))
+    throw Unusable(fmt::format(
+        "--algorithms is '{}'; expected one of Broadside's own among them: other libraries are never advised",
+        options.algorithms));
   Boxes boxes = is_file(arguments.input) ? read_file(arguments) : make_scene(arguments);
 
   on_signal(OnSignal::note_then_end);
@@ -209,9 +216,10 @@ Verb add_advise(CLI::App& program, std::span<const std::string> command) {
           "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
           "Peers are shown, but never advised")
       ->capture_default_str();
-  verb->add_option("--threads", arguments->threads,
-                   "Threads that a search may use, 0 for as many as there are; of several, such as 1,2, the "
-                   "others are tried with the best, and advised where they pay")
+  verb->add_option(
+          "--threads", arguments->threads,
+          "Threads that a search may use besides one, 0 for as many as there are, or several such as "
+          "2,4: tried with the best, and advised where they pay")
       ->delimiter(',')
       ->capture_default_str();
   verb->add_option("--budget", arguments->budget,

@@ -106,8 +106,7 @@ class Adviser {
   }
 
   Advice run() {
-    const std::vector<Contender> plain =
-        with_threads(catalogue_.select(options_.algorithms), std::span(options_.threads).first(1));
+    const std::vector<Contender> plain = catalogue_.select(options_.algorithms);
     std::vector<Measurement> first = measure(plain, first_effort(plain.size()));
     std::vector<bool> variant;
     const std::vector<Contender> finalists = finalists_of(plain, first, variant);
@@ -122,7 +121,7 @@ class Adviser {
       if (std::ranges::none_of(advice_.ranking, same)) add(std::move(measurement), false, false);
     }
     std::ranges::stable_sort(advice_.ranking, {}, [](const Ranked& ranked) {
-      return std::tuple(!is_timed(ranked.measurement), !ranked.is_finalist, ranked.milliseconds);
+      return std::tuple(!ranked.is_finalist, !is_timed(ranked.measurement), ranked.milliseconds);
     });
     conclude();
     return std::move(advice_);
@@ -190,6 +189,7 @@ class Adviser {
                            (is_peer(i) || ours++ < most_finalists);
       if (!is_near && !is_auto(i)) continue;
       finalists.push_back(plain[i]);
+      if (!is_peer(i)) add_threads(plain[i], tried);
       if (is_auto(i) || (!is_peer(i) && with_variants++ < most_with_variants)) add_variants(plain[i], tried);
     }
     std::erase_if(tried, [&](const Contender& contender) {
@@ -206,11 +206,11 @@ class Adviser {
 
   void add_variants(const Contender& contender, std::vector<Contender>& tried) const {
     for (Contender& other : variants_of(contender, advice_.signals)) tried.push_back(std::move(other));
-    if (options_.threads.size() < 2) return;
-    // As asked for first, without the number of threads that with_threads() gave it.
-    Contender bare = contender;
-    std::erase_if(bare.spec.values, [](const auto& value) { return value.first == "threads"; });
-    for (Contender& other : with_threads({bare}, std::span(options_.threads).subspan(1))) {
+  }
+
+  /// With more threads than one, where the user named none in its spec.
+  void add_threads(const Contender& contender, std::vector<Contender>& tried) const {
+    for (Contender& other : with_threads({contender}, options_.threads)) {
       if (other.spec.text() != contender.spec.text()) tried.push_back(std::move(other));
     }
   }

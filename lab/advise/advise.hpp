@@ -18,7 +18,8 @@ namespace broadside::lab {
 /// How to find out.
 struct AdviseOptions {
   std::string algorithms = "own";          ///< as Catalogue::select reads it
-  std::vector<std::size_t> threads = {1};  ///< that may be used; the first is what plain algorithms have
+  std::vector<std::size_t> threads = {1};  ///< that may be used besides one; plain algorithms have one, and
+                                           ///< the best are tried with more, which must pay to be advised
   double budget_seconds = 6;               ///< about how long it may take, but for what checking takes
   Watch watch{};
 };
@@ -42,7 +43,8 @@ struct Advice {
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
   std::size_t frames = 0;       ///< ... so many after it
   std::optional<double> floor_ms{};
-  std::vector<Ranked> ranking{};   ///< finalists first, the fastest first; those without a time last
+  std::vector<Ranked> ranking{};   ///< finalists first; of them and of the others the fastest first,
+                                   ///< those without a time last
   std::optional<Choice> choice{};  ///< its places are those of the ranking
 
   std::string spec{};     ///< what is advised

@@ -24,6 +24,9 @@ constexpr double alike = 4;
 constexpr double as_fast = 1.05;
 constexpr std::size_t most_others = 5;
 
+/// A count that is so many times another one is clearly more: what can explain a time.
+constexpr double clearly = 1.2;
+
 std::string base_of(std::string_view spec) { return std::string(spec.substr(0, spec.find(':'))); }
 
 std::optional<double> tests_of(const Measurement& measurement, const Signals& signals) {
@@ -77,22 +80,32 @@ std::string sweep_text(double tests, const Signals& signals) {
                      axis_name(axis), rounded(along), rounded(tests));
 }
 
-/// Why it takes longer than the chosen one.
-std::string hinders(const Measurement& slow, const Measurement& chosen, const Signals& signals) {
-  const std::string name = base_of(slow.algorithm);
-  if (name == "brute_force" && !signals.motion)
-    return fmt::format("it tests each box against all others, {} tests a box",
-                       rounded(static_cast<double>(std::max<std::size_t>(signals.boxes, 1) - 1) / 2));
-  const auto tests = tests_of(slow, signals);
-  const auto fewest = tests_of(chosen, signals);
-  if (!tests) return slow.own_bytes ? fmt::format("it keeps {}", bytes(*slow.own_bytes)) : "";
-  if (name == "sweep_and_prune" && (!fewest || *tests > *fewest)) return sweep_text(*tests, signals);
-  if (fewest && *tests >= 1.5 * *fewest)
-    return fmt::format("it makes {} tests a box where {} makes {}", rounded(*tests), chosen.algorithm,
+/// Why it takes longer than the chosen one: only what the numbers of the two bear out, else nothing.
+std::string hinders(const Ranked& slow, const Ranked& chosen, const Signals& signals) {
+  const Measurement& of = slow.measurement;
+  const Measurement& best = chosen.measurement;
+  const std::string name = base_of(of.algorithm);
+  if (chosen.is_variant && !slow.is_variant && name == base_of(best.algorithm))
+    return fmt::format("what is set by hand in {} suits these boxes better than what it chooses itself",
+                       best.algorithm);
+  const auto tests = tests_of(of, signals);
+  const auto fewest = tests_of(best, signals);
+  const bool has_more_tests = tests && fewest && *tests >= clearly * *fewest;
+  const bool has_less_tests = tests && fewest && *tests * clearly <= *fewest;
+  if (has_more_tests && name == "brute_force" && !signals.motion)
+    return fmt::format("it tests each box against all others, {} tests a box", rounded(*tests));
+  if (has_more_tests && name == "sweep_and_prune") return sweep_text(*tests, signals);
+  if (has_more_tests)
+    return fmt::format("it makes {} tests a box where {} makes {}", rounded(*tests), best.algorithm,
                        rounded(*fewest));
-  // What is not spent on tests goes into the structure.
-  return fmt::format("its {} tests a box save less than its structure{} costs", rounded(*tests),
-                     slow.own_bytes ? fmt::format(" of {}", bytes(*slow.own_bytes)) : "");
+  if (!of.own_bytes || !best.own_bytes || *of.own_bytes == 0 ||
+      static_cast<double>(*of.own_bytes) < clearly * static_cast<double>(*best.own_bytes))
+    return "";
+  const std::string structures =
+      fmt::format("{} where {} keeps {}", bytes(*of.own_bytes), best.algorithm, bytes(*best.own_bytes));
+  return has_less_tests ? fmt::format("its {} tests a box save less than its structure costs: it keeps {}",
+                                      rounded(*tests), structures)
+                        : "it keeps " + structures;
 }
 
 /// "1.23 times".
@@ -146,8 +159,8 @@ std::vector<std::string> reasons_of(const Advice& advice) {
     const double ratio = ranked.milliseconds / time;
     if (ratio <= as_fast || ++others > most_others) continue;
     const bool says_why = !other.explanation.empty() && base_of(other.algorithm) == default_algorithm;
-    const std::string why =
-        says_why ? "it takes " + other.explanation : hinders(other, chosen, advice.signals);
+    const std::string why = says_why ? "it takes " + other.explanation
+                                     : hinders(ranked, advice.ranking[choice.chosen], advice.signals);
     reasons.push_back(
         fmt::format("{} takes {} as long{}{}", other.algorithm, times(ratio), why.empty() ? "" : ": ", why));
   }

@@ -35,6 +35,16 @@ std::string verdict(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
+/// The table with a line before those that were in the first round only, where there are others.
+std::string with_first_round_apart(std::string table, const Advice& advice) {
+  const auto first = std::ranges::find(advice.ranking, false, &Ranked::is_finalist);
+  if (first == advice.ranking.begin() || first == advice.ranking.end()) return table;
+  std::size_t place = table.find('\n') + 1;  // after the head
+  for (auto finalist = advice.ranking.begin(); finalist != first; ++finalist)
+    place = table.find('\n', place) + 1;
+  return table.insert(place, "  measured in the first, short round only:\n");
+}
+
 std::string table(const Advice& advice) {
   const bool moves = advice.mode == Mode::track;
   Columns columns(moves ? "<>>>>>><" : "<>>>>><");
@@ -66,7 +76,7 @@ std::string table(const Advice& advice) {
       row.insert(row.begin() + 2, timed ? duration(percentile(measurement.samples_ms, 0.99) / 1e3) : "-");
     columns.add(row);
   }
-  return columns.text("  ");
+  return with_first_round_apart(columns.text("  "), advice);
 }
 
 std::string list(const std::vector<std::string>& sentences) {
@@ -98,8 +108,11 @@ std::string text_of(const Signals& signals) {
     for (std::size_t axis = 0; axis < signals.axis_tests.size(); ++axis)
       text += fmt::format("{} {} along {}", axis > 0 ? "," : "", rounded(signals.axis_tests[axis]),
                           axis_name(axis));
-    text += fmt::format("; {} times as many are near each other as if they were spread evenly.",
-                        rounded(signals.clustering));
+    // Below 1 boxes keep apart, which no algorithm makes use of.
+    if (signals.clustering >= 1)
+      text += fmt::format("; {} times as many are near each other as if they were spread evenly",
+                          rounded(signals.clustering));
+    text += ".";
   }
   if (signals.motion) text += " " + motion_text(*signals.motion);
   return text;
@@ -114,7 +127,8 @@ std::string text_of(const Advice& advice) {
   if (advice.floor_ms && advice.choice)
     text += fmt::format("  sorting the boxes and writing the pairs alone takes {}\n",
                         duration(*advice.floor_ms / 1e3));
-  if (!advice.choice) return text + "\nNothing was verified, so there is nothing to advise.\n";
+  if (!advice.choice)
+    return text + "\nNothing of Broadside's own was verified, so there is nothing to advise.\n";
   const Measurement& chosen = advice.ranking[advice.choice->chosen].measurement;
   text += fmt::format("\nAdvice: {}\n", advice.spec);
   text += fmt::format("  {} {} to be expected on this machine", duration(advice.milliseconds / 1e3),

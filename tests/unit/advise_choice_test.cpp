@@ -12,9 +12,11 @@
 namespace broadside::lab {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Rivals, each with the same time in ten rounds.
 class Field {
@@ -149,6 +151,63 @@ TEST(Reasons, ComeFromSignalsAndMeasurements) {
       "grid is the fastest: boxes of much the same size, spread evenly, suit its cells: 4.00 tests a box");
   EXPECT_EQ(reasons[1],
             "sweep_and_prune takes 3.10 times as long: its best axis, x, leaves 88.0 tests a box");
+}
+
+/// Why the second of two takes longer.
+std::string hindrance(std::uint64_t tests, std::uint64_t bytes, std::uint64_t best_tests,
+                      std::uint64_t best_bytes) {
+  Advice advice = made_up();
+  advice.ranking[0].measurement.algorithm = "bvh";
+  advice.ranking[0].measurement.statistics->tests = best_tests;
+  advice.ranking[0].measurement.own_bytes = best_bytes;
+  advice.ranking[1].measurement.algorithm = "quadtree";
+  advice.ranking[1].measurement.statistics->tests = tests;
+  advice.ranking[1].measurement.own_bytes = bytes;
+  return reasons_of(advice)[1];
+}
+
+TEST(Reasons, NameTestsAndStructureOnlyWhereTheyDiffer) {
+  EXPECT_EQ(hindrance(2850, 183'000, 2750, 182'000), "quadtree takes 3.10 times as long");
+  EXPECT_EQ(hindrance(2850, 100'000, 4000, 182'000), "quadtree takes 3.10 times as long");
+  EXPECT_EQ(hindrance(8000, 183'000, 4000, 182'000),
+            "quadtree takes 3.10 times as long: it makes 8.00 tests a box where bvh makes 4.00");
+  EXPECT_EQ(hindrance(2850, 366'000, 2750, 183'000),
+            "quadtree takes 3.10 times as long: it keeps 366 kB where bvh keeps 183 kB");
+  EXPECT_EQ(hindrance(2000, 366'000, 4000, 183'000),
+            "quadtree takes 3.10 times as long: its 2.00 tests a box save less than its structure costs: it "
+            "keeps 366 kB where bvh keeps 183 kB");
+}
+
+TEST(Reasons, OfAValueSetByHandSpeakOfNothingElse) {
+  Advice advice = made_up();
+  advice.ranking[0].measurement.algorithm = "grid:cell=6.94";
+  advice.ranking[0].is_variant = true;
+  advice.ranking[1].measurement.algorithm = "grid";
+  advice.choice = Choice{0, Why::variant, 1};
+  EXPECT_EQ(reasons_of(advice)[1],
+            "grid takes 3.10 times as long: what is set by hand in grid:cell=6.94 suits these boxes better "
+            "than what it chooses itself");
+}
+
+TEST(AdviceAsText, SetsTheFirstRoundApart) {
+  Advice advice = made_up();
+  advice.ranking[0].measurement.algorithm = "bvh";
+  advice.ranking[1].is_finalist = false;
+  const std::string text = text_of(advice);
+  const std::size_t line = text.find("\n  measured in the first, short round only:\n  sweep_and_prune");
+  ASSERT_NE(line, std::string::npos) << text;
+  EXPECT_LT(text.find("\n  bvh"), line);
+  advice.ranking[1].is_finalist = true;
+  EXPECT_THAT(text_of(advice), Not(HasSubstr("first, short round")));
+}
+
+TEST(AdviceAsText, TellsOfClustersOnlyWhereBoxesAreNearEachOther) {
+  Advice advice = made_up();
+  advice.signals.clustering = 0.0277;
+  EXPECT_THAT(text_of(advice), AllOf(HasSubstr("88.0 along x, 120 along y.\n"), Not(HasSubstr("evenly"))));
+  advice.signals.clustering = 3;
+  EXPECT_THAT(text_of(advice),
+              HasSubstr("; 3.00 times as many are near each other as if they were spread evenly."));
 }
 
 TEST(Reasons, SayHonestlyThatAPeerIsFaster) {

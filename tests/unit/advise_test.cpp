@@ -1,6 +1,7 @@
 // Advice on boxes: what is measured of them, and what is tried.
 #include "lab/advise/advise.hpp"
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "broadside/executor.hpp"
 #include "broadside/pair_finder.hpp"
 
 #include "lab/advise/variants.hpp"
@@ -24,6 +26,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Key;
 using testing::Not;
 
 AdviseOptions quickly(const std::string& algorithms) {
@@ -112,6 +115,20 @@ TEST(Advise, OffersNothingWhereNothingIsVerified) {
   EXPECT_FALSE(advice.all_verified());
   EXPECT_THAT(text_of(advice), AllOf(HasSubstr("nothing to advise"), HasSubstr("FAILED")));
   EXPECT_TRUE(nlohmann::json::parse(json_of(advice, {}))["advice"].is_null());
+}
+
+TEST(Advise, MeasuresOneThreadWhateverThreadsAreAllowed) {
+  if (standard_executor() == nullptr) GTEST_SKIP() << "built without oneTBB";
+  AdviseOptions options = quickly("grid,auto");
+  options.threads = {0};
+  const Advice advice = advise(Catalogue(), "row", row(50), options);
+  EXPECT_TRUE(advice.all_verified());
+  std::map<std::string, bool> is_variant;
+  for (const Ranked& ranked : advice.ranking) is_variant[ranked.measurement.algorithm] = ranked.is_variant;
+  ASSERT_THAT(is_variant,
+              AllOf(Contains(Key("grid")), Contains(Key("auto")), Contains(Key("auto:threads=0"))));
+  EXPECT_FALSE(is_variant["auto"]);
+  EXPECT_TRUE(is_variant["auto:threads=0"]);
 }
 
 TEST(Advise, StopsWhenTheWatchSaysSo) {
