@@ -54,8 +54,8 @@ std::string content_of(const std::string& path) {
 
 void print_list() {
   for (const lab::Experiment& experiment : lab::experiments())
-    print(fmt::format("{:2}  {:20}  {} (section {})\n", experiment.number, experiment.name, experiment.title,
-                      experiment.section));
+    print(fmt::format("{:2}  {:20}  {} ({})\n", experiment.number, experiment.name, experiment.title,
+                      experiment.section == "beyond" ? "beyond the paper" : "section " + experiment.section));
 }
 
 void print_result(const lab::ExperimentResult& result) {
