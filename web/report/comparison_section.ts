@@ -182,7 +182,7 @@ export function comparison_sections(comparison: Comparison, date: string): [stri
         "Scene, boxes and, where they move, how many of them.").element)),
     leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chart_figure(
       "How many times as fast as the fastest peer the fastest of ours is", (place) => draw_leads(cases, place),
-      "Left of 1, the peer is faster. Each bar has the colour of the one of ours.").element));
+      "Below 1, the peer is faster. Each bar has the colour of the one of ours.").element));
   }
   add(charts, scaling(cases), case_view(cases));
   return [

@@ -89,7 +89,7 @@ export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
     count.textContent = left.length === spec.rows.length
       ? `${grouped(left.length)} ${rows}` : `${grouped(left.length)} of ${grouped(spec.rows.length)} rows`;
     more.hidden = shown.length === left.length;
-    more.textContent = `Show all ${grouped(left.length)} rows`;
+    more.textContent = more.hidden ? "Show all rows" : `Show all ${grouped(left.length)} rows`;
   }
 
   function filtered(): void {

@@ -1,6 +1,6 @@
 // The experiments: each claim, its verdict and what it rests on.
 import type { Cell, Experiment, Experiments, Table } from "../charts/data.ts";
-import { grouped, rounded } from "../charts/numbers.ts";
+import { bytes_text, grouped, rounded } from "../charts/numbers.ts";
 import { cell_text, draw_table_chart } from "../charts/table_chart.ts";
 import { data_table } from "./data_table.ts";
 import { el } from "./dom.ts";
@@ -30,11 +30,16 @@ function table_view(table: Table): HTMLElement {
     download_button("Save as CSV", `${table.name}.csv`, "text/csv", () => csv_of_table(table))));
 }
 
+function figure_text(value: number, unit: string): string {
+  if (unit === "bytes" && value >= 1000) return bytes_text(value);
+  return rounded(value) + (unit === "" ? "" : ` ${unit}`);
+}
+
 function figures(experiment: Experiment): HTMLElement | null {
   const all = Object.entries(experiment.figures);
   if (all.length === 0) return null;
   return el("ul", { class: "figures" }, ...all.map(([name, { value, unit }]) =>
-    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, rounded(value) + (unit === "" ? "" : ` ${unit}`)))));
+    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, figure_text(value, unit)))));
 }
 
 function view(experiment: Experiment): HTMLElement {

@@ -23,7 +23,7 @@ function build(report: ReportDocument): void {
   const pictures = drawing_section(drawings);
   if (pictures !== undefined) sections.push(pictures);
 
-  const title = comparison !== null ? "Every algorithm on every scene" : "The paper's claims, tested";
+  const title = comparison !== null ? "Algorithms compared" : "The paper's claims, tested";
   const intro = comparison !== null
     ? "Ways of finding all overlapping pairs of axis-aligned boxes, timed on the same boxes. Every result that has a time was verified in the same run."
     : "Each claim of the paper about broad-phase collision detection, what was measured to test it, and the verdict that the figures give.";
