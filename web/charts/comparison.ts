@@ -26,9 +26,10 @@ export function percent(share: number): string {
   return `${Number((share * 100).toPrecision(2))} %`;
 }
 
-/** An algorithm, with its threads where there are several. */
+/** An algorithm, with its threads where there are several and its spec does not say how many. */
 export function label_of(measurement: Measurement): string {
-  return measurement.threads > 1 ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
+  const says_threads = measurement.algorithm.split(":").includes(`threads=${measurement.threads}`);
+  return measurement.threads > 1 && !says_threads ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
 }
 
 /** Of measurements, in the order in which the cases come. */

@@ -58,6 +58,9 @@ export function draw_lines(spec: LinesSpec, place: Place): Drawn {
   const x = numeric
     ? value_axis(spec.x, all.map(([at]) => Number(at)), place)
     : category_axis(categories, place);
+  // A few things that are counted: no ticks between them.
+  const xs = all.map(([at]) => at);
+  const counts = !spec.x.log && xs.every((at) => Number.isInteger(at) && Number(at) >= 0 && Number(at) <= 20);
   const legend = legend_height(names, place.width);
   const height = Math.round(Math.min(380, Math.max(280, place.width * 0.55))) + legend;
   return {
@@ -66,7 +69,7 @@ export function draw_lines(spec: LinesSpec, place: Place): Drawn {
     option: {
       ...frame(names, description, place),
       grid: { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
-      xAxis: { ...x, ...below(axis_name(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
+      xAxis: { ...x, ...(counts ? { minInterval: 1 } : {}), ...below(axis_name(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
       yAxis: {
         ...value_axis(spec.y, [...all.map(([, at]) => at), ...levels], place),
         scale: false,

@@ -43,6 +43,8 @@ const families: Record<string, readonly [string, string]> = {
   bullet: ["#8a2a55", "#d4719f"],
   cgal: ["#2e7d3c", "#6cc07b"],
   chipmunk: ["#8c7a00", "#d6c94a"],
+  // Wins as the other of its library does, often in the same map.
+  chipmunk_space_hash: ["#5b7d00", "#a9cf4a"],
   embree: ["#2f86c6", "#9fd4f5"],
   fcl: ["#c05a6b", "#ec93a1"],
   geos: ["#7a4fa3", "#bf9ae0"],

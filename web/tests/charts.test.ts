@@ -3,8 +3,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  bytes_text, cases_of, colours_of, dark, draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings,
-  draw_table_chart, draw_winners, family_of, grouped, lead_of, light, rounded, scaled_scenes, short, standings, time_text,
+  bytes_text, cases_of, colours_of, dark, draw_frames, draw_leads, draw_lines, draw_ratios, draw_scaling, draw_standings,
+  draw_table_chart, draw_winners, family_of, grouped, label_of, lead_of, light, rounded, scaled_scenes, short, standings,
+  time_text,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
 import { log_ticks } from "../charts/frame.ts";
@@ -73,6 +74,7 @@ test("an algorithm has its family's colour in every chart", () => {
   assert.equal(family_of("paper_grid"), "grid");
   assert.equal(family_of("bullet_dbvt"), "bullet");
   assert.equal(family_of("mixed"), undefined);
+  assert.equal(colours_of(["chipmunk_space_hash"], light)[0], colours_of(["chipmunk_bb_tree", "chipmunk_space_hash"], light)[1]);
   assert.deepEqual(colours_of(["bvh", "grid"], light), [colours_of(["grid", "bvh"], light)[1], "#e69f00"]);
   assert.notDeepEqual(colours_of(["bvh"], light), colours_of(["bvh"], dark));
 });
@@ -110,6 +112,24 @@ test("measurements on the same boxes are one case", () => {
 test("a lead is the fastest peer's time over that of the fastest of ours", () => {
   const lead = lead_of(cases[0]!);
   assert.deepEqual([lead?.own.algorithm, lead?.peer.algorithm, lead?.ratio], ["bvh", "box2d_tree", 4]);
+});
+
+test("an algorithm's threads are told once", () => {
+  const of = (algorithm: string, threads: number): string => label_of({ ...comparison.measurements[0]!, algorithm, threads });
+  assert.equal(of("grid", 1), "grid");
+  assert.equal(of("auto:threads=2", 2), "auto:threads=2");
+  assert.equal(of("grid:threads=0:cell=2", 4), "grid:threads=0:cell=2 (4 threads)");
+  assert.equal(of("grid:threads=12", 1), "grid:threads=12");
+});
+
+test("what is counted has no ticks between whole numbers", () => {
+  const axis_of = (xs: number[], log: boolean): unknown => (draw_lines({
+    title: "", x: { name: "threads", unit: "", log }, y: { name: "time", unit: "ms", log: false },
+    lines: [{ name: "", points: xs.map((x) => [x, 1] as const) }],
+  }, place).option.xAxis as { minInterval?: number }).minInterval;
+  assert.equal(axis_of([1, 2], false), 1);
+  assert.equal(axis_of([1, 1.5], false), undefined);
+  assert.equal(axis_of([1, 2], true), undefined);
 });
 
 test("who is skipped in a case does not stand in it", () => {
