@@ -20,6 +20,12 @@ HWY_AFTER_NAMESPACE();
 namespace broadside {
 namespace {
 
+#if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0
+// There is but one target, and Highway then calls it directly: whoever has the headers alone can link.
+void choose(std::int64_t) {}
+
+std::vector<std::int64_t> targets() { return {HWY_TARGETS}; }
+#else
 /// Takes `target` for all that the processor has, or, if it is 0, what it has. Highway has no other way to
 /// narrow the choice at run time than the one for its own tests.
 void choose(std::int64_t target) {
@@ -32,6 +38,7 @@ const std::vector<std::int64_t>& targets() {
   static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
   return all;
 }
+#endif
 
 }  // namespace
 
