@@ -47,7 +47,7 @@ function literals(text) {
   for (let begin = 0; begin < bytes.length;) {
     let end = Math.min(begin + most, bytes.length);
     while (end < bytes.length && (bytes[end] & 0xc0) === 0x80) --end;
-    lines.push(`    R"part(${bytes.subarray(begin, end).toString("utf8")})part",`);
+    lines.push(`    R"part(${bytes.subarray(begin, end).toString("utf8")})part"sv,`);
     begin = end;
   }
   if (text.includes(")part\"")) throw new Error("the page holds the end of a C++ literal");
@@ -67,6 +67,9 @@ async function build_page(path) {
 
 namespace broadside::lab {
 namespace {
+
+// With their lengths: clang counts no further than a million characters in a constant.
+using namespace std::string_view_literals;
 
 constexpr std::string_view before[] = {
 ${literals(before)}

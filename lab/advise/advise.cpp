@@ -227,7 +227,7 @@ class Adviser {
       advice_.signals.overlaps = 2 * static_cast<double>(*pairs) / static_cast<double>(advice_.signals.boxes);
       break;
     }
-    advice_.choice = choose(rivals);
+    advice_.choice = choose(rivals, advice_.signals.boxes >= 2 || advice_.signals.motion.has_value());
     if (!advice_.choice) return;
     const Measurement& chosen = advice_.ranking[advice_.choice->chosen].measurement;
     advice_.spec = chosen.algorithm;

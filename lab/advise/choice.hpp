@@ -57,7 +57,8 @@ double undisturbed(std::span<const double> samples, std::size_t inputs);
 double part_of_rounds(std::span<const double> a, std::span<const double> b);
 
 /// Chooses among those that were verified; empty if none of ours and the paper's was. Of equals the first is
-/// taken.
-std::optional<Choice> choose(std::span<const Rival> rivals);
+/// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that
+/// is among them.
+std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time = true);
 
 }  // namespace broadside::lab

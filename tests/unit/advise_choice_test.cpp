@@ -33,7 +33,7 @@ class Field {
   Field& variant(const std::string& spec, double milliseconds) { return add(spec, milliseconds, true); }
   Measurement& last() { return measurements_.back(); }
 
-  std::optional<Choice> choice() const { return choose(rivals_); }
+  std::optional<Choice> choice(bool by_time = true) const { return choose(rivals_, by_time); }
   std::string chosen() const {
     const auto choice = choose(rivals_);
     return choice ? rivals_[choice->chosen].measurement->algorithm : "";
@@ -64,6 +64,14 @@ TEST(Choice, PrefersAutoWhereItIsHardlySlower) {
   EXPECT_EQ(Field().add("grid", 1).add("auto", 1.05).chosen(), "grid");
   // Under the clock's own noise all are the same.
   EXPECT_EQ(Field().add("brute_force", 0.0001).add("auto", 0.00025).chosen(), "auto");
+}
+
+TEST(Choice, TakesAutoWhereTimesSayNothing) {
+  Field field;
+  field.add("grid", 1).add("auto", 3).variant("grid:cell=2", 0.1);
+  EXPECT_EQ(field.choice(false)->chosen, 1u);
+  EXPECT_EQ(field.choice(false)->why, Why::automatic);
+  EXPECT_EQ(Field().add("bvh", 2).choice(false)->chosen, 0u);
 }
 
 TEST(Choice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
