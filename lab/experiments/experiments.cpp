@@ -27,21 +27,9 @@ std::string Finding::verdict_text() const {
 
 std::span<const Experiment> experiments() {
   static const std::vector<Experiment> list = {
-      brute_force_tests(),
-      overtaking(),
-      grid_memory(),
-      grid_spanning(),
-      grid_cell_size(),
-      sweep_axis(),
-      quadtree_sizes(),
-      quadtree_capacity(),
-      update_fraction(),
-      grid_translation(),
-      grid_rebuilding(),
-      sweep_insertion(),
-      sweep_reinsertion(),
-      quadtree_siblings(),
-      winners(),
+      brute_force_tests(), overtaking(),      grid_memory(),       grid_spanning(),     grid_cell_size(),
+      sweep_axis(),        quadtree_sizes(),  quadtree_capacity(), update_fraction(),   grid_translation(),
+      grid_rebuilding(),   sweep_insertion(), sweep_reinsertion(), quadtree_siblings(), winners(),
   };
   return list;
 }
