@@ -86,11 +86,11 @@ tests-tsan: build/tsan/build.ninja
 	ctest --preset tsan --parallel $(jobs) --tests-regex 'Thread|Parallel|Executor'
 
 # The other libraries were compiled by Debian, whoever compiles what drives them; the tests under NEON and those of
-# how the library is installed have compilers of their own or depend on none.
+# how the library is installed have compilers of their own, those of the page and the paper none.
 tests-clang: build/clang/build.ninja
 	cmake --build --preset clang
 	ctest --preset clang --parallel $(jobs) \
-	  --exclude-regex '^(neon|consumer)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
+	  --exclude-regex '^(neon|consumer|web_|paper_)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
 
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
