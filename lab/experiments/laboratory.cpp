@@ -46,8 +46,10 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
 
 CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene,
                                const CaseRequest& request) const {
-  const NamedScene named{scene, {.name = request.scene, .values = {}}};
-  return measure(algorithms, request, effort(), [&named](std::string_view) { return named; });
+  const auto find = [&](std::string_view) {
+    return NamedScene{scene, {.name = request.scene, .values = {}}};
+  };
+  return measure(algorithms, request, effort(), find);
 }
 
 CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
