@@ -17,13 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
 Json json_of(const MotionSignals& motion) {
   return {{"frames", motion.frames},        {"least_moving", motion.least_moving},
           {"moving", motion.moving},        {"most_moving", motion.most_moving},

@@ -16,13 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
 Json measurement_json(const CaseResult& result, const Measurement& measurement) {
   const Case& of = result.of;
   const std::vector<double>& samples = measurement.samples_ms;

@@ -1,12 +1,10 @@
-// Machine and build in a results file.
+// Machine and build in a results file, and values that may be missing.
 #include "lab/report/machine_json.hpp"
 
 namespace broadside::lab {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 template <typename Value>
 void read(const Json& json, const char* key, Value& value) {
@@ -16,6 +14,8 @@ void read(const Json& json, const char* key, Value& value) {
 }
 
 }  // namespace
+
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json json_of(const Machine& machine) {
   return {{"cpu", or_null(machine.cpu)},

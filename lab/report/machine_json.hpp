@@ -1,6 +1,7 @@
-// Machine and build in a results file.
+// Machine and build in a results file, and values that may be missing.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +9,13 @@
 #include "lab/report/machine.hpp"
 
 namespace broadside::lab {
+
+/// The value, or null where there is none; of a text, where it is empty.
+template <typename Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+nlohmann::ordered_json or_null(const std::string& text);
 
 /// As an object each; null for what is not known.
 nlohmann::ordered_json json_of(const Machine& machine);
