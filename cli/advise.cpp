@@ -136,6 +136,7 @@ void check(const AdviseArguments& arguments) {
     throw Unusable(
         fmt::format("--budget is {}; expected a number of seconds above 0, at most 3600", *arguments.budget));
   if (arguments.json.empty()) return;
+  check_is_no_output("--json", arguments.json);
   check_writable("--json", arguments.json);
   check_is_other_file("--json", arguments.json, arguments.input);
 }
@@ -194,9 +195,9 @@ Verb add_advise(CLI::App& program, std::span<const std::string> command) {
   const auto arguments = std::make_shared<AdviseArguments>();
   CLI::App* const verb = program.add_subcommand(
       "advise",
-      "Says which algorithm suits your boxes, and why: measures what the boxes are like and the algorithms "
-      "on "
-      "them, every result verified, and prints a ranking, the spec and the lines of C++ for it.");
+      "Says which algorithm suits your boxes, and why: measures what the boxes are like and the "
+      "algorithms on them, every result verified, and prints a ranking, the spec and the lines of C++ for "
+      "it.");
   verb->add_option(
           "input", arguments->input,
           "A file of boxes, still or moving (a recording of your engine), - for standard input; or the "

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,10 +39,8 @@ void add_result_files(CLI::App& verb, ResultFiles& files) {
 }
 
 void check(const ResultFiles& files, const std::string& input) {
-  for (const auto& [option, path] : {std::pair("--json", files.json), std::pair("--report", files.report)}) {
-    if (path == "-")
-      throw Unusable(fmt::format("{} is '-', but the tables go to standard output; expected a file", option));
-  }
+  check_is_no_output("--json", files.json);
+  check_is_no_output("--report", files.report);
   if (!files.json.empty()) check_writable("--json", files.json);
   if (!files.report.empty()) {
     if (const std::string missing = lab::page_missing(); !missing.empty())

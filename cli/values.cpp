@@ -93,6 +93,11 @@ void check_writable(const std::string& option, const std::string& path) {
         path, folder.string()));
 }
 
+void check_is_no_output(const std::string& option, const std::string& path) {
+  if (path == "-")
+    throw Unusable(fmt::format("{} is '-', but the tables go to standard output; expected a file", option));
+}
+
 void check_is_other_file(const std::string& option, const std::string& path, const std::string& input) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(input, ignored) && std::filesystem::equivalent(path, input, ignored))

@@ -35,6 +35,9 @@ std::string is_seed(const std::string& text);
 /// output ("-") is not looked at.
 void check_writable(const std::string& option, const std::string& path);
 
+/// Throws Unusable if `path` is standard output ("-"), where the verb prints its tables.
+void check_is_no_output(const std::string& option, const std::string& path);
+
 /// Throws Unusable if what is to be written at `path` is the file at `input`, whatever the paths.
 void check_is_other_file(const std::string& option, const std::string& path, const std::string& input);
 

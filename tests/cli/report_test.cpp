@@ -117,6 +117,7 @@ TEST(ResultFiles, AreNotWrittenAmongTheTables) {
   expect_refused("compare", {{{"--json", "-"}, {"--json is '-'", "expected a file"}},
                              {{"--report", "-"}, {"--report is '-'", "expected a file"}}});
   expect_refused("experiment", {{{"--json", "-"}, {"--json is '-'", "expected a file"}}});
+  expect_refused("advise", {{{"uniform", "--json", "-"}, {"--json is '-'", "expected a file"}}});
 }
 
 }  // namespace
