@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <iosfwd>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct LawCase {
   const Algorithm* algorithm;
   int dimension;
 };
+
+/// Each of these algorithms, in every dimension that it does.
+std::vector<LawCase> cases_of(std::span<const Algorithm> algorithms);
 
 /// Every algorithm of the catalogue, in every dimension that it does.
 const std::vector<LawCase>& law_cases();

@@ -28,7 +28,7 @@
 #include "files.hpp"
 #include "lab/measure/allocation.hpp"
 #include "lab/readers/format.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

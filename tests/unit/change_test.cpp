@@ -14,7 +14,7 @@
 #include "broadside/filter.hpp"
 #include "broadside/sinks.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "lab/scenes/scene.hpp"
 #include "lab/verify.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 #include "use.hpp"
 #include "wrong_algorithm.hpp"
 

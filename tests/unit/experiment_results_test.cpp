@@ -8,7 +8,7 @@
 
 #include "lab/experiments/results.hpp"
 #include "lab/readers/format.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

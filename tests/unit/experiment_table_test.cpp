@@ -9,7 +9,7 @@
 
 #include "lab/experiments/growth.hpp"
 #include "lab/experiments/table.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

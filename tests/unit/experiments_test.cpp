@@ -16,7 +16,7 @@
 #include "broadside/error.hpp"
 
 #include "lab/experiments/results.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

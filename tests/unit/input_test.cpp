@@ -15,8 +15,8 @@
 
 #include "files.hpp"
 #include "lab/readers/format.hpp"
-#include "message.hpp"
 #include "pipe.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/readers/format.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

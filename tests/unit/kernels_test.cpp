@@ -17,8 +17,8 @@
 #include "broadside/sinks.hpp"
 
 #include "kernels/sweep.hpp"
-#include "message.hpp"
 #include "tests/instruction_sets.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::kernels {
 namespace {

@@ -13,7 +13,7 @@
 #include "lab/readers/descriptions.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/scenes/descriptions.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

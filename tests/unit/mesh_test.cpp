@@ -13,7 +13,7 @@
 #include "files.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/readers/swept_mesh.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -13,7 +13,7 @@
 #include "broadside/error.hpp"
 
 #include "lab/catalogue.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/readers/format.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -2,14 +2,12 @@
 #include "broadside/queries.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -17,7 +15,7 @@
 
 #include "broadside/error.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {
@@ -248,25 +246,6 @@ TEST(BoxIndex, DoesNotGrowUnderChurn) {
     if (frame == 200) bytes = index->bytes();
   }
   EXPECT_LE(index->bytes(), bytes + bytes / 4);
-}
-
-TEST(BoxIndexThreads, MayAllAskAtOnce) {
-  const std::vector<Box2> boxes = row(3000);
-  const auto index = index_of(boxes);
-  std::array<std::size_t, 4> found{};
-  std::vector<std::thread> threads;
-  for (std::size_t& count : found) {
-    threads.emplace_back([&index, &count] {
-      for (int i = 0; i < 50; ++i) {
-        const auto at = static_cast<float>(i * 100);
-        index->overlapping({{at, 0}, {at + 60, 1}}, [&count](BoxId) { ++count; });
-        if (index->first_hit(Ray<2>{{at, 0.5f}, {1, 0}})) ++count;
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_GT(found[0], 0U);
-  EXPECT_THAT(found, testing::Each(found[0]));
 }
 
 }  // namespace

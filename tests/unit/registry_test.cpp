@@ -9,7 +9,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

@@ -16,7 +16,7 @@
 #include "broadside/world.hpp"
 
 #include "lab/scenes/motion.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 #include "wrong_algorithm.hpp"
 
 namespace broadside {

@@ -14,7 +14,7 @@
 #include "broadside/world.hpp"
 
 #include "lab/scenes/random.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "broadside/error.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

@@ -22,8 +22,8 @@
 #include "lab/readers/format.hpp"
 #include "lab/readers/trace.hpp"
 #include "lab/scenes/motion.hpp"
-#include "message.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

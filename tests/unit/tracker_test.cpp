@@ -12,7 +12,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

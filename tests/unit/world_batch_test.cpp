@@ -9,7 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

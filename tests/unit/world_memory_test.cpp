@@ -1,13 +1,11 @@
 // World: what it holds, what it gives back, and that a steady state takes no memory.
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <ostream>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -225,27 +223,6 @@ TEST_P(WorldSteadyState, TakesNoMemory) {
 
 INSTANTIATE_TEST_SUITE_P(Own, WorldSteadyState, testing::ValuesIn(steady_cases()),
                          [](const auto& of) { return of.param.name; });
-
-TEST(WorldThreads, MayReadAtTheSameTime) {
-  World2 world("brute_force");
-  const std::vector<Handle> handles = fill(world, 500);
-  world.update();
-  for (int round = 0; round < 10; ++round) {
-    world.move(handles[100], in_row(round % 2 == 0 ? 100 : 1000));
-    world.add(in_row(7));
-    world.update();
-    std::vector<std::thread> readers;
-    std::array<std::size_t, 4> sums{};
-    for (std::size_t& sum : sums) {
-      readers.emplace_back([&world, &handles, &sum] {
-        sum = world.pairs().size() + world.persisting().size() + world.statistics().bytes.total();
-        for (const Handle handle : handles) sum += world.contains(handle) && world.box(handle).min[0] >= 0;
-      });
-    }
-    for (std::thread& reader : readers) reader.join();
-    EXPECT_EQ(world.pairs().size(), world.statistics().pairs);
-  }
-}
 
 }  // namespace
 }  // namespace broadside

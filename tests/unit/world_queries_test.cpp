@@ -1,7 +1,5 @@
 // World's queries: in terms of handles, about the boxes as they are now.
 #include <algorithm>
-#include <array>
-#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -117,24 +115,6 @@ TEST(WorldQueries, FollowChurn) {
   world.update();
   world.update();
   EXPECT_THAT(overlapping(world, everywhere), IsEmpty());
-}
-
-TEST(WorldQueriesThreads, MayAllAskFirst) {
-  World2 world;
-  for (int i = 0; i < 2000; ++i) {
-    const auto at = static_cast<float>(i);
-    world.add({{at, 0}, {at + 0.5f, 1}});
-  }
-  for (int frame = 0; frame < 3; ++frame) {
-    world.add({{-1, 0}, {0, 1}});
-    world.update();
-    std::array<std::size_t, 4> found{};
-    std::vector<std::thread> threads;
-    for (std::size_t& count : found)
-      threads.emplace_back([&world, &count] { count = overlapping(world, everywhere).size(); });
-    for (std::thread& thread : threads) thread.join();
-    EXPECT_THAT(found, testing::Each(2001U + static_cast<std::size_t>(frame)));
-  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "broadside/error.hpp"
 
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside {
 namespace {

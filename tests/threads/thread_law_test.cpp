@@ -15,8 +15,8 @@
 #include "dice.hpp"
 #include "executors.hpp"
 #include "hard_inputs.hpp"
-#include "lab/verify.hpp"
 #include "law_case.hpp"
+#include "whole_frames.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -232,7 +232,7 @@ TEST_P(ThreadLaw, LetsThroughWhatAnExecutorThrowsAndATrackerDeliversThatFrameAft
     EXPECT_TRUE(begun.empty());
     tracker->set_workers(workers(2));
     tracker->update({boxes, {}}, begun_pairs, ended);
-    EXPECT_EQ(begun, lab::reference_pairs<D>(boxes));
+    EXPECT_EQ(begun, pairs_of(WholeFrame<D>{.boxes = boxes}));
     EXPECT_EQ(ended.count(), 0u);
   });
 }
@@ -256,12 +256,12 @@ TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
 
 /// The algorithms that can use several threads: all of our own.
 std::vector<LawCase> threaded_cases() {
-  std::vector<LawCase> cases = law_cases();
+  std::vector<LawCase> cases = cases_of(algorithms());
   std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, ThreadLaw, testing::ValuesIn(threaded_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Own, ThreadLaw, testing::ValuesIn(threaded_cases()), case_name);
 
 TEST(ThreadLawCases, AreSome) { EXPECT_FALSE(threaded_cases().empty()); }
 

@@ -14,7 +14,7 @@
 #include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::core {
 namespace {
