@@ -1,0 +1,276 @@
+// Casts through a tree of boxes, sixteen children at a time, written once for every instruction set.
+//
+// Slabs after T. Kay and J. Kajiya, "Ray tracing complex scenes" (1986). Bounds are tested with
+// multiplications by an inverse and a margin above what these can be wrong by, so that no box is lost that
+// the definition, with divisions, lets be met.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/query_tree_casts.cpp"
+#include <algorithm>
+
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/query_lanes.hpp"
+#include "kernels/query_tree.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace {
+
+/// By how much what is multiplied may differ from what is divided: some roundings, and some of numbers that
+/// are not normal.
+constexpr float margin = 1 + 0x1p-20f;
+constexpr float least = 0x1p-126f;
+
+/// Appends as append() does, and to `entries_to` where these children are entered.
+template <int D>
+HWY_INLINE std::size_t append_entries(const QueryNode<D>& node, std::size_t at, FloatMask mask,
+                                      FloatVector entries, std::uint32_t* to, float* entries_to) {
+  const auto hits = hn::RebindMask(Numbers(), mask);
+  const auto bits = hn::BitCast(Numbers(), entries);
+  hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), entries_to);
+  return append(node, at, mask, to);
+}
+
+/// Brings a node that will be looked at into the cache, while others are looked at.
+template <int D>
+HWY_INLINE void fetch(const QueryNode<D>& node) {
+  for (std::size_t line = 0; line < sizeof(node); line += 64)
+    hwy::Prefetch(reinterpret_cast<const char*>(&node) + line);
+}
+
+/// A cast, in every lane.
+template <int D>
+struct Cast {
+  HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast_(query) {
+    for (int axis = 0; axis < D; ++axis) {
+      const bool is_back = query.course[axis] == Course::backward ||
+                           (query.course[axis] == Course::unknown && query.direction[axis] < 0);
+      // What comes first of the cast box meets what comes first of the other one.
+      near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
+      far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
+      inverse_[axis] = all(query.inverse[axis]);
+      near_bound_at_[axis] = (is_back ? D + axis : axis) * node_width;
+      far_bound_at_[axis] = (is_back ? axis : D + axis) * node_width;
+    }
+  }
+
+  /// Which children from `at` on may be met up to `furthest`, which is what `limit` is made of.
+  HWY_INLINE FloatMask may_meet(const QueryNode<D>& node, std::size_t at, FloatVector limit,
+                                FloatVector& enter) const {
+    FloatVector leave = all(infinity);
+    enter = hn::Zero(Floats());
+    FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));  // not NaN
+    for (int axis = 0; axis < D; ++axis) {
+      if (HWY_UNLIKELY(cast_.course[axis] >= Course::still)) {
+        if (cast_.course[axis] == Course::still) hits = hn::And(hits, overlaps(node, axis, at));
+        continue;
+      }
+      enter = hn::Max(enter, hn::Mul(hn::Sub(near_bound(node, axis, at), near_side_[axis]), inverse_[axis]));
+      leave = hn::Min(leave, hn::Mul(hn::Sub(far_bound(node, axis, at), far_side_[axis]), inverse_[axis]));
+    }
+    leave = hn::MulAdd(leave, all(margin), all(least));
+    return hn::And(hits, hn::Le(enter, hn::Min(leave, limit)));
+  }
+
+  /// Which children from `at` on are met up to `furthest`, by the definition.
+  HWY_INLINE FloatMask meets(const QueryNode<D>& node, std::size_t at, FloatVector furthest,
+                             FloatVector& enter) const {
+    FloatVector leave = furthest;
+    enter = hn::Zero(Floats());
+    FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));
+    for (int axis = 0; axis < D; ++axis) {
+      if (HWY_UNLIKELY(cast_.course[axis] == Course::still)) {
+        hits = hn::And(hits, overlaps(node, axis, at));
+        continue;
+      }
+      const FloatVector direction = all(cast_.direction[axis]);
+      enter = hn::Max(enter, hn::Div(hn::Sub(near_bound(node, axis, at), near_side_[axis]), direction));
+      leave = hn::Min(leave, hn::Div(hn::Sub(far_bound(node, axis, at), far_side_[axis]), direction));
+    }
+    return hn::And(hits, hn::Le(enter, leave));
+  }
+
+  /// Appends the boxes of a leaf that are met (or may be, where the cast is not exact) to what was found.
+  HWY_INLINE void leaf(const QueryNode<D>& node, FoundBoxes& found, FloatVector limit) const {
+    const FloatVector furthest = all(found.furthest);
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      FloatMask hits = may_meet(node, at, limit, enter);
+      if (cast_.exact) {
+        if (hn::AllFalse(Floats(), hits)) continue;
+        hits = meets(node, at, furthest, enter);
+      }
+      // What is -0.0 becomes 0.0.
+      const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
+      found.count += append_entries(node, at, hits, entries, found.ids.data() + found.count,
+                                    found.entries.data() + found.count);
+    }
+  }
+
+  /// As far as bounds may count if boxes do up to `furthest`.
+  static HWY_INLINE FloatVector limit(float furthest) { return all(furthest * margin + least); }
+
+ private:
+  HWY_INLINE FloatVector near_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at_[axis] + at);
+  }
+  HWY_INLINE FloatVector far_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at_[axis] + at);
+  }
+  HWY_INLINE FloatMask overlaps(const QueryNode<D>& node, int axis, std::size_t at) const {
+    return hn::And(hn::Le(load(node.min[axis], at), near_side_[axis]),
+                   hn::Le(far_side_[axis], load(node.max[axis], at)));
+  }
+
+  const CastQuery<D>& cast_;
+  FloatVector near_side_[D];
+  FloatVector far_side_[D];
+  FloatVector inverse_[D];
+  // Where in a node the bounds stand that a cast meets first and last, counted in floats: no branch on a
+  // direction.
+  std::size_t near_bound_at_[D];
+  std::size_t far_bound_at_[D];
+};
+
+template <int D>
+bool met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+  const Cast<D> cast(query);
+  const FloatVector limit = Cast<D>::limit(found.furthest);
+  std::uint32_t waiting[(longest_path + 1) * node_width];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      cast.leaf(node, found, limit);
+      if (found.count >= found.full && !found.take()) return false;
+      continue;
+    }
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      const FloatMask hits = cast.may_meet(node, at, limit, enter);
+      count += append(node, at, hits, waiting + count);
+    }
+  }
+  return true;
+}
+
+/// A node that waits, and where it is entered, in the high half: bits of positive floats order as they do.
+using Waiting = std::uint64_t;
+
+HWY_INLINE float entry_of(Waiting waiting) {
+  const auto bits = static_cast<std::uint32_t>(waiting >> 32);
+  float value;
+  hwy::CopyBytes<sizeof(value)>(&bits, &value);
+  return value;
+}
+
+/// Sorts in descending order. Nearly always there are two or three, which no branch is to depend on.
+HWY_INLINE void sort_descending(Waiting* list, std::size_t count) {
+  const auto order = [list](std::size_t i, std::size_t j) HWY_ATTR {
+    const Waiting greater = std::max(list[i], list[j]);
+    list[j] = std::min(list[i], list[j]);
+    list[i] = greater;
+  };
+  if (count < 2) return;
+  order(0, 1);
+  if (count == 2) return;
+  order(1, 2);
+  order(0, 1);
+  for (std::size_t i = 3; i < count; ++i) {
+    const Waiting inserted = list[i];
+    std::size_t to = i;
+    for (; to > 0 && list[to - 1] < inserted; --to) list[to] = list[to - 1];
+    list[to] = inserted;
+  }
+}
+
+template <int D>
+void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+  const Cast<D> cast(query);
+  FloatVector limit = Cast<D>::limit(found.furthest);
+  Waiting waiting[(longest_path + 1) * node_width];
+  std::uint32_t children[2 * node_width];
+  std::uint32_t entries[2 * node_width];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    --count;
+    if (!(entry_of(waiting[count]) <= hn::GetLane(limit))) continue;
+    const auto number = static_cast<std::uint32_t>(waiting[count]);
+    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      cast.leaf(node, found, limit);
+      if (found.count == 0) continue;
+      found.take();
+      limit = Cast<D>::limit(found.furthest);
+      continue;
+    }
+    std::size_t size = 0;
+    for (std::size_t at = 0; at < node_width; at += lanes) {
+      FloatVector enter;
+      const FloatMask mask = cast.may_meet(node, at, limit, enter);
+      const auto hits = hn::RebindMask(Numbers(), mask);
+      const auto bits = hn::BitCast(Numbers(), hn::Add(enter, hn::Zero(Floats())));  // no -0.0
+      hn::StoreU(compress(Numbers(), bits, hits), Numbers(), entries + size);
+      size += append(node, at, mask, children + size);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      waiting[count + i] = Waiting{entries[i]} << 32 | children[i];
+      fetch(tree.nodes[children[i] & ~leaf_bit]);
+    }
+    // The nearest one last, where it is taken from.
+    sort_descending(waiting + count, size);
+    count += size;
+  }
+}
+
+}  // namespace
+
+// What the dispatch below can name: no templates.
+bool met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  return met(tree, cast, found);
+}
+bool met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  return met(tree, cast, found);
+}
+void first_met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  first_met(tree, cast, found);
+}
+void first_met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  first_met(tree, cast, found);
+}
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace broadside::kernels {
+
+HWY_EXPORT(met_2);
+HWY_EXPORT(met_3);
+HWY_EXPORT(first_met_2);
+HWY_EXPORT(first_met_3);
+
+template <>
+bool find_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(met_2)(tree, cast, found);
+}
+template <>
+bool find_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(met_3)(tree, cast, found);
+}
+template <>
+void find_first_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(first_met_2)(tree, cast, found);
+}
+template <>
+void find_first_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(first_met_3)(tree, cast, found);
+}
+
+}  // namespace broadside::kernels
+#endif  // HWY_ONCE
