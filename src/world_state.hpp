@@ -1,5 +1,5 @@
 // What a World keeps. Its members are in world.cpp (boxes), world_batch.cpp, world_filters.cpp,
-// world_update.cpp, world_memory.cpp, world_pairs.cpp and world_snapshot.cpp.
+// world_update.cpp, world_memory.cpp, world_pairs.cpp, world_queries.cpp and world_snapshot*.cpp.
 #pragma once
 
 #include <algorithm>
@@ -113,7 +113,7 @@ struct World<D, Real>::State {
     void get(core::ByteReader& in, const Frame<D, Real>& now);
   };
 
-  // world_snapshot.cpp and world_snapshot_restore.cpp.
+  // world_snapshot.cpp, world_snapshot_restore.cpp and world_snapshot_tracker.cpp.
   void put(core::ByteWriter& out, std::span<const HandlePair> pairs_now) const;
   static std::unique_ptr<State> get(core::ByteReader& in, const State& like, LastFrame& last);
   void get_slots(core::ByteReader& in);
