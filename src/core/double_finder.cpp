@@ -7,13 +7,12 @@
 #include <numeric>
 #include <utility>
 
-#include "core/filter_sink.hpp"
+#include "core/exact_sink.hpp"
 
 namespace broadside::core {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double largest = std::numeric_limits<float>::max();
 
 /// Half of a float's last place, relative to the number.
 constexpr double rounding = 0x1p-24;
@@ -34,138 +33,7 @@ constexpr double boxes_per_bucket = 64;
 template <int D>
 constexpr double most_buckets_per_side = D == 2 ? 181 : 31;
 
-/// So many pairs before a box is looked up, its floats are asked for.
-constexpr std::size_t looked_ahead = 32;
-
-void prefetch([[maybe_unused]] const void* address) {
-#ifdef __GNUC__  // clang says so as well
-  __builtin_prefetch(address);
-#endif
-}
-
-/// `value` as a float about `origin`. Rises with the value, and is finite.
-float rounded(double value, double origin) {
-  return static_cast<float>(std::clamp(value - origin, -largest, largest));
-}
-
 }  // namespace
-
-/// Keeps of the float finder's pairs those that overlap in double and belong to the region. All boxes of a
-/// region begin before its end on every axis, so only where it begins needs a test.
-template <int D>
-class DoubleFinder<D>::ExactSink final : public FilterSink {
- public:
-  /// `left_count` as in a PairFinder; pairs of the float finder are then places among left and among right
-  /// boxes.
-  ExactSink(const DoubleFinder& owner, std::size_t left_count, const Region& region,
-            const std::array<Axis, D>& axes, PairSink& target)
-      : FilterSink(target), owner_(&owner), left_count_(left_count) {
-    for (int axis = 0; axis < D; ++axis) {
-      bounded_ = bounded_ || region.begin[axis] > -infinity;
-      begin_[axis] = region.begin[axis];
-      rounded_begin_[axis] = rounded(region.begin[axis], axes[axis].origin);
-    }
-    exact_ = owner.exact_ && !bounded_;
-  }
-
-  /// The same onto another target.
-  ExactSink(const ExactSink& other, PairSink& target)
-      : FilterSink(target),
-        owner_(other.owner_),
-        left_count_(other.left_count_),
-        bounded_(other.bounded_),
-        exact_(other.exact_),
-        begin_(other.begin_),
-        rounded_begin_(other.rounded_begin_) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<ExactSink>(*this, target);
-  }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    while (!pairs.empty()) {
-      const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target().room(count);
-      target().commit(keep(pairs.first(count), out));
-      pairs = pairs.subspan(count);
-    }
-  }
-
-  /// Writes those of up to max_room pairs that are to be kept, as ids, and returns how many.
-  std::size_t keep(std::span<const Pair> pairs, Pair* out) const {
-    // Without jumps, since what a predictor cannot know are the order of ids and, where many boxes touch,
-    // which pairs are certain.
-    std::array<Pair, max_room> uncertain;
-    std::array<std::uint32_t, max_room> before;  // how many are kept before it
-    std::size_t uncertain_count = 0;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Pair ahead = pairs[std::min(i + looked_ahead, pairs.size() - 1)];
-      fetch(index(ahead.first));
-      fetch(left_count_ + index(ahead.second));
-      const std::size_t a = index(pairs[i].first);
-      const std::size_t b = left_count_ + index(pairs[i].second);
-      const std::uint32_t first = owner_->ids_[a];
-      const std::uint32_t second = owner_->ids_[b];
-      const std::uint32_t lesser = std::min(first, second);
-      const Pair pair = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
-      const bool certain = exact_ || is_pair_for_certain(owner_->floats_[a], owner_->floats_[b]);
-      uncertain[uncertain_count] = pair;
-      before[uncertain_count] = static_cast<std::uint32_t>(kept);
-      uncertain_count += static_cast<std::size_t>(!certain);
-      out[kept] = pair;
-      kept += static_cast<std::size_t>(certain);
-    }
-    std::size_t accepted = 0;
-    for (std::size_t i = 0; i < uncertain_count; ++i) {
-      const Pair pair = uncertain[i];
-      uncertain[accepted] = pair;
-      before[accepted] = before[i];
-      accepted += static_cast<std::size_t>(
-          is_pair(owner_->boxes_[index(pair.first)], owner_->boxes_[index(pair.second)]));
-    }
-    // They go where they were found, so that the order does not depend on where a chunk of pairs ends.
-    std::size_t end = kept;
-    for (std::size_t i = accepted; i > 0; --i) {
-      const std::size_t begin = before[i - 1];
-      std::move_backward(out + begin, out + end, out + end + i);
-      out[begin + i - 1] = uncertain[i - 1];
-      end = begin;
-    }
-    return kept + accepted;
-  }
-
-  /// Starts to load what is looked up of a box.
-  void fetch(std::size_t place) const {
-    prefetch(&owner_->ids_[place]);
-    prefetch(&owner_->floats_[place]);
-  }
-
-  /// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
-  bool is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
-    bool certain = true;
-    for (int axis = 0; axis < D; ++axis) {
-      certain &= a.min[axis] < b.max[axis];
-      certain &= b.min[axis] < a.max[axis];
-      certain &= !bounded_ || std::max(a.min[axis], b.min[axis]) > rounded_begin_[axis];
-    }
-    return certain;
-  }
-
-  bool is_pair(const Box<D, double>& a, const Box<D, double>& b) const {
-    bool here = overlap(a, b);
-    for (int axis = 0; axis < D; ++axis) here &= std::max(a.min[axis], b.min[axis]) >= begin_[axis];
-    return here;
-  }
-
-  const DoubleFinder* owner_;
-  std::size_t left_count_;
-  bool bounded_ = false;  // whether the region begins anywhere, on any axis
-  bool exact_;            // whether every pair of the float finder is one
-  std::array<double, D> begin_;
-  std::array<float, D> rounded_begin_;
-};
 
 template <int D>
 DoubleFinder<D>::DoubleFinder(std::unique_ptr<PairFinder<D>> finder) : finder_(std::move(finder)) {
@@ -315,7 +183,9 @@ template <int D>
 void DoubleFinder<D>::search_floats(const Places& places, const Region& region,
                                     const std::array<Axis, D>& axes, PairSink& pairs) {
   const std::size_t left = gather(places, axes);
-  ExactSink exact(*this, left, region, axes, pairs);
+  std::array<double, D> origin;
+  for (int axis = 0; axis < D; ++axis) origin[axis] = axes[axis].origin;
+  ExactSink<D> exact({boxes_, ids_, floats_, left, exact_}, region.begin, origin, pairs);
   const std::span<const Box<D>> floats = floats_;
   if (this->left_count() == 0)
     finder_->find(floats, exact);

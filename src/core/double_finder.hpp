@@ -56,8 +56,6 @@ class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, doub
     }
   };
 
-  class ExactSink;
-
   void find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) override;
 
   /// As if all boxes were one region, whose origin is the first box that has one.

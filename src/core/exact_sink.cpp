@@ -1,0 +1,130 @@
+// Which pairs of rounded boxes are pairs of boxes of doubles.
+#include "core/exact_sink.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace broadside::core {
+namespace {
+
+/// So many pairs before a box is looked up, its floats are asked for.
+constexpr std::size_t looked_ahead = 32;
+
+void prefetch([[maybe_unused]] const void* address) {
+#ifdef __GNUC__  // clang says so as well
+  __builtin_prefetch(address);
+#endif
+}
+
+}  // namespace
+
+template <int D>
+ExactSink<D>::ExactSink(const RoundedBoxes<D>& rounded_boxes, const std::array<double, D>& begin,
+                        const std::array<double, D>& origin, PairSink& target)
+    : FilterSink(target), of_(rounded_boxes), begin_(begin) {
+  for (int axis = 0; axis < D; ++axis) {
+    bounded_ = bounded_ || begin[axis] > -std::numeric_limits<double>::infinity();
+    rounded_begin_[axis] = rounded(begin[axis], origin[axis]);
+  }
+  exact_ = of_.exact && !bounded_;
+}
+
+template <int D>
+ExactSink<D>::ExactSink(const ExactSink& other, PairSink& target)
+    : FilterSink(target),
+      of_(other.of_),
+      bounded_(other.bounded_),
+      exact_(other.exact_),
+      begin_(other.begin_),
+      rounded_begin_(other.rounded_begin_) {}
+
+template <int D>
+std::unique_ptr<FilterSink> ExactSink<D>::onto(PairSink& target) const {
+  return std::make_unique<ExactSink>(*this, target);
+}
+
+template <int D>
+void ExactSink<D>::consume(std::span<const Pair> pairs) {
+  while (!pairs.empty()) {
+    const std::size_t count = std::min(pairs.size(), max_room);
+    Pair* const out = target().room(count);
+    target().commit(keep(pairs.first(count), out));
+    pairs = pairs.subspan(count);
+  }
+}
+
+/// Writes those of up to max_room pairs that are to be kept, as ids, and returns how many.
+template <int D>
+std::size_t ExactSink<D>::keep(std::span<const Pair> pairs, Pair* out) const {
+  // Without jumps, since what a predictor cannot know are the order of ids and, where many boxes touch,
+  // which pairs are certain.
+  std::array<Pair, max_room> uncertain;
+  std::array<std::uint32_t, max_room> before;  // how many are kept before it
+  std::size_t uncertain_count = 0;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Pair ahead = pairs[std::min(i + looked_ahead, pairs.size() - 1)];
+    fetch(index(ahead.first));
+    fetch(of_.left_count + index(ahead.second));
+    const std::size_t a = index(pairs[i].first);
+    const std::size_t b = of_.left_count + index(pairs[i].second);
+    const std::uint32_t first = of_.ids[a];
+    const std::uint32_t second = of_.ids[b];
+    const std::uint32_t lesser = std::min(first, second);
+    const Pair pair = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
+    const bool certain = exact_ || is_pair_for_certain(of_.floats[a], of_.floats[b]);
+    uncertain[uncertain_count] = pair;
+    before[uncertain_count] = static_cast<std::uint32_t>(kept);
+    uncertain_count += static_cast<std::size_t>(!certain);
+    out[kept] = pair;
+    kept += static_cast<std::size_t>(certain);
+  }
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < uncertain_count; ++i) {
+    const Pair pair = uncertain[i];
+    uncertain[accepted] = pair;
+    before[accepted] = before[i];
+    accepted +=
+        static_cast<std::size_t>(is_pair(of_.boxes[index(pair.first)], of_.boxes[index(pair.second)]));
+  }
+  // They go where they were found, so that the order does not depend on where a chunk of pairs ends.
+  std::size_t end = kept;
+  for (std::size_t i = accepted; i > 0; --i) {
+    const std::size_t begin = before[i - 1];
+    std::move_backward(out + begin, out + end, out + end + i);
+    out[begin + i - 1] = uncertain[i - 1];
+    end = begin;
+  }
+  return kept + accepted;
+}
+
+/// Starts to load what is looked up of a box.
+template <int D>
+void ExactSink<D>::fetch(std::size_t place) const {
+  prefetch(&of_.ids[place]);
+  prefetch(&of_.floats[place]);
+}
+
+/// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
+template <int D>
+bool ExactSink<D>::is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
+  bool certain = true;
+  for (int axis = 0; axis < D; ++axis) {
+    certain &= a.min[axis] < b.max[axis];
+    certain &= b.min[axis] < a.max[axis];
+    certain &= !bounded_ || std::max(a.min[axis], b.min[axis]) > rounded_begin_[axis];
+  }
+  return certain;
+}
+
+template <int D>
+bool ExactSink<D>::is_pair(const Box<D, double>& a, const Box<D, double>& b) const {
+  bool here = overlap(a, b);
+  for (int axis = 0; axis < D; ++axis) here &= std::max(a.min[axis], b.min[axis]) >= begin_[axis];
+  return here;
+}
+
+template class ExactSink<2>;
+template class ExactSink<3>;
+
+}  // namespace broadside::core
