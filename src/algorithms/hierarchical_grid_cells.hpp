@@ -1,5 +1,5 @@
-// What a hierarchical grid keeps: levels of cells, for boxes of about one size each, and blocks of sixteen
-// boxes, which boxes are put into, moved in and taken from.
+// What a hierarchical grid keeps: cells with blocks of sixteen boxes, which boxes are put into, moved in and
+// taken from.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "algorithms/hierarchical_grid_levels.hpp"
 #include "core/grow.hpp"
-#include "core/sample.hpp"
 #include "kernels/cell_blocks.hpp"
 
 namespace broadside::own {
@@ -30,7 +30,7 @@ class HierarchicalGridCells {
   }
 
   /// Files a box that is there, under an id that is not filed. O(1).
-  void insert(BoxId id, const Box<D>& box) { put(id, box, level_of(box), false); }
+  void insert(BoxId id, const Box<D>& box) { put(id, box, levels_.level_of(box), false); }
 
   /// The filed box has moved: until it is settled, it is met by whoever meets one of the two. What is left
   /// where it was goes with drop_stale(). O(1).
@@ -40,7 +40,7 @@ class HierarchicalGridCells {
   void remove(BoxId id, const Box<D>& before);
 
   /// Files a new box as one that moves.
-  void add(BoxId id, const Box<D>& box) { put(id, box, level_of(box), true); }
+  void add(BoxId id, const Box<D>& box) { put(id, box, levels_.level_of(box), true); }
 
   /// The box, which has moved before, is now at rest here.
   void settle(BoxId id, const Box<D>& box);
@@ -48,12 +48,10 @@ class HierarchicalGridCells {
   /// Takes away what has moved elsewhere or is gone. O(as many).
   void drop_stale();
 
-  kernels::CellsView<D> view() const {
-    return {{levels_.data(), level_count_}, first_.data(), heads_.data(), blocks_.data()};
-  }
+  kernels::CellsView<D> view() const { return {levels_.all(), first_.data(), heads_.data(), blocks_.data()}; }
 
   /// The length of the smallest cells.
-  const std::array<float, D>& smallest_cell() const { return smallest_; }
+  const std::array<float, D>& smallest_cell() const { return levels_.smallest_cell(); }
 
   /// Where a filed box is: its place among those of all blocks.
   std::uint32_t place(BoxId id) const { return place_[index(id)]; }
@@ -64,30 +62,15 @@ class HierarchicalGridCells {
 
  private:
   using Block = kernels::CellBlock<D>;
-  using Level = kernels::CellLevel<D>;
 
-  std::size_t level_of(const Box<D>& box) const;
-  void choose_levels(std::span<const Box<D>> like);
-  void measure(std::span<const Box<D>> like);
-  void lay_out(std::size_t level);
-  bool disperse_crowds();
   void file(std::span<const Box<D>> boxes);
   void put(BoxId id, const Box<D>& box, std::size_t level, bool is_moving);
   void reserve_blocks(std::size_t count);
   std::uint32_t new_block(std::uint32_t cell);
   void write(std::uint32_t place, const Box<D>& box);
   void close_hole(std::uint32_t place);
-  void widen(Level& level, std::size_t index_of_level, const Box<D>& box);
 
-  core::Sample<D> sample_;
-  std::vector<Box<D>> sampled_;
-  std::array<float, D> typical_{};  // lengths of boxes, or more where they lie further apart
-  std::array<float, D> inverse_typical_{};
-  std::array<float, D> smallest_{};
-  std::array<Level, kernels::most_cell_levels> levels_{};
-  std::array<double, kernels::most_cell_levels> factor_{};  // a cell's length in units of the longest box
-  std::array<std::uint32_t, kernels::most_cell_levels> expected_{};  // how many boxes the cells are for
-  std::size_t level_count_ = 1;
+  HierarchicalGridLevels<D> levels_;
   std::vector<std::uint32_t> first_;  // by cell: its first block, the only one that may have room
   std::vector<kernels::BlockHead> heads_;
   std::vector<Block> blocks_;

@@ -1,0 +1,92 @@
+// The levels of a hierarchical grid: cells of one length each, for boxes of about one size.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+#include "core/sample.hpp"
+#include "kernels/cell_blocks.hpp"
+
+namespace broadside::own {
+
+/// The last level is one cell: it is for boxes that are about as long as all is.
+template <int D>
+class HierarchicalGridLevels {
+ public:
+  using Level = kernels::CellLevel<D>;
+
+  /// Chooses levels that suit `like`. O(n).
+  void choose(std::span<const Box<D>> like);
+
+  /// Lays out the cells of the levels chosen, smaller ones where disperse_crowds() has said so. Returns how
+  /// many there are on all levels.
+  std::uint32_t lay_out();
+
+  /// Where a box of a level is among too many others of its cell, by `counts` of boxes by cell, makes the
+  /// level's cells smaller from the next layout on. Whether there was one. O(cells).
+  bool disperse_crowds(std::span<const std::uint32_t> counts);
+
+  /// Says that there are no boxes on any level.
+  void clear() {
+    for (Level& level : levels_) level.boxes = 0;
+  }
+
+  /// The level that a box belongs to.
+  std::size_t level_of(const Box<D>& box) const {
+    float size = 0;
+    for (int axis = 0; axis < D; ++axis)
+      size = std::max(size, (box.max[axis] - box.min[axis]) * inverse_typical_[axis]);
+    std::size_t level = 0;
+    for (float border = first_border; size > border && level + 1 < count_; border *= level_ratio) ++level;
+    return level;
+  }
+
+  /// Says that the level has a box as long as this one. The last one is searched whole, whatever is on it.
+  void widen(std::size_t index, const Box<D>& box) {
+    if (index + 1 == count_) return;
+    Level& level = levels_[index];
+    for (int axis = 0; axis < D; ++axis) {
+      const float extent = box.max[axis] - box.min[axis];
+      if (extent >= level.extent[axis])
+        level.extent[axis] = std::nextafter(extent, std::numeric_limits<float>::infinity());
+    }
+  }
+
+  Level& operator[](std::size_t level) { return levels_[level]; }
+  std::size_t count() const { return count_; }
+  std::span<const Level> all() const { return {levels_.data(), count_}; }
+
+  /// The length of the smallest cells.
+  const std::array<float, D>& smallest_cell() const { return smallest_; }
+
+  std::size_t bytes() const noexcept { return sampled_.capacity() * sizeof(Box<D>); }
+
+ private:
+  /// How much longer than a typical box those of the first level may be, and those of each further level
+  /// than those of the one before.
+  static constexpr float first_border = 2;
+  static constexpr float level_ratio = 4;
+
+  void measure(std::span<const Box<D>> like);
+  void lay_out_level(std::size_t level);
+
+  core::Sample<D> sample_;
+  std::vector<Box<D>> sampled_;
+  std::array<float, D> typical_{};  // lengths of boxes, or more where they lie further apart
+  std::array<float, D> inverse_typical_{};
+  std::array<float, D> smallest_{};
+  std::array<Level, kernels::most_cell_levels> levels_{};
+  std::array<double, kernels::most_cell_levels> factor_{};  // a cell's length in units of the longest box
+  std::array<std::uint32_t, kernels::most_cell_levels> expected_{};  // how many boxes the cells are for
+  std::size_t count_ = 1;
+};
+
+}  // namespace broadside::own
