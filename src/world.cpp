@@ -9,6 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/shadow.hpp"
 
+#include "core/encloses.hpp"
 #include "core/input_check.hpp"
 #include "world_state.hpp"
 
@@ -23,14 +24,6 @@ Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
     box.max[axis] += margin;
   }
   return box;
-}
-
-template <int D, typename Real>
-bool encloses(const Box<D, Real>& outer, const Box<D, Real>& inner) noexcept {
-  bool encloses = true;
-  for (int axis = 0; axis < D; ++axis)
-    encloses &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
-  return encloses;
 }
 
 /// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
@@ -261,7 +254,9 @@ void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& give
   boxes[slot] = box;
   if (!has_margin()) return;
   Box<D, Real>& seen = enlarged[slot];
-  if (!is_absent(seen) && encloses(seen, box) && encloses(enlarge(box, most_margins * margin), seen)) return;
+  if (!is_absent(seen) && core::encloses(seen, box) &&
+      core::encloses(enlarge(box, most_margins * margin), seen))
+    return;
   mark_moved(slot);
   seen = enlarge(box, margin);
 }

@@ -8,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "core/encloses.hpp"
 #include "core/snapshot_check.hpp"
 #include "core/snapshot_format.hpp"
 #include "core/snapshot_parts.hpp"
@@ -167,12 +168,10 @@ void World<D, Real>::State::get_slots(ByteReader& in) {
   if (has_margin()) {
     enlarged = get_all<Box<D, Real>>(in, count, "enlarged boxes");
     for (std::uint32_t slot = 0; slot < count; ++slot) {
-      bool encloses = is_present(enlarged[slot]) == is_present(boxes[slot]);
-      for (int axis = 0; axis < D && is_present(boxes[slot]); ++axis) {
-        encloses &= enlarged[slot].min[axis] <= boxes[slot].min[axis] &&
-                    boxes[slot].max[axis] <= enlarged[slot].max[axis];
-      }
-      expect(encloses, "a box is not within its enlarged one");
+      const bool is_there = is_present(boxes[slot]);
+      expect(is_there == is_present(enlarged[slot]) &&
+                 (!is_there || core::encloses(enlarged[slot], boxes[slot])),
+             "a box is not within its enlarged one");
     }
   }
   if (uses_filters) filters = get_all<Filter>(in, count, "filters");

@@ -7,20 +7,14 @@
 
 #include <algorithm>
 
+#include "core/encloses.hpp"
+
 namespace broadside::own {
 
 using kernels::leaf_bit;
 using kernels::node_width;
 
 namespace {
-
-template <int D>
-bool holds(const Box<D>& outer, const Box<D>& inner) {
-  bool is_inside = true;
-  for (int axis = 0; axis < D; ++axis)
-    is_inside &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
-  return is_inside;
-}
 
 /// Whether bounds that `box` was in may be smaller without it.
 template <int D>
@@ -41,45 +35,7 @@ Box<D> united(const Box<D>& a, const Box<D>& b) {
   return box;
 }
 
-/// Twice the middle on an axis, within what can be added up.
-template <int D>
-float middle(const Box<D>& box, int axis) {
-  constexpr float most = 0x1p120f;
-  return std::clamp(box.min[axis], -most, most) + std::clamp(box.max[axis], -most, most);
-}
-
-/// Orders children by their middles along an axis; the same everywhere, since no two have one number.
-struct BeforeAlong {
-  int axis;
-
-  template <typename Child>
-  bool operator()(const Child& a, const Child& b) const {
-    const float first = middle(a.box, axis);
-    const float second = middle(b.box, axis);
-    return first != second ? first < second : a.number < b.number;
-  }
-};
-
 }  // namespace
-
-/// The axis on which the middles lie farthest apart.
-template <int D>
-int DynamicBoxTree<D>::widest_axis(std::span<const Child> children) {
-  int widest = 0;
-  float greatest_spread = -1;
-  for (int axis = 0; axis < D; ++axis) {
-    float least = middle(children.front().box, axis);
-    float greatest = least;
-    for (const Child& child : children) {
-      least = std::min(least, middle(child.box, axis));
-      greatest = std::max(greatest, middle(child.box, axis));
-    }
-    if (!(greatest - least > greatest_spread)) continue;
-    widest = axis;
-    greatest_spread = greatest - least;
-  }
-  return widest;
-}
 
 template <int D>
 void DynamicBoxTree<D>::build(std::span<const Box<D>> boxes) {
@@ -103,7 +59,7 @@ void DynamicBoxTree<D>::build(std::span<const Box<D>> boxes) {
   nodes_.reserve(leaves + leaves / 3 + 16);
   info_.reserve(nodes_.capacity());
   add_leaves();
-  arrange_all();
+  arrange<D>(children_);
   while (children_.size() > 1) add_level();
   root_ = children_.front().number;
 }
@@ -141,43 +97,6 @@ void DynamicBoxTree<D>::add_level() {
   children_.resize(to);
 }
 
-/// Brings the leaves into an order in which each sixteen, and each sixteen of these, lie together: in the
-/// order in which they were packed, sixteen are a long row. Those far larger than most come last, since they
-/// would widen the bounds of all others they were with.
-template <int D>
-void DynamicBoxTree<D>::arrange_all() {
-  const auto size_of = [](const Child& child) {
-    float size = 0;
-    for (int axis = 0; axis < D; ++axis)
-      size = std::max(size, std::min(child.box.max[axis] - child.box.min[axis], 0x1p120f));
-    return size;
-  };
-  std::vector<float> sizes;
-  for (const Child& child : children_) sizes.push_back(size_of(child));
-  const auto median = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, median);
-  const float most = 4 * *median;
-  const auto large = std::stable_partition(children_.begin(), children_.end(),
-                                           [&](const Child& child) { return size_of(child) <= most; });
-  const auto common = static_cast<std::size_t>(large - children_.begin());
-  arrange(std::span(children_).first(common));
-  arrange(std::span(children_).subspan(common));
-}
-
-/// Halves by the middles along the axis on which these lie farthest apart, again and again. Halves are
-/// whole numbers of full subtrees.
-template <int D>
-void DynamicBoxTree<D>::arrange(std::span<Child> children) {
-  if (children.size() <= node_width) return;
-  std::size_t subtree = node_width;
-  while (subtree * node_width < children.size()) subtree *= node_width;
-  const std::size_t half = (children.size() / subtree + 1) / 2 * subtree;
-  const auto middle_at = static_cast<std::ptrdiff_t>(half);
-  std::ranges::nth_element(children, children.begin() + middle_at, BeforeAlong{widest_axis(children)});
-  arrange(children.first(half));
-  arrange(children.subspan(half));
-}
-
 template <int D>
 void DynamicBoxTree<D>::set(BoxId id, const Box<D>& box) {
   if (index(id) >= places_.size()) places_.resize(index(id) + 1, none);
@@ -192,7 +111,7 @@ void DynamicBoxTree<D>::set(BoxId id, const Box<D>& box) {
   if (is_there && up == none) return write(place, box);
   if (is_there) {
     const Box<D> bounds = box_at(up);
-    if (holds(bounds, box)) {
+    if (core::encloses(bounds, box)) {
       const bool may_shrink = touches_border(bounds, box_at(place));
       write(place, box);
       if (may_shrink) refit(node);
@@ -234,7 +153,7 @@ void DynamicBoxTree<D>::split(std::uint32_t node, const Child& added) {
   for (std::uint32_t i = 0; i < node_width; ++i)
     children[i] = {box_at(node * node_width + i), nodes_[node].child[i]};
   children.back() = added;
-  std::ranges::sort(children, BeforeAlong{widest_axis(std::span<const Child>(children))});
+  std::ranges::sort(children, BeforeAlong<D>{widest_axis<D>(children)});
 
   const std::uint32_t other = new_node(info_[node].is_leaf);
   constexpr std::size_t half = node_width / 2;

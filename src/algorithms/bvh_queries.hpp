@@ -11,6 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "algorithms/bvh_arrange.hpp"
 #include "algorithms/bvh_tree.hpp"
 #include "kernels/query_tree.hpp"
 
@@ -52,16 +53,9 @@ class DynamicBoxTree {
     bool is_leaf;
   };
 
-  /// A box or a node, and its number.
-  struct Child {
-    Box<D> box;
-    std::uint32_t number;
-  };
+  using Child = NumberedBox<D>;  // a box or a node
 
   void add_leaves();
-  void arrange_all();
-  static void arrange(std::span<Child> children);
-  static int widest_axis(std::span<const Child> children);
   void add_level();
   std::uint32_t new_node(bool is_leaf);
   std::uint32_t numbered(std::uint32_t node) const noexcept {

@@ -21,6 +21,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/bvh_kept.hpp"
+#include "core/encloses.hpp"
 #include "core/incremental_tracker.hpp"
 #include "kernels/kept_tree.hpp"
 #include "kernels/nowhere.hpp"
@@ -178,18 +179,11 @@ class BvhTracker final : public core::IncrementalTracker<D> {
       step.writes = true;
       if (leaves_ == Leaves::widen && is) {
         step.stored = tree_.at(step.place);
-        step.writes = !contains(step.stored, now);
+        step.writes = !core::encloses(step.stored, now);
         if (step.writes) step.stored = stored(now);
       }
       steps_.push_back(step);
     }
-  }
-
-  static bool contains(const Box<D>& outer, const Box<D>& inner) {
-    bool inside = true;
-    for (int axis = 0; axis < D; ++axis)
-      inside &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
-    return inside;
   }
 
   /// After steps: takes out boxes that went, and notes which boxes left their leaves.

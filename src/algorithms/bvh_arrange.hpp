@@ -1,0 +1,63 @@
+// The order of boxes, or nodes, that are to lie together in a tree of sixteen children to a node.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "broadside/box.hpp"
+
+namespace broadside::own {
+
+/// A box, or a node's bounds, and its number.
+template <int D>
+struct NumberedBox {
+  Box<D> box;
+  std::uint32_t number;
+};
+
+/// Twice the middle on an axis, within what can be added up.
+template <int D>
+float middle(const Box<D>& box, int axis) {
+  constexpr float most = 0x1p120f;
+  return std::clamp(box.min[axis], -most, most) + std::clamp(box.max[axis], -most, most);
+}
+
+/// Orders boxes by their middles along an axis; the same everywhere, since no two have one number.
+template <int D>
+struct BeforeAlong {
+  int axis;
+
+  bool operator()(const NumberedBox<D>& a, const NumberedBox<D>& b) const {
+    const float first = middle(a.box, axis);
+    const float second = middle(b.box, axis);
+    return first != second ? first < second : a.number < b.number;
+  }
+};
+
+/// The axis on which the middles of some boxes, at least one, lie farthest apart.
+template <int D>
+int widest_axis(std::span<const NumberedBox<D>> boxes) {
+  int widest = 0;
+  float greatest_spread = -1;
+  for (int axis = 0; axis < D; ++axis) {
+    float least = middle(boxes.front().box, axis);
+    float greatest = least;
+    for (const NumberedBox<D>& one : boxes) {
+      least = std::min(least, middle(one.box, axis));
+      greatest = std::max(greatest, middle(one.box, axis));
+    }
+    if (!(greatest - least > greatest_spread)) continue;
+    widest = axis;
+    greatest_spread = greatest - least;
+  }
+  return widest;
+}
+
+/// Brings packed leaves, at least one, into an order in which each sixteen, and each sixteen of these, lie
+/// together: in the order in which they were packed, sixteen are a long row. Those far larger than most come
+/// last, since they would widen the bounds of all others they were with. Cost: O(n log n).
+template <int D>
+void arrange(std::span<NumberedBox<D>> leaves);
+
+}  // namespace broadside::own
