@@ -15,11 +15,7 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   Table table{.name = "tests",
               .title = "Tests and time of the paper's brute force, by the number of boxes",
               .columns = {{"boxes"}, {"all pairs"}, {"unique pairs"}, {"tests"}, {"time", "ms"}},
-              .charts = {{.title = "Time over the number of boxes",
-                          .x = "boxes",
-                          .y = "time",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time over the number of boxes", "boxes", "time")}};
   for (std::size_t boxes = 250; boxes <= laboratory.either<std::size_t>(16'000, 4'000); boxes *= 2) {
     const CaseResult result = laboratory.measure("paper_brute_force", {.scene = "uniform", .boxes = boxes});
     const Measurement& measured = measurement_of(result, "paper_brute_force");
@@ -59,8 +55,7 @@ Experiment brute_force_tests() {
           .title = "Brute force tests every unique pair",
           .claim =
               "To test all pairs of objects in a collection would require n^2 tests for n items in a "
-              "collection. We can drop that amount by roughly half by only testing unique pairs of "
-              "objects.",
+              "collection. We can drop that amount by roughly half by only testing unique pairs of objects.",
           .section = "II",
           .measured = "The tests that the mended Algorithm 1 counts, and its time, on uniform boxes in 2D.",
           .measure = measure,

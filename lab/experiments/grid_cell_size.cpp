@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "lab/experiments/boxes.hpp"
 #include "lab/experiments/descriptions.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
@@ -42,18 +43,13 @@ struct Lengths {
 
 template <int D>
 Lengths lengths_of(const std::string& scene, std::size_t count) {
-  const NamedScene named = find_scene(scene);
-  const std::vector<Box<D>> boxes = make_history<D>(named.scene, named.spec, {.boxes = count}).boxes;
+  const std::vector<Box<D>> boxes = history_of<D>(scene, {.boxes = count}).boxes;
+  const Box<D> bounds = bounds_of<D>(boxes);
   Lengths lengths;
   for (int axis = 0; axis < D; ++axis) {
-    float low = std::numeric_limits<float>::infinity();
-    float high = -low;
-    for (const Box<D>& box : boxes) {
+    for (const Box<D>& box : boxes)
       lengths.box += (double{box.max[axis]} - double{box.min[axis]}) / D / static_cast<double>(boxes.size());
-      low = std::min(low, box.min[axis]);
-      high = std::max(high, box.max[axis]);
-    }
-    lengths.world = std::max(lengths.world, double{high} - double{low});
+    lengths.world = std::max(lengths.world, double{bounds.max[axis]} - double{bounds.min[axis]});
   }
   return lengths;
 }
@@ -122,12 +118,8 @@ std::vector<Table> measure(const Laboratory& laboratory) {
         .name = grid.table,
         .title = fmt::format("Time of {} over the length of a cell, in mean lengths of a box", grid.label),
         .columns = {{"scene"}, {"cell", "boxes"}, {"references a box"}, {"tests a box"}, {"time", "ms"}},
-        .charts = {{.title = fmt::format("Time of {} over the size of cells", grid.label),
-                    .x = "cell",
-                    .y = "time",
-                    .series = "scene",
-                    .log_x = true,
-                    .log_y = true}}};
+        .charts = {log_log_chart(fmt::format("Time of {} over the size of cells", grid.label), "cell", "time",
+                                 "scene")}};
     for (const std::string& scene : scenes) measure_scene(laboratory, scene, grid, curves, choices);
     tables.push_back(std::move(curves));
   }
@@ -238,12 +230,9 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "In {} of {} scenes both the smallest and the largest cells take the paper's grid more than {} times "
-      "as "
-      "long as the best, which are so many boxes long: {}. Sizes that cost less than that span a factor of "
-      "{} "
-      "to {}. Of our grid's {} curves, {} have both ends as high. With the size that it chooses itself, a "
-      "grid takes, as a mean: "
-      "{}.",
+      "as long as the best, which are so many boxes long: {}. Sizes that cost less than that span a factor "
+      "of {} to {}. Of our grid's {} curves, {} have both ends as high. With the size that it chooses "
+      "itself, a grid takes, as a mean: {}.",
       balanced.size(), generated_scenes.size(), clearly, fmt::join(optima, ", "), rounded(narrowest),
       rounded(widest), 2 * generated_scenes.size(), own_balanced, fmt::join(losses, "; "));
   finding.figures.push_back({"scenes_with_both_ends_high", static_cast<double>(balanced.size())});
@@ -261,10 +250,9 @@ Experiment grid_cell_size() {
       .name = "grid_cell_size",
       .title = "The size of cells is a balancing act",
       .claim =
-          "Thus it is important to hand tune the grid size so that the number of spanning calls are "
-          "limited and the number of elements in the subcollections are kept to a minimum. This is a "
-          "balancing act between the number of objects in a collection and the number of spanning calls "
-          "are needed.",
+          "Thus it is important to hand tune the grid size so that the number of spanning calls are limited "
+          "and the number of elements in the subcollections are kept to a minimum. This is a balancing act "
+          "between the number of objects in a collection and the number of spanning calls are needed.",
       .section = "III",
       .measured =
           "The time of the paper's grid, on 10,000 boxes, and of ours, on 40,000, with cells from an eighth "

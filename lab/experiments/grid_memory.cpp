@@ -2,18 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "lab/experiments/boxes.hpp"
 #include "lab/experiments/descriptions.hpp"
 #include "lab/experiments/growth.hpp"
 #include "lab/numbers.hpp"
-#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -44,23 +42,16 @@ const std::vector<MeasuredGrid>& measured_grids() {
 
 template <int D>
 std::vector<Box<D>> boxes_of(const std::string& scene) {
-  const NamedScene named = find_scene(scene);
-  return make_history<D>(named.scene, named.spec, {.boxes = boxes_in_world}).boxes;
+  return history_of<D>(scene, {.boxes = boxes_in_world}).boxes;
 }
 
 /// The cells of a matrix over the world of the boxes.
 template <int D>
 double cells_in_matrix(const std::vector<Box<D>>& boxes) {
+  const Box<D> world = bounds_of<D>(boxes);
   double cells = 1;
-  for (int axis = 0; axis < D; ++axis) {
-    float low = std::numeric_limits<float>::infinity();
-    float high = -low;
-    for (const Box<D>& box : boxes) {
-      low = std::min(low, box.min[axis]);
-      high = std::max(high, box.max[axis]);
-    }
-    cells *= std::ceil((double{high} - double{low}) / cell_size);
-  }
+  for (int axis = 0; axis < D; ++axis)
+    cells *= std::ceil((double{world.max[axis]} - double{world.min[axis]}) / cell_size);
   return cells;
 }
 
@@ -84,8 +75,7 @@ void measure_grids(const Laboratory& laboratory, const std::string& scene, int d
     if (grid.dimension == dimension) specs.push_back(grid.spec);
   }
   const CaseResult result =
-      laboratory.measure(fmt::format("{}", fmt::join(specs, ",")),
-                         {.scene = scene, .dimension = dimension, .boxes = boxes_in_world});
+      laboratory.measure(list_of(specs), {.scene = scene, .dimension = dimension, .boxes = boxes_in_world});
   for (const MeasuredGrid& grid : measured_grids()) {
     if (grid.dimension != dimension) continue;
     const Measurement& measured = measurement_of(result, grid.spec);
@@ -99,27 +89,12 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   Table cells{.name = "cells",
               .title = "Cells of 2 x 2 for 2,000 boxes of about 1 x 1 in ever larger worlds",
               .columns = {{x}, {"kept"}, {"cells"}},
-              .charts = {{.title = "Cells over the side of the world",
-                          .x = x,
-                          .y = "cells",
-                          .series = "kept",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Cells over the side of the world", x, "cells", "kept")}};
   Table grids{.name = "grids",
               .title = "What grids hold, test and take for 2,000 boxes in ever larger worlds",
               .columns = {{x}, {"grid"}, {"memory", "bytes"}, {"tests a box"}, {"time", "ms"}},
-              .charts = {{.title = "Memory over the side of the world",
-                          .x = x,
-                          .y = "memory",
-                          .series = "grid",
-                          .log_x = true,
-                          .log_y = true},
-                         {.title = "Tests a box over the side of the world",
-                          .x = x,
-                          .y = "tests a box",
-                          .series = "grid",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Memory over the side of the world", x, "memory", "grid"),
+                         log_log_chart("Tests a box over the side of the world", x, "tests a box", "grid")}};
   // Up to worlds in which a float still tells a box's sides apart.
   for (double spread = 0.16; spread > 2e-5; spread /= laboratory.either(2, 4)) {
     const std::string scene = fmt::format("clustered:spread={:.6f}", spread);
@@ -208,10 +183,10 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "Memory grows with the side of the world to the power {:.2f}, {:.1f} bytes a cell: a world {} cells "
-      "wide would take {}, and {} are full at {} cells. A hash keeps {} cells at most. Capped, as "
-      "erratum 2c has it, the grid holds {} and its cells grow with the world: {:.1f} times as many tests a "
-      "box as in the smallest. The hierarchical grid holds {} at most (in 3D {}), {:.2f} times as much as in "
-      "the smallest world and with {:.1f} times the tests, and our grid {}.",
+      "wide would take {}, and {} are full at {} cells. A hash keeps {} cells at most. Capped, as erratum 2c "
+      "has it, the grid holds {} and its cells grow with the world: {:.1f} times as many tests a box as in "
+      "the smallest. The hierarchical grid holds {} at most (in 3D {}), {:.2f} times as much as in the "
+      "smallest world and with {:.1f} times the tests, and our grid {}.",
       matrix.growth, matrix.cell_bytes, rounded(world), bytes(static_cast<std::uint64_t>(printed_bytes)),
       bytes(16'000'000'000), rounded(full), rounded(most_hashed),
       bytes(static_cast<std::uint64_t>(capped.bytes)), capped.tests_growth,
@@ -245,8 +220,8 @@ Experiment grid_memory() {
           .title = "Cells fill the memory in a large world",
           .claim =
               "A limitation of SPI is that it is bounded and does not handle a arbitrarily large world size "
-              "without also having an arbitrarily large grid size. Having both ... may defeat the purpose "
-              "of keeping the number of elements in a subcollection small. ... With a small grid or large "
+              "without also having an arbitrarily large grid size. Having both ... may defeat the purpose of "
+              "keeping the number of elements in a subcollection small. ... With a small grid or large "
               "world, this matrix of grids can grow extremely large and may become computationally "
               "impossible to hold in memory.",
           .section = "III",

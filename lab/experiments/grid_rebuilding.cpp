@@ -26,12 +26,9 @@ struct Case {
 };
 
 std::vector<Table> measure(const Laboratory& laboratory) {
-  const Chart chart{.title = "Reinserting over rebuilding, by the boxes that move: below 1 reinserting wins",
-                    .x = "moving",
-                    .y = "reinserting over rebuilding",
-                    .series = "case",
-                    .log_x = true,
-                    .log_y = true};
+  const Chart chart =
+      log_log_chart("Reinserting over rebuilding, by the boxes that move: below 1 reinserting wins", "moving",
+                    "reinserting over rebuilding", "case");
   Chart chart_3d = chart;
   Chart chart_2d = chart;
   chart_2d.title += ", 2D";

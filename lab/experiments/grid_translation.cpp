@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "lab/experiments/boxes.hpp"
 #include "lab/experiments/descriptions.hpp"
 #include "lab/experiments/following.hpp"
 #include "lab/experiments/growth.hpp"
 #include "lab/numbers.hpp"
-#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -44,9 +44,8 @@ double cells_of(const Box<D>& box, const Box<D>& other, double cell) {
 
 template <int D>
 Touched count_cells(const CaseRequest& request, double cell) {
-  const NamedScene named = find_scene(request.scene);
-  const History<D> history = make_history<D>(
-      named.scene, named.spec,
+  const History<D> history = history_of<D>(
+      request.scene,
       {.boxes = request.boxes, .frames = request.frames, .moving = request.moving, .drift = request.drift});
   std::vector<Box<D>> boxes = history.boxes;
   Touched touched;
@@ -79,13 +78,13 @@ Table make_table(int dimension) {
                       {"reinserting over translating"},
                       {"cells touched by reinserting"},
                       {"cells touched by translating"}},
-          .charts = {{.title = "Reinserting over translating, by the cells a box spans: above 1 translating "
-                               "wins; " +
-                               axes,
-                      .x = "cells a box",
-                      .y = "reinserting over translating",
-                      .series = "step",
-                      .log_x = true}}};
+          .charts = {
+              {.title = "Reinserting over translating, by the cells a box spans: above 1 translating wins; " +
+                        axes,
+               .x = "cells a box",
+               .y = "reinserting over translating",
+               .series = "step",
+               .log_x = true}}};
 }
 
 std::vector<Table> measure(const Laboratory& laboratory) {
@@ -181,11 +180,10 @@ Finding judge(const std::vector<Table>& tables) {
         "a box spans {:.0f} cells or more; in a single cell reinserting is not the faster one", from);
   finding.reason = fmt::format(
       "With steps of a cell, translating is faster by more than {:.0f} % from {:.1f} cells a box on in 2D "
-      "and "
-      "{:.1f} in 3D, up to {:.2f} times in 2D; with boxes in {:.1f} cells, reinserting takes {:.2f} times as "
-      "long. With steps of a tenth of a cell translating is {:.2f} times as fast even there, since most "
-      "movers leave no cell, and up to {:.2f} times. It touches {:.0f} to {:.0f} % fewer cells, and never "
-      "more. The comparison with what is near is the same for both and part of every time.",
+      "and {:.1f} in 3D, up to {:.2f} times in 2D; with boxes in {:.1f} cells, reinserting takes {:.2f} "
+      "times as long. With steps of a tenth of a cell translating is {:.2f} times as fast even there, since "
+      "most movers leave no cell, and up to {:.2f} times. It touches {:.0f} to {:.0f} % fewer cells, and "
+      "never more. The comparison with what is near is the same for both and part of every time.",
       100 * margin, whole[0].from, whole[1].from, whole[0].most(), whole[0].gains.front().first,
       whole[0].single(), small[0].single(), small[0].most(), 100 * fewest_saved, 100 * most_saved);
   finding.figures = {{"single_cell_step_of_a_cell_2d", whole[0].single()},

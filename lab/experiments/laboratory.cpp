@@ -71,6 +71,10 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
   return std::move(comparison.cases[0]);
 }
 
+std::string list_of(const std::vector<std::string>& specs) {
+  return fmt::format("{}", fmt::join(specs, ","));
+}
+
 const Measurement& measurement_of(const CaseResult& result, std::string_view spec) {
   const auto found = std::ranges::find(result.measurements, spec, &Measurement::algorithm);
   if (found == result.measurements.end()) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lab/catalogue.hpp"
 #include "lab/experiments/table.hpp"
@@ -55,6 +56,9 @@ class Laboratory {
   bool quick_;
   Watch watch_;
 };
+
+/// These specs as the list that Laboratory::measure reads.
+std::string list_of(const std::vector<std::string>& specs);
 
 /// The measurement of the algorithm with this spec. Throws std::invalid_argument if it is not among them.
 const Measurement& measurement_of(const CaseResult& result, std::string_view spec);

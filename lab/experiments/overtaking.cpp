@@ -42,24 +42,15 @@ std::vector<Table> measure(const Laboratory& laboratory) {
     Table table{.name = field.table,
                 .title = field.title + ": time and tests by the number of boxes",
                 .columns = {{"boxes"}, {"algorithm"}, {"tests a box"}, {"time", "ms"}, {"time a box", "ns"}},
-                .charts = {{.title = field.title + ": time a box over the number of boxes",
-                            .x = "boxes",
-                            .y = "time a box",
-                            .series = "algorithm",
-                            .log_x = true,
-                            .log_y = true},
-                           {.title = field.title + ": tests a box over the number of boxes",
-                            .x = "boxes",
-                            .y = "tests a box",
-                            .series = "algorithm",
-                            .log_x = true,
-                            .log_y = true}}};
+                .charts = {log_log_chart(field.title + ": time a box over the number of boxes", "boxes",
+                                         "time a box", "algorithm"),
+                           log_log_chart(field.title + ": tests a box over the number of boxes", "boxes",
+                                         "tests a box", "algorithm")}};
     std::vector<std::string> algorithms = {field.brute_force};
     algorithms.insert(algorithms.end(), field.others.begin(), field.others.end());
     for (std::size_t boxes = 8; boxes <= laboratory.either<std::size_t>(8'192, 2'048); boxes *= 2) {
-      const CaseResult result =
-          laboratory.measure(fmt::format("{}", fmt::join(algorithms, ",")),
-                             {.scene = "uniform", .dimension = field.dimension, .boxes = boxes});
+      const CaseResult result = laboratory.measure(
+          list_of(algorithms), {.scene = "uniform", .dimension = field.dimension, .boxes = boxes});
       const auto n = static_cast<double>(boxes);
       for (const std::string& algorithm : algorithms) {
         const Measurement& measured = measurement_of(result, algorithm);
@@ -186,10 +177,10 @@ Experiment overtaking() {
           .name = "overtaking",
           .title = "The others are brute force on smaller collections",
           .claim =
-              "The difference between the brute force algorithm and the other collision detection "
-              "algorithms is how the other algorithms manage the size of the collection. ... when brute "
-              "force is called the number of pairs of objects that need to be tested grow quadratically "
-              "with respect to the size of the collection.",
+              "The difference between the brute force algorithm and the other collision detection algorithms "
+              "is how the other algorithms manage the size of the collection. ... when brute force is called "
+              "the number of pairs of objects that need to be tested grow quadratically with respect to the "
+              "size of the collection.",
           .section = "II",
           .measured =
               "Tests a box and time of the paper's algorithms in 2D and of ours in 2D and 3D, on uniform "

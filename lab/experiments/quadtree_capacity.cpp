@@ -41,26 +41,17 @@ Table measure_capacities(const Laboratory& laboratory, const std::string& algori
                           {"references a box"},
                           {"time", "ms"},
                           {"time over best"}},
-              .charts = {{.title = fmt::format("Time of {} over the capacity of a leaf", algorithm),
-                          .x = "capacity",
-                          .y = "time over best",
-                          .series = "density",
-                          .log_x = true,
-                          .log_y = true},
-                         {.title = fmt::format("References of {} over the capacity of a leaf", algorithm),
-                          .x = "capacity",
-                          .y = "references a box",
-                          .series = "density",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart(fmt::format("Time of {} over the capacity of a leaf", algorithm),
+                                       "capacity", "time over best", "density"),
+                         log_log_chart(fmt::format("References of {} over the capacity of a leaf", algorithm),
+                                       "capacity", "references a box", "density")}};
   const auto boxes = laboratory.either<std::size_t>(10'000, 3'000);
   for (const double neighbours : {1.0, 4.0, 16.0, 64.0, 256.0}) {
     std::vector<std::string> specs;
     for (std::size_t capacity = least; capacity <= most; capacity *= 2)
       specs.push_back(fmt::format("{}:capacity={}", algorithm, capacity));
-    const CaseResult result =
-        laboratory.measure(fmt::format("{}", fmt::join(specs, ",")),
-                           {.scene = fmt::format("uniform:neighbours={}", neighbours), .boxes = boxes});
+    const CaseResult result = laboratory.measure(
+        list_of(specs), {.scene = fmt::format("uniform:neighbours={}", neighbours), .boxes = boxes});
     const auto count = static_cast<double>(boxes);
     const std::size_t first = table.rows.size();
     std::size_t capacity = least;
@@ -68,12 +59,8 @@ Table measure_capacities(const Laboratory& laboratory, const std::string& algori
     for (const Measurement& measured : result.measurements) {
       const Cell time = time_cell(measured);
       if (const double* const milliseconds = std::get_if<double>(&time)) best = std::min(best, *milliseconds);
-      const auto a_box = [count](const Cell& cell) {
-        const double* const number = std::get_if<double>(&cell);
-        return number != nullptr ? Cell(*number / count) : Cell();
-      };
       table.add({fmt::format("{} neighbours", neighbours), neighbours, static_cast<double>(capacity), count,
-                 a_box(tests_cell(measured)), a_box(references_cell(measured)), time, Cell()});
+                 over(tests_cell(measured), count), over(references_cell(measured), count), time, Cell()});
       capacity *= 2;
     }
     for (std::size_t row = first; row < table.rows.size(); ++row) {
@@ -169,12 +156,10 @@ Finding judge(const std::vector<Table>& tables) {
   const Density& densest = listed.back();
   finding.reason = fmt::format(
       "Leaves of {} take the listing up to {:.2f} times the time of the best ones (at {} neighbours). From "
-      "{} "
-      "to {} neighbours a box's references in them grow from {:.1f} to {:.1f}, where our mending ends the "
+      "{} to {} neighbours a box's references in them grow from {:.1f} to {:.1f}, where our mending ends the "
       "splitting, and the best leaf from {} to {} boxes. In the densest world they take {} tests a box where "
       "{} would do{}. The own quadtree takes up to {:.2f} times its best time in leaves of {}; its best in "
-      "the "
-      "sparsest world hold {}.",
+      "the sparsest world hold {}.",
       usual_capacity, worst, worst_at, sparsest.neighbours, densest.neighbours, sparsest.usual_references,
       densest.usual_references, sparsest.best_capacity, densest.best_capacity, rounded(densest.usual_tests),
       rounded(densest.fewest_tests),
@@ -200,22 +185,21 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment quadtree_capacity() {
-  return {
-      .number = 8,
-      .name = "quadtree_capacity",
-      .title = "Larger leaves for denser worlds",
-      .claim =
-          "Although the number of pairwise collision tests a[re] lower, the amount of references belonging "
-          "to a single object spans across numerous nodes, and the operations required to do that can slow "
-          "the algorithm down. This would occur when there is an extremely large amount of elements for a "
-          "relatively small world. This can be alleviated by setting a larger ... amount [of] elements "
-          "allowed to be in a node.",
-      .section = "V",
-      .measured =
-          "Tests, references and time of the listing and of the own quadtree over the capacity of a "
-          "leaf, on uniform boxes that overlap 1 to 256 others, 2D.",
-      .measure = measure,
-      .judge = judge};
+  return {.number = 8,
+          .name = "quadtree_capacity",
+          .title = "Larger leaves for denser worlds",
+          .claim =
+              "Although the number of pairwise collision tests a[re] lower, the amount of references "
+              "belonging to a single object spans across numerous nodes, and the operations required to do "
+              "that can slow the algorithm down. This would occur when there is an extremely large amount of "
+              "elements for a relatively small world. This can be alleviated by setting a larger ... amount "
+              "[of] elements allowed to be in a node.",
+          .section = "V",
+          .measured =
+              "Tests, references and time of the listing and of the own quadtree over the capacity of a "
+              "leaf, on uniform boxes that overlap 1 to 256 others, 2D.",
+          .measure = measure,
+          .judge = judge};
 }
 
 }  // namespace broadside::lab

@@ -115,18 +115,10 @@ Table measure_sizes(const Laboratory& laboratory) {
                           {"references a box"},
                           {"time", "ms"},
                           {"peak memory", "bytes"}},
-              .charts = {{.title = "References over the size of the large boxes",
-                          .x = "size of a large box",
-                          .y = "references a box",
-                          .series = "algorithm",
-                          .log_x = true,
-                          .log_y = true},
-                         {.title = "Time over the size of the large boxes",
-                          .x = "size of a large box",
-                          .y = "time",
-                          .series = "algorithm",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("References over the size of the large boxes", "size of a large box",
+                                       "references a box", "algorithm"),
+                         log_log_chart("Time over the size of the large boxes", "size of a large box", "time",
+                                       "algorithm")}};
   const auto side = laboratory.either<std::size_t>(100, 64);
   for (double size = 0.5; size <= 32; size *= 2) {
     const auto make = [size, side](const Settings&, std::size_t, std::uint64_t seed) {
@@ -144,17 +136,13 @@ Table measure_sizes(const Laboratory& laboratory) {
       return boxes;
     };
     const Scene scene{.name = "large", .summary = {}, .source = {}, .boxes_2d = make, .fixed_count = true};
-    const CaseResult result =
-        laboratory.measure(fmt::format("{}", fmt::join(measured_ones, ",")), scene, {.scene = "large"});
+    const CaseResult result = laboratory.measure(list_of(measured_ones), scene, {.scene = "large"});
     const auto boxes = static_cast<double>(result.of.boxes);
     for (const Measurement& measured : result.measurements) {
-      const auto a_box = [boxes](const Cell& cell) {
-        const double* const number = std::get_if<double>(&cell);
-        return number != nullptr ? Cell(*number / boxes) : Cell();
-      };
       table.add({size, measured.algorithm, boxes,
                  measured.pairs ? Cell(static_cast<double>(*measured.pairs) / boxes) : Cell(),
-                 a_box(tests_cell(measured)), a_box(references_cell(measured)), time_cell(measured),
+                 over(tests_cell(measured), boxes), over(references_cell(measured), boxes),
+                 time_cell(measured),
                  measured.peak_bytes ? Cell(static_cast<double>(*measured.peak_bytes)) : Cell()});
     }
   }
@@ -222,12 +210,9 @@ Finding judge(const std::vector<Table>& tables) {
   if (finding.verdict == Verdict::holds_when) finding.condition = "more than one box in a hundred is large";
   finding.reason = fmt::format(
       "With each level a large box is in up to {:.2f} times as many leaves, one of a unit or less in up to "
-      "{:.2f} "
-      "times; a box s leaves long is in (1 + s)^2 of them. Where one box in a hundred grows from half a unit "
-      "to "
-      "{} units, the listing's references grow {:.1f} times and its time {:.1f} times; of the own quadtree, "
-      "which "
-      "keeps at a node what covers its middle, they grow {:.1f} times and {:.1f} times.",
+      "{:.2f} times; a box s leaves long is in (1 + s)^2 of them. Where one box in a hundred grows from half "
+      "a unit to {} units, the listing's references grow {:.1f} times and its time {:.1f} times; of the own "
+      "quadtree, which keeps at a node what covers its middle, they grow {:.1f} times and {:.1f} times.",
       largest_factor, unit_factor, rounded(sizes.numbers("size of a large box").back()), references, time,
       own_references, growth_over_sizes(sizes, own, "time"));
   finding.figures = {
@@ -261,8 +246,8 @@ Experiment quadtree_sizes() {
               "book keeping for the Quad Tree.",
           .section = "V",
           .measured =
-              "The leaves that one box of each size is in, in trees of known depth; then references, "
-              "tests, time and memory as one box in a hundred becomes larger, 2D.",
+              "The leaves that one box of each size is in, in trees of known depth; then references, tests, "
+              "time and memory as one box in a hundred becomes larger, 2D.",
           .measure = measure,
           .judge = judge};
 }

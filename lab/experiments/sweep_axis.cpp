@@ -37,7 +37,7 @@ Table measure_worlds(const Laboratory& laboratory) {
                           .series = "algorithm",
                           .log_y = true}}};
   const auto boxes = laboratory.either<std::size_t>(10'000, 4'000);
-  const std::string algorithms = fmt::format("{},{}", fmt::join(sweeps, ","), fmt::join(bounded_ones, ","));
+  const std::string algorithms = list_of(sweeps) + "," + list_of(bounded_ones);
   for (const SweepWorld& world : sweep_worlds()) {
     const Scene scene{
         .name = "world",
@@ -106,10 +106,9 @@ Table measure_axes(const Laboratory& laboratory) {
     for (const Sweep& way : ways()) {
       if (way.dimension == 0 || way.dimension == dimension) specs.push_back(way.spec);
     }
-    const std::string list = fmt::format("{}", fmt::join(specs, ","));
     const CaseRequest request{.scene = scene, .dimension = dimension, .boxes = boxes};
-    const CaseResult result =
-        scene == "towers" ? laboratory.measure(list, standing, request) : laboratory.measure(list, request);
+    const CaseResult result = scene == "towers" ? laboratory.measure(list_of(specs), standing, request)
+                                                : laboratory.measure(list_of(specs), request);
     double best = std::numeric_limits<double>::infinity();
     for (const Measurement& measured : result.measurements) {
       const bool is_single = measured.algorithm.find(":axis=") != std::string::npos;
@@ -119,13 +118,10 @@ Table measure_axes(const Laboratory& laboratory) {
       if (way.dimension != 0 && way.dimension != dimension) continue;
       const Measurement& measured = measurement_of(result, way.spec);
       const double count = static_cast<double>(result.of.boxes);
-      const Cell tests = tests_cell(measured);
       const Cell time = time_cell(measured);
-      const double* const tested = std::get_if<double>(&tests);
       const double* const timed = std::get_if<double>(&time);
-      table.add({fmt::format("{} {}D", scene, dimension), way.text, count,
-                 tested != nullptr ? Cell(*tested / count) : Cell(), time,
-                 timed != nullptr && best < 1e9 ? Cell(*timed / best) : Cell()});
+      table.add({fmt::format("{} {}D", scene, dimension), way.text, count, over(tests_cell(measured), count),
+                 time, timed != nullptr && best < 1e9 ? Cell(*timed / best) : Cell()});
     }
   };
   for (const char* const scene : {"uniform", "one_line", "thin", "clustered", "power_law", "towers"})
@@ -139,12 +135,7 @@ Table measure_growth(const Laboratory& laboratory) {
   Table table{.name = "growth",
               .title = "Tests and time of the sweep on uniform boxes, by their number",
               .columns = {{"boxes"}, {"sweep"}, {"tests"}, {"time", "ms"}},
-              .charts = {{.title = "Time over the number of boxes",
-                          .x = "boxes",
-                          .y = "time",
-                          .series = "sweep",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time over the number of boxes", "boxes", "time", "sweep")}};
   for (const int dimension : {2, 3}) {
     for (std::size_t boxes = 1'000; boxes <= laboratory.either<std::size_t>(32'000, 8'000); boxes *= 2) {
       const CaseResult result =
@@ -252,14 +243,10 @@ Finding judge(const std::vector<Table>& tables) {
   if (finding.verdict == Verdict::holds_when) finding.condition = "no box is infinite";
   finding.reason = fmt::format(
       "Boxes far away, or a world 1,000 times as wide, cost a sweep at most {:.2f} times the tests, {:.2f} "
-      "times "
-      "the memory and {:.2f} times the time; infinite boxes {:.2f} times the tests. The paper's grid or "
-      "quadtree "
-      "take up to {} times the tests. The axis matters more: the worst one takes up to {} times the best "
-      "one's "
-      "time ({}). With one axis tests grow as n^{:.2f} in 2D and n^{:.2f} in 3D; with stripes of a second "
-      "one "
-      "as n^{:.2f} in 2D.",
+      "times the memory and {:.2f} times the time; infinite boxes {:.2f} times the tests. The paper's grid "
+      "or quadtree take up to {} times the tests. The axis matters more: the worst one takes up to {} times "
+      "the best one's time ({}). With one axis tests grow as n^{:.2f} in 2D and n^{:.2f} in 3D; with stripes "
+      "of a second one as n^{:.2f} in 2D.",
       far.tests, far.memory, far.time, endless.tests, rounded(others.tests), rounded(axes.worst_over_best),
       axes.worst_scene, plane, space, stripes);
   finding.figures = {{"tests_without_bounds", far.tests},

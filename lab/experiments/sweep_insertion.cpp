@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "lab/experiments/boxes.hpp"
 #include "lab/experiments/descriptions.hpp"
 #include "lab/experiments/growth.hpp"
 #include "lab/experiments/sweep_orders.hpp"
 #include "lab/numbers.hpp"
-#include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -31,8 +31,7 @@ struct Disturbance {
 
 template <int D>
 Disturbance disturb(const std::string& scene, int axis, const SceneRequest& request, std::size_t times) {
-  const NamedScene named = find_scene(scene);
-  const History<D> history = make_history<D>(named.scene, named.spec, request);
+  const History<D> history = history_of<D>(scene, request);
   std::vector<SweptBox> order;
   for (std::uint32_t i = 0; i < history.boxes.size(); ++i) order.push_back({history.boxes[i].min[axis], i});
   std::sort(order.begin(), order.end());
@@ -81,12 +80,8 @@ Table measure_sorting(const Laboratory& laboratory) {
   Table table{.name = "sorting",
               .title = "Mending a sweep's order where all boxes move: uniform boxes in 2D",
               .columns = {{"motion"}, {"sort"}, {"boxes"}, {"places moved a box"}, {"time a box", "ns"}},
-              .charts = {{.title = "Time to mend the order over how far it is disturbed",
-                          .x = "places moved a box",
-                          .y = "time a box",
-                          .series = "sort",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time to mend the order over how far it is disturbed",
+                                       "places moved a box", "time a box", "sort")}};
   const auto boxes = laboratory.either<std::size_t>(10'000, 4'000);
   for (const Motion& motion : motions()) {
     laboratory.at("sweep_insertion: sorting, " + motion.text);
@@ -126,18 +121,10 @@ Table measure_growth(const Laboratory& laboratory) {
                           {"places moved"},
                           {"insertion", "ms"},
                           {"sort anew", "ms"}},
-              .charts = {{.title = "Places moved a box over the number of boxes",
-                          .x = "boxes",
-                          .y = "places moved a box",
-                          .series = "world",
-                          .log_x = true,
-                          .log_y = true},
-                         {.title = "Time of insertion sort over the number of boxes",
-                          .x = "boxes",
-                          .y = "insertion",
-                          .series = "world",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Places moved a box over the number of boxes", "boxes",
+                                       "places moved a box", "world"),
+                         log_log_chart("Time of insertion sort over the number of boxes", "boxes",
+                                       "insertion", "world")}};
   const std::vector<World> worlds = {
       {corridor, "one_line", 2, 1}, {plane, "uniform", 2, 0}, {space, "uniform", 3, 0}};
   for (const World& world : worlds) {
@@ -161,23 +148,19 @@ Table measure_frames(const Laboratory& laboratory, const Table& sorting) {
   Table table{.name = "frames",
               .title = "Whole frames of sweep_and_prune where all boxes move: uniform boxes in 2D",
               .columns = {{"motion"}, {"update"}, {"boxes"}, {"places moved a box"}, {"time", "ms"}},
-              .charts = {{.title = "Time of a frame over how far the order is disturbed",
-                          .x = "places moved a box",
-                          .y = "time",
-                          .series = "update",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time of a frame over how far the order is disturbed",
+                                       "places moved a box", "time", "update")}};
   std::vector<std::string> specs;
   for (const std::string& update : updates) specs.push_back("sweep_and_prune:update=" + update);
   const auto boxes = laboratory.either<std::size_t>(10'000, 4'000);
   for (const Motion& motion : motions()) {
-    const CaseResult result = laboratory.measure(fmt::format("{}", fmt::join(specs, ",")),
-                                                 {.scene = "uniform",
-                                                  .boxes = boxes,
-                                                  .moving = 1,
-                                                  .frames = laboratory.either<std::size_t>(10, 4),
-                                                  .drift = motion.drift,
-                                                  .teleport = motion.teleport});
+    const CaseResult result =
+        laboratory.measure(list_of(specs), {.scene = "uniform",
+                                            .boxes = boxes,
+                                            .moving = 1,
+                                            .frames = laboratory.either<std::size_t>(10, 4),
+                                            .drift = motion.drift,
+                                            .teleport = motion.teleport});
     const double places = sorting.where("motion", motion.text).number("places moved a box");
     for (std::size_t i = 0; i < updates.size(); ++i)
       table.add({motion.text, updates[i], static_cast<double>(boxes), places,
@@ -256,12 +239,10 @@ Finding judge(const std::vector<Table>& tables) {
   if (passed.empty()) throw std::invalid_argument("table 'growth' has no places moved a box; expected some");
   finding.reason = fmt::format(
       "The places that boxes move grow as n^{:.2f} in a corridor, where as many boxes stand along each "
-      "length, "
-      "but as n^{:.2f} in a plane and n^{:.2f} in space, although all go only a tenth of their size: there a "
-      "sweep's axis passes ever more boxes. Where boxes pass {} others, insertion is {:.1f} times as fast as "
-      "sorting anew, where they jump anywhere {} times as slow. Whole frames by insertion take {:.2f} to {} "
-      "times "
-      "those by merging and {:.2f} to {} times those of finding all pairs anew.",
+      "length, but as n^{:.2f} in a plane and n^{:.2f} in space, although all go only a tenth of their size: "
+      "there a sweep's axis passes ever more boxes. Where boxes pass {} others, insertion is {:.1f} times as "
+      "fast as sorting anew, where they jump anywhere {} times as slow. Whole frames by insertion take "
+      "{:.2f} to {} times those by merging and {:.2f} to {} times those of finding all pairs anew.",
       in_corridor, in_plane, in_space, rounded(inserted.front().first), gain, rounded(loss), least_over_merge,
       rounded(most_over_merge), least_over_rebuild, rounded(most_over_rebuild));
   finding.figures = {{"growth_in_corridor", in_corridor},
@@ -293,8 +274,8 @@ Experiment sweep_insertion() {
               "objects in the collection are relatively in order.",
           .section = "VI-C",
           .measured =
-              "By how many places boxes move in a sweep's order and what sorting takes, over how far they "
-              "go and over their number in a corridor, a plane and in space; then whole frames.",
+              "By how many places boxes move in a sweep's order and what sorting takes, over how far they go "
+              "and over their number in a corridor, a plane and in space; then whole frames.",
           .measure = measure,
           .judge = judge};
 }

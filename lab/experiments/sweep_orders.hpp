@@ -1,10 +1,8 @@
 // The order of a sweep by itself, disturbed on purpose and mended: what section VI-C of the paper is about.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,6 +10,7 @@
 
 #include "lab/measure/contest.hpp"
 #include "lab/measure/samples.hpp"
+#include "lab/scenes/random.hpp"
 
 namespace broadside::lab {
 
@@ -27,30 +26,35 @@ struct SweptBox {
 };
 
 /// Sorts by insertion and returns by how many places boxes were moved: the number of pairs in wrong order.
-inline std::uint64_t sort_by_insertion(std::vector<SweptBox>& boxes) {
-  std::uint64_t places = 0;
-  for (std::size_t i = 1; i < boxes.size(); ++i) {
-    const SweptBox box = boxes[i];
-    std::size_t at = i;
-    for (; at > 0 && box < boxes[at - 1]; --at) boxes[at] = boxes[at - 1];
-    boxes[at] = box;
-    places += i - at;
-  }
-  return places;
-}
+std::uint64_t sort_by_insertion(std::vector<SweptBox>& boxes);
 
 /// Sorts as section VI-C has it: all are in a heap, and the least is taken until none is left.
-inline void sort_by_heap(std::vector<SweptBox>& boxes, std::vector<SweptBox>& heap) {
-  const auto is_later = [](const SweptBox& a, const SweptBox& b) { return b < a; };
-  heap.swap(boxes);
-  boxes.clear();
-  std::make_heap(heap.begin(), heap.end(), is_later);
-  while (!heap.empty()) {
-    std::pop_heap(heap.begin(), heap.end(), is_later);
-    boxes.push_back(heap.back());
-    heap.pop_back();
-  }
-}
+void sort_by_heap(std::vector<SweptBox>& boxes, std::vector<SweptBox>& heap);
+
+/// Boxes of one size along an axis, sorted; as many a length as in a plane, however many there are.
+std::vector<SweptBox> order_of(std::size_t count, Random& random);
+
+/// A box that leaves one place of the order for another.
+struct Reinsertion {
+  SweptBox from;
+  SweptBox to;
+};
+
+/// Of `count` different boxes of the order, which has as many: each goes a fifth of its size, or anywhere.
+std::vector<Reinsertion> reinsertions(const std::vector<SweptBox>& order, std::size_t count, bool is_near,
+                                      Random& random);
+
+/// What reinsertions come to in all.
+struct Work {
+  std::uint64_t comparisons = 0;
+  std::uint64_t places = 0;
+};
+
+/// The two binary searches of each reinsertion, and nothing moved.
+Work search_only(const std::vector<SweptBox>& order, const std::vector<Reinsertion>& all);
+
+/// One reinsertion after the other by binary search; the order stays sorted.
+Work reinsert(std::vector<SweptBox>& order, const std::vector<Reinsertion>& all);
 
 /// The median milliseconds of `run`, done `times` times on a copy of `boxes`.
 template <typename Run>

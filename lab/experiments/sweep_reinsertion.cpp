@@ -1,8 +1,6 @@
 // Section VI-C: k reinsertions by binary search cost O(k lg n), or does moving the array dominate; and the
 // heap.
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -22,89 +20,6 @@ namespace {
 const std::string nearby = "a fifth of their size";
 const std::string anywhere = "anywhere";
 
-/// Boxes of one size along an axis, as many a length as in a plane that is crowded alike for any number.
-std::vector<SweptBox> order_of(std::size_t count, Random& random) {
-  const double side = std::sqrt(static_cast<double>(count));
-  std::vector<SweptBox> order;
-  for (std::uint32_t i = 0; i < count; ++i) order.push_back({static_cast<float>(random.between(0, side)), i});
-  std::sort(order.begin(), order.end());
-  return order;
-}
-
-/// A box that leaves one place of the order for another.
-struct Reinsertion {
-  SweptBox from;
-  SweptBox to;
-};
-
-std::vector<Reinsertion> reinsertions(const std::vector<SweptBox>& order, std::size_t count, bool is_near,
-                                      Random& random) {
-  const double side = std::sqrt(static_cast<double>(order.size()));
-  std::vector<std::size_t> places(order.size());
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = i;
-  random.shuffle(places, count);
-  std::vector<Reinsertion> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    const SweptBox box = order[places[i]];
-    const double there = is_near ? std::clamp<double>(box.min + 0.2 * random.direction<2>()[0], 0, side)
-                                 : random.between(0, side);
-    all.push_back({box, {static_cast<float>(there), box.id}});
-  }
-  return all;
-}
-
-/// The first place of a box that is not before `wanted`: a binary search, its comparisons counted.
-std::size_t place_of(const std::vector<SweptBox>& order, const SweptBox& wanted, std::uint64_t& comparisons) {
-  std::size_t low = 0;
-  for (std::size_t count = order.size(); count > 0;) {
-    const std::size_t half = count / 2;
-    const bool is_behind = order[low + half] < wanted;
-    low = is_behind ? low + half + 1 : low;
-    count = is_behind ? count - half - 1 : half;
-    ++comparisons;
-  }
-  return low;
-}
-
-/// What reinsertions come to in all.
-struct Work {
-  std::uint64_t comparisons = 0;
-  std::uint64_t places = 0;
-};
-
-/// Where the box is and where it goes; of a box that goes up, its own place is not counted.
-std::pair<std::size_t, std::size_t> way(const std::vector<SweptBox>& order, const Reinsertion& reinsertion,
-                                        Work& work) {
-  const std::size_t from = place_of(order, reinsertion.from, work.comparisons);
-  const std::size_t to = place_of(order, reinsertion.to, work.comparisons);
-  return {from, to > from ? to - 1 : to};
-}
-
-/// Both searches of each, and nothing moved.
-Work search_only(const std::vector<SweptBox>& order, const std::vector<Reinsertion>& all) {
-  Work work;
-  for (const Reinsertion& reinsertion : all) {
-    const auto [from, to] = way(order, reinsertion, work);
-    work.places += from < to ? to - from : from - to;
-  }
-  return work;
-}
-
-Work reinsert(std::vector<SweptBox>& order, const std::vector<Reinsertion>& all) {
-  Work work;
-  for (const Reinsertion& reinsertion : all) {
-    const auto [from, to] = way(order, reinsertion, work);
-    SweptBox* const boxes = order.data();
-    if (from < to)
-      std::memmove(boxes + from, boxes + from + 1, (to - from) * sizeof(SweptBox));
-    else
-      std::memmove(boxes + to + 1, boxes + to, (from - to) * sizeof(SweptBox));
-    boxes[to] = reinsertion.to;
-    work.places += from < to ? to - from : from - to;
-  }
-  return work;
-}
-
 Table measure_growth(const Laboratory& laboratory) {
   Table table{.name = "growth",
               .title = "One reinsertion into a sorted array by binary search, of 256",
@@ -115,12 +30,8 @@ Table measure_growth(const Laboratory& laboratory) {
                           {"searching", "ns"},
                           {"moving", "ns"},
                           {"time", "ns"}},
-              .charts = {{.title = "Time of one reinsertion over the number of boxes",
-                          .x = "boxes",
-                          .y = "time",
-                          .series = "boxes go",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time of one reinsertion over the number of boxes", "boxes", "time",
+                                       "boxes go")}};
   constexpr std::size_t count = 256;
   const std::size_t times = laboratory.either<std::size_t>(21, 9);
   for (const bool is_near : {true, false}) {
@@ -156,12 +67,8 @@ Table measure_heap(const Laboratory& laboratory) {
   Table table{.name = "heap",
               .title = "The whole order anew: from a heap, or sorted",
               .columns = {{"sort"}, {"boxes"}, {"time a box", "ns"}},
-              .charts = {{.title = "Time of the whole order over the number of boxes",
-                          .x = "boxes",
-                          .y = "time a box",
-                          .series = "sort",
-                          .log_x = true,
-                          .log_y = true}}};
+              .charts = {log_log_chart("Time of the whole order over the number of boxes", "boxes",
+                                       "time a box", "sort")}};
   for (std::size_t boxes = 1'000; boxes <= laboratory.either<std::size_t>(256'000, 64'000); boxes *= 4) {
     laboratory.at(fmt::format("sweep_reinsertion: a heap of {} boxes", boxes));
     Random random(1);
@@ -200,32 +107,21 @@ Table measure_frames(const Laboratory& laboratory) {
   Table table{.name = "frames",
               .title = "Whole frames of sweep_and_prune where k boxes move: uniform boxes in 2D",
               .columns = {{"boxes go"}, {"k"}, {"update"}, {"boxes"}, {"time", "ms"}},
-              .charts = {{.title = "Time of a frame where k boxes jump anywhere",
-                          .x = "k",
-                          .y = "time",
-                          .series = "update",
-                          .log_x = true,
-                          .log_y = true,
-                          .where = {{"boxes go", anywhere}}},
-                         {.title = "Time of a frame where k boxes go a fifth of their size",
-                          .x = "k",
-                          .y = "time",
-                          .series = "update",
-                          .log_x = true,
-                          .log_y = true,
-                          .where = {{"boxes go", nearby}}}}};
+              .charts = {log_log_chart("Time of a frame where k boxes jump anywhere", "k", "time", "update",
+                                       {{"boxes go", anywhere}}),
+                         log_log_chart("Time of a frame where k boxes go a fifth of their size", "k", "time",
+                                       "update", {{"boxes go", nearby}})}};
   std::vector<std::string> specs;
   for (const std::string& update : updates) specs.push_back("sweep_and_prune:update=" + update);
   const auto boxes = laboratory.either<std::size_t>(20'000, 5'000);
   for (const std::string& go : {nearby, anywhere}) {
     for (std::size_t k = 1; k <= boxes; k *= 10) {
       const CaseResult result =
-          laboratory.measure(fmt::format("{}", fmt::join(specs, ",")),
-                             {.scene = "uniform",
-                              .boxes = boxes,
-                              .moving = static_cast<double>(k) / static_cast<double>(boxes),
-                              .frames = laboratory.either<std::size_t>(10, 4),
-                              .teleport = go == anywhere ? 1.0 : 0.0});
+          laboratory.measure(list_of(specs), {.scene = "uniform",
+                                              .boxes = boxes,
+                                              .moving = static_cast<double>(k) / static_cast<double>(boxes),
+                                              .frames = laboratory.either<std::size_t>(10, 4),
+                                              .teleport = go == anywhere ? 1.0 : 0.0});
       for (std::size_t i = 0; i < updates.size(); ++i)
         table.add({go, static_cast<double>(k), updates[i], static_cast<double>(boxes),
                    time_cell(measurement_of(result, specs[i]))});
@@ -303,13 +199,10 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "A search takes {:.1f} comparisons among {} boxes, as lg n does; but a box that jumps anywhere makes "
-      "{} "
-      "others give way, and moving them is {:.0f} % of its time. The time of one such reinsertion grows as "
-      "n^{:.2f}, of boxes that go a fifth of their size as n^{:.2f}. A heap takes {:.2f} times as long as a "
-      "sort "
-      "of {} boxes, and a frame in which one of {} jumps {} times as long by a heap as by merging. Binary "
-      "search "
-      "is ahead of merging up to about {} boxes that jump.",
+      "{} others give way, and moving them is {:.0f} % of its time. The time of one such reinsertion grows "
+      "as n^{:.2f}, of boxes that go a fifth of their size as n^{:.2f}. A heap takes {:.2f} times as long as "
+      "a sort of {} boxes, and a frame in which one of {} jumps {} times as long by a heap as by merging. "
+      "Binary search is ahead of merging up to about {} boxes that jump.",
       comparisons, grouped(static_cast<std::uint64_t>(most)), grouped(static_cast<std::uint64_t>(given_way)),
       100 * share, far_growth, near_growth, heaped.back().second / sorted.back().second,
       grouped(static_cast<std::uint64_t>(heaped.back().first)),
@@ -346,8 +239,8 @@ Experiment sweep_reinsertion() {
               "search would take O(lg(n)) time.",
           .section = "VI-C",
           .measured =
-              "Comparisons, places moved and time of reinserting boxes into a sorted array, over its "
-              "length and how far they go; a heap against a sort; and whole frames over k.",
+              "Comparisons, places moved and time of reinserting boxes into a sorted array, over its length "
+              "and how far they go; a heap against a sort; and whole frames over k.",
           .measure = measure,
           .judge = judge};
 }

@@ -44,6 +44,17 @@ std::string_view name(ChartKind kind) noexcept {
   return "";
 }
 
+Chart log_log_chart(std::string title, std::string x, std::string y, std::string series,
+                    std::vector<std::pair<std::string, std::string>> where) {
+  return {.title = std::move(title),
+          .x = std::move(x),
+          .y = std::move(y),
+          .series = std::move(series),
+          .log_x = true,
+          .log_y = true,
+          .where = std::move(where)};
+}
+
 void Table::add(std::vector<Cell> row) {
   if (row.size() != columns.size()) {
     throw std::invalid_argument(fmt::format("table '{}': a row of {} cells; expected {}, one a column", name,

@@ -48,6 +48,10 @@ struct Chart {
   friend bool operator==(const Chart&, const Chart&) = default;
 };
 
+/// Lines of y over x, both axes logarithmic.
+Chart log_log_chart(std::string title, std::string x, std::string y, std::string series = {},
+                    std::vector<std::pair<std::string, std::string>> where = {});
+
 /// Rows of cells under columns.
 struct Table {
   std::string name;   ///< as in results: lower case, digits and underscores

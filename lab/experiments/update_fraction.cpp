@@ -51,24 +51,20 @@ struct Timed {
 
 Table make_table(int dimension, std::size_t boxes) {
   const std::string axes = dimension_text(dimension);
-  return {
-      .name = fmt::format("times_{}d", dimension),
-      .title = fmt::format("A frame of {} uniform boxes in {}: the best way to update what changed, all "
-                           "pairs anew, and what the algorithm chooses",
-                           grouped(boxes), axes),
-      .columns = {{"algorithm"},
-                  {"moving", "%"},
-                  {"updating", "ms"},
-                  {"by"},
-                  {"rebuilding", "ms"},
-                  {"updating over rebuilding"},
-                  {"left to itself", "ms"}},
-      .charts = {{.title = "Updating over rebuilding, by the boxes that move: below 1 updating wins; " + axes,
-                  .x = "moving",
-                  .y = "updating over rebuilding",
-                  .series = "algorithm",
-                  .log_x = true,
-                  .log_y = true}}};
+  return {.name = fmt::format("times_{}d", dimension),
+          .title = fmt::format("A frame of {} uniform boxes in {}: the best way to update what changed, all "
+                               "pairs anew, and what the algorithm chooses",
+                               grouped(boxes), axes),
+          .columns = {{"algorithm"},
+                      {"moving", "%"},
+                      {"updating", "ms"},
+                      {"by"},
+                      {"rebuilding", "ms"},
+                      {"updating over rebuilding"},
+                      {"left to itself", "ms"}},
+          .charts = {log_log_chart(
+              "Updating over rebuilding, by the boxes that move: below 1 updating wins; " + axes, "moving",
+              "updating over rebuilding", "algorithm")}};
 }
 
 void add_rows(Table& table, const CaseResult& result, double moving) {
@@ -224,22 +220,21 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment update_fraction() {
-  return {
-      .number = 9,
-      .name = "update_fraction",
-      .title = "Updating only what changed",
-      .claim =
-          "For all algorithms we can append a flag to each object to check if it has been changed ... If "
-          "it has been changed, we then reposition its reference within a collection. If it has not been "
-          "changed then we do not need to rebuild the collection, and only change a subset of objects.",
-      .section = "VI-A",
-      .measured =
-          "A frame of each of our algorithms on uniform boxes that drift by a fifth of themselves: the "
-          "fastest of its ways to update what changed, kept at any fraction, against all pairs found anew "
-          "and compared with those of the frame before; and what it does left to itself. The sweep's "
-          "slower ways are in numbers 12 and 13.",
-      .measure = measure,
-      .judge = judge};
+  return {.number = 9,
+          .name = "update_fraction",
+          .title = "Updating only what changed",
+          .claim =
+              "For all algorithms we can append a flag to each object to check if it has been changed ... If "
+              "it has been changed, we then reposition its reference within a collection. If it has not been "
+              "changed then we do not need to rebuild the collection, and only change a subset of objects.",
+          .section = "VI-A",
+          .measured =
+              "A frame of each of our algorithms on uniform boxes that drift by a fifth of themselves: the "
+              "fastest of its ways to update what changed, kept at any fraction, against all pairs found "
+              "anew and compared with those of the frame before; and what it does left to itself. The "
+              "sweep's slower ways are in numbers 12 and 13.",
+          .measure = measure,
+          .judge = judge};
 }
 
 }  // namespace broadside::lab

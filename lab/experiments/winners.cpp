@@ -242,21 +242,20 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment winners() {
-  return {
-      .number = 15,
-      .name = "winners",
-      .title = "Who wins where",
-      .claim =
-          "No single algorithm is the fastest everywhere: how many boxes there are, how dense they stand, "
-          "how their sizes differ and how many move decide. Looking at the boxes and choosing, as auto "
-          "does, loses less than any single algorithm.",
-      .section = "beyond",
-      .measured =
-          "Our algorithms and the peers in six maps: by the number of boxes and by overlaps a box, "
-          "spread of sizes, clustering or the fraction that moves; and our algorithms by instruction set "
-          "and by threads.",
-      .measure = measure,
-      .judge = judge};
+  return {.number = 15,
+          .name = "winners",
+          .title = "Who wins where",
+          .claim =
+              "No single algorithm is the fastest everywhere: how many boxes there are, how dense they "
+              "stand, how their sizes differ and how many move decide. Looking at the boxes and choosing, as "
+              "auto does, loses less than any single algorithm.",
+          .section = "beyond",
+          .measured =
+              "Our algorithms and the peers in six maps: by the number of boxes and by overlaps a box, "
+              "spread of sizes, clustering or the fraction that moves; and our algorithms by instruction set "
+              "and by threads.",
+          .measure = measure,
+          .judge = judge};
 }
 
 }  // namespace broadside::lab

@@ -22,8 +22,6 @@ class OnInstructionSet {
   OnInstructionSet& operator=(const OnInstructionSet&) = delete;
 };
 
-std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ",")); }
-
 /// Those of our single algorithms that can search with several threads.
 std::vector<std::string> threaded(const Catalogue& catalogue) {
   std::vector<std::string> names;
@@ -74,7 +72,7 @@ Table measure_instruction_sets(const Laboratory& laboratory) {
       for (const std::string& set : sets) {
         const OnInstructionSet limited(set);
         const CaseResult result =
-            laboratory.measure(joined(single_algorithms()),
+            laboratory.measure(list_of(single_algorithms()),
                                {.scene = "uniform", .dimension = dimension, .boxes = boxes}, effort);
         for (const Measurement& measurement : result.measurements) {
           if (measurement.samples_ms.empty()) continue;
@@ -120,7 +118,7 @@ Table measure_threads(const Laboratory& laboratory) {
                             .log_y = true,
                             .where = {{"dimension", dimension_text}}});
     const CaseResult result = laboratory.measure(
-        joined(specs), {.scene = "uniform", .dimension = dimension, .boxes = boxes}, effort);
+        list_of(specs), {.scene = "uniform", .dimension = dimension, .boxes = boxes}, effort);
     for (const Measurement& measurement : result.measurements) {
       table.add({dimension_text, static_cast<double>(boxes),
                  measurement.algorithm.substr(0, measurement.algorithm.find(':')),
