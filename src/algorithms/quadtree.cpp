@@ -23,6 +23,7 @@
 #include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "algorithms/quadtree_split.hpp"
 #include "algorithms/quadtree_tracker.hpp"
 #include "core/outline_text.hpp"
 #include "core/parallel.hpp"
@@ -33,8 +34,6 @@
 namespace broadside::own {
 namespace {
 
-constexpr std::size_t node_samples = 31;
-
 /// Nodes are split by one thread until there are so many for each.
 constexpr std::size_t parts_per_lane = 3;
 
@@ -42,36 +41,17 @@ constexpr std::size_t parts_per_lane = 3;
 template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 
-/// A box in a node. Bit a of `apart` is set if the box starts before the node's region on axis a; the rest
-/// as in a run.
-struct Reference {
-  std::uint32_t place;
-  std::uint32_t apart;
-};
-
 template <int D>
 class Quadtree final : public PairFinder<D>, public Outlined<D> {
  public:
   explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
 
  private:
-  static constexpr std::uint32_t most_children = 1U << D;
-
-  /// Where a node is split; axes not in the list are not.
-  struct Split {
-    std::array<float, D> at;
-    std::array<float, D> low;   // a box that spans from low to high
-    std::array<float, D> high;  // covers the middle half of the node
-    std::array<int, D> axes;
-    int axis_count;
-  };
+  using Split = QuadtreeSplit<D>;
 
   /// What one thread searches with.
   struct Lane {
-    std::vector<Reference> stack;
-    std::vector<std::uint8_t>
-        children;  // by reference of the node being split: bit c set if it goes into child c
-    std::size_t kept_count = 0;
+    QuadtreeStack<D> stack;
     kernels::RunBuffer<D> run;
     kernels::RunBuffer<D> kept_run;
     Statistics statistics;
@@ -91,17 +71,17 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
     Lane& first = lanes_[0];
     first.statistics = {};
-    first.stack.clear();
+    first.stack.references.clear();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
-      first.stack.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
+      first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
     if (parallel_.lanes() == 1) {
-      search(first, 0, first.stack.size(), pairs);
+      search(first, 0, first.stack.references.size(), pairs);
       this->count(first.statistics);
       return;
     }
     parts_.clear();
     part_references_.clear();
-    expand(first, 0, first.stack.size(), boxes.size() / (parts_per_lane * parallel_.lanes()));
+    expand(first, 0, first.stack.references.size(), boxes.size() / (parts_per_lane * parallel_.lanes()));
     const auto search_parts = [&](core::Range parts, std::size_t lane, PairSink& sink) {
       lanes_[lane].statistics = {};
       for (std::size_t part = parts.begin; part < parts.end; ++part) search_part(lanes_[lane], part, sink);
@@ -117,14 +97,15 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     sorted_boxes_ = sorted_.sort(boxes, axes);
     lanes_.resize(std::max<std::size_t>(lanes_.size(), 1));
     Lane& lane = lanes_[0];
-    lane.stack.clear();
-    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) lane.stack.push_back({i, 0});
+    lane.stack.references.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) lane.stack.references.push_back({i, 0});
     Outline<D> outline;
     outline.kind = "nodes";
     Box<D> region;
     region.min.fill(-std::numeric_limits<float>::infinity());
     region.max.fill(std::numeric_limits<float>::infinity());
-    const std::size_t leaves = lay_out(lane, 0, lane.stack.size(), {axes, region}, 0, outline.levels);
+    const std::size_t leaves =
+        lay_out(lane, 0, lane.stack.references.size(), {axes, region}, 0, outline.levels);
     std::size_t nodes = 0;
     for (const std::vector<Box<D>>& level : outline.levels) nodes += level.size();
     outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
@@ -144,12 +125,10 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     if (levels.size() == depth) levels.emplace_back();
     levels[depth].push_back(region.box);
     Split split;
-    std::array<std::size_t, most_children> sizes;
-    if (end - begin < 2 || end - begin <= capacity_ || !choose_split(lane, begin, end, split) ||
-        !partition(lane, begin, end, split, sizes))
+    if (end - begin < 2 || end - begin <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split))
       return 1;
-    const std::size_t top = lane.stack.size();
-    push_children(lane, begin, end, split, sizes);
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t leaves = 0;
     std::size_t first = top;
     for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
@@ -158,10 +137,10 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
         const int axis = region.axes[split.axes[at]];
         ((child >> at & 1U) != 0 ? part.box.min : part.box.max)[axis] = split.at[split.axes[at]];
       }
-      leaves += lay_out(lane, first, first + sizes[child], part, depth + 1, levels);
-      first += sizes[child];
+      leaves += lay_out(lane, first, first + split.sizes[child], part, depth + 1, levels);
+      first += split.sizes[child];
     }
-    lane.stack.resize(top);
+    lane.stack.references.resize(top);
     return leaves;
   }
 
@@ -170,51 +149,47 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
-    std::array<std::size_t, most_children> sizes;
-    if (count <= std::max(capacity_, largest) || !choose_split(lane, begin, end, split) ||
-        !partition(lane, begin, end, split, sizes)) {
+    if (count <= std::max(capacity_, largest) || !lane.stack.split(sorted_boxes_, begin, end, split)) {
       copy(lane, begin, end, [](std::size_t) { return true; });
       parts_.push_back({part_references_.size(), 0});
       return;
     }
-    if (lane.kept_count > 0) {
-      copy(lane, begin, end, [&](std::size_t i) { return lane.children[i] == 0; });
-      copy(lane, begin, end, [&](std::size_t i) { return lane.children[i] != 0; });
-      parts_.push_back({part_references_.size(), lane.kept_count});
+    if (lane.stack.kept_count > 0) {
+      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] == 0; });
+      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] != 0; });
+      parts_.push_back({part_references_.size(), lane.stack.kept_count});
     }
-    const std::size_t top = lane.stack.size();
-    push_children(lane, begin, end, split, sizes);
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t child = top;
-    for (const std::size_t size : sizes) {
+    for (const std::size_t size : split.sizes) {
       expand(lane, child, child + size, largest);
       child += size;
     }
-    lane.stack.resize(top);
+    lane.stack.references.resize(top);
   }
 
   /// Appends those of a node's references whose places in the node are `wanted` to the parts'.
   template <typename Wanted>
   void copy(const Lane& lane, std::size_t begin, std::size_t end, Wanted wanted) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (wanted(i - begin)) part_references_.push_back(lane.stack[i]);
+      if (wanted(i - begin)) part_references_.push_back(lane.stack.references[i]);
     }
   }
 
   void search_part(Lane& lane, std::size_t number, PairSink& pairs) const {
     const std::size_t begin = number == 0 ? 0 : parts_[number - 1].end;
-    const std::span<const Reference> references =
+    const std::span<const QuadtreeReference> references =
         std::span(part_references_).subspan(begin, parts_[number].end - begin);
-    lane.stack.assign(references.begin(), references.end());
+    lane.stack.references.assign(references.begin(), references.end());
     if (parts_[number].kept_count == 0) {
       search(lane, 0, references.size(), pairs);
       return;
     }
-    lane.children.assign(references.size(), 1);
-    std::fill_n(lane.children.begin(), parts_[number].kept_count, std::uint8_t{0});
+    lane.stack.children.assign(references.size(), 1);
+    std::fill_n(lane.stack.children.begin(), parts_[number].kept_count, std::uint8_t{0});
     sweep_kept(lane, 0, references.size(), pairs);
   }
-
-  const Box<D>& box(const Reference& reference) const { return sorted_boxes_[reference.place].box; }
 
   /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
   /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
@@ -222,124 +197,27 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
-    std::array<std::size_t, most_children> sizes;
-    if (count <= capacity_ || !choose_split(lane, begin, end, split) ||
-        !partition(lane, begin, end, split, sizes)) {
+    if (count <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split)) {
       lane.statistics.references += count;
       gather(lane, begin, end, lane.run, [](std::size_t) { return true; });
       lane.statistics.tests += kernels::sweep(lane.run.view(), pairs);
       return;
     }
-    if (lane.kept_count > 0) sweep_kept(lane, begin, end, pairs);
-    const std::size_t top = lane.stack.size();
-    push_children(lane, begin, end, split, sizes);
+    if (lane.stack.kept_count > 0) sweep_kept(lane, begin, end, pairs);
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t child = top;
-    for (const std::size_t size : sizes) {
+    for (const std::size_t size : split.sizes) {
       search(lane, child, child + size, pairs);
       child += size;
     }
-    lane.stack.resize(top);
-  }
-
-  // Inline here and below: since lay_out() calls them too, g++ 12 would not do it by itself in a search.
-
-  /// Chooses on which axes to split and where. False if no axis would separate the boxes.
-  [[gnu::always_inline]] bool choose_split(const Lane& lane, std::size_t begin, std::size_t end,
-                                           Split& split) const {
-    split.axis_count = 0;
-    const std::size_t count = end - begin;
-    std::array<float, node_samples> minima;
-    for (int axis = 0; axis < D; ++axis) {
-      const auto sample = [&](std::size_t i) -> const Box<D>& {
-        return box(lane.stack[begin + (2 * i + 1) * count / (2 * node_samples)]);
-      };
-      for (std::size_t i = 0; i < node_samples; ++i) minima[i] = sample(i).min[axis];
-      std::ranges::sort(minima);
-      const float at = minima[node_samples / 2];
-      std::size_t crossing = 0;
-      for (std::size_t i = 0; i < node_samples; ++i)
-        crossing += static_cast<std::size_t>(sample(i).min[axis] < at && sample(i).max[axis] >= at);
-      if (minima.front() == at || crossing > node_samples / 4) continue;
-      split.at[axis] = at;
-      split.low[axis] = minima[node_samples / 4];
-      split.high[axis] = minima[node_samples - 1 - node_samples / 4];
-      split.axes[split.axis_count++] = axis;
-    }
-    return split.axis_count > 0;
-  }
-
-  /// The children of a box are those in whose regions it has a part: lower ones if it begins before the
-  /// split, upper ones if it does not end before it. Fills the lane's children with a mask for each
-  /// reference, 0 for a box kept at the node, and `sizes`. False if a child would be nearly as large as the
-  /// node.
-  bool partition(Lane& lane, std::size_t begin, std::size_t end, const Split& split,
-                 std::array<std::size_t, most_children>& sizes) const {
-    // For each axis, the children on its lower and on its upper side.
-    constexpr std::array<std::uint32_t, 3> lower = {0x55, 0x33, 0x0f};
-    constexpr std::array<std::uint32_t, 3> upper = {0xaa, 0xcc, 0xf0};
-    const std::uint32_t all = (1U << (1U << split.axis_count)) - 1;
-    lane.children.resize(std::max(lane.children.size(), end - begin));
-    sizes.fill(0);
-    std::array<std::size_t, 256> masks{};
-    for (std::size_t i = begin; i < end; ++i) {
-      const Box<D>& b = box(lane.stack[i]);
-      std::uint32_t mask = all;
-      for (int at = 0; at < split.axis_count; ++at) {
-        const int axis = split.axes[at];
-        const float border = split.at[axis];
-        mask &= (b.min[axis] < border ? lower[at] : 0U) | (b.max[axis] >= border ? upper[at] : 0U);
-      }
-      if (mask == all && covers_middle(b, split)) mask = 0;
-      lane.children[i - begin] = static_cast<std::uint8_t>(mask);
-      ++masks[mask];
-    }
-    lane.kept_count = masks[0];
-    std::size_t largest = 0;
-    for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
-      for (std::uint32_t mask = 1; mask <= all; ++mask) sizes[child] += (mask >> child & 1U) * masks[mask];
-      largest = std::max(largest, sizes[child]);
-    }
-    return largest <= (end - begin) / 8 * 7;
-  }
-
-  static bool covers_middle(const Box<D>& b, const Split& split) {
-    bool covers = true;
-    for (int at = 0; at < split.axis_count; ++at) {
-      const int axis = split.axes[at];
-      covers &= b.min[axis] <= split.low[axis] && b.max[axis] >= split.high[axis];
-    }
-    return covers;
-  }
-
-  /// Pushes the references of all children, one child after the other.
-  [[gnu::always_inline]] void push_children(Lane& lane, std::size_t begin, std::size_t end,
-                                            const Split& split,
-                                            const std::array<std::size_t, most_children>& sizes) const {
-    std::array<std::size_t, most_children> next;
-    std::size_t top = lane.stack.size();
-    for (std::uint32_t child = 0; child < most_children; ++child) {
-      next[child] = top;
-      top += sizes[child];
-    }
-    lane.stack.resize(top);
-    for (std::size_t i = begin; i < end; ++i) {
-      const Reference reference = lane.stack[i];
-      for (std::uint32_t mask = lane.children[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
-        if ((mask & 1U) == 0) continue;
-        std::uint32_t apart = reference.apart;
-        for (int at = 0; at < split.axis_count; ++at) {
-          const int axis = split.axes[at];
-          if ((child >> at & 1U) != 0 && box(reference).min[axis] < split.at[axis]) apart |= 1U << axis;
-        }
-        lane.stack[next[child]++] = {reference.place, apart};
-      }
-    }
+    lane.stack.references.resize(top);
   }
 
   /// Sweeps the boxes kept at a node among themselves and against the node's others.
   void sweep_kept(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
-    gather(lane, begin, end, lane.kept_run, [&lane](std::size_t i) { return lane.children[i] == 0; });
-    gather(lane, begin, end, lane.run, [&lane](std::size_t i) { return lane.children[i] != 0; });
+    gather(lane, begin, end, lane.kept_run, [&lane](std::size_t i) { return lane.stack.children[i] == 0; });
+    gather(lane, begin, end, lane.run, [&lane](std::size_t i) { return lane.stack.children[i] != 0; });
     lane.statistics.references += lane.kept_run.size();
     lane.statistics.tests += kernels::sweep(lane.kept_run.view(), pairs);
     lane.statistics.tests += kernels::sweep(lane.kept_run.view(), lane.run.view(), pairs);
@@ -353,8 +231,8 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     run.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       if (!wanted(i - begin)) continue;
-      const core::SortedBox<D>& sorted = sorted_boxes_[lane.stack[i].place];
-      run.append(sorted.box, sorted.id, lane.stack[i].apart);
+      const core::SortedBox<D>& sorted = sorted_boxes_[lane.stack.references[i].place];
+      run.append(sorted.box, sorted.id, lane.stack.references[i].apart);
     }
   }
 
@@ -366,7 +244,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
   core::Parallel parallel_;
   std::vector<Lane> lanes_;
   std::vector<Part> parts_;
-  std::vector<Reference> part_references_;
+  std::vector<QuadtreeReference> part_references_;
 };
 
 template <int D>
