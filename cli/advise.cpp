@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/contender_options.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
@@ -36,8 +37,7 @@ struct AdviseArguments {
   std::string frames;
   MotionOptions motion;
   std::optional<std::uint64_t> seed;
-  std::string algorithms = "own";
-  std::vector<std::string> threads = {"1"};
+  ContenderOptions contenders{.algorithms = "own"};
   std::optional<double> budget;
   std::string json;
 };
@@ -146,13 +146,8 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
   check(arguments);
   ProgressLine progress;
   lab::AdviseOptions options;
-  options.algorithms = arguments.algorithms;
-  options.threads.clear();
-  for (const std::string& text : arguments.threads) {
-    const std::size_t threads = read_threads(text);
-    if (std::ranges::find(options.threads, threads) == options.threads.end())
-      options.threads.push_back(threads);
-  }
+  options.algorithms = arguments.contenders.algorithms;
+  options.threads = threads_of(arguments.contenders);
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
@@ -212,17 +207,10 @@ Verb add_advise(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--frames", arguments->frames, "Frames that they move (standard: 20)");
   add_motion_options(*verb, arguments->motion);
   verb->add_option("--seed", arguments->seed, "Seed of a scene (standard: 1)")->check(is_seed);
-  verb->add_option(
-          "--algorithms", arguments->algorithms,
-          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
-          "Peers are shown, but never advised")
-      ->capture_default_str();
-  verb->add_option(
-          "--threads", arguments->threads,
-          "Threads that a search may use besides one, 0 for as many as there are, or several such as "
-          "2,4: tried with the best, and advised where they pay")
-      ->delimiter(',')
-      ->capture_default_str();
+  add_algorithms(*verb, arguments->contenders, ". Peers are shown, but never advised");
+  add_threads(*verb, arguments->contenders,
+              "Threads that a search may use besides one, 0 for as many as there are, or several such as "
+              "2,4: tried with the best, and advised where they pay");
   verb->add_option("--budget", arguments->budget,
                    fmt::format("Seconds that measuring may take, about (standard: {})",
                                lab::AdviseOptions{}.budget_seconds));

@@ -1,6 +1,7 @@
 // broadside compare: the comparison, as a table and as JSON.
 #include "lab/measure/compare.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/contender_options.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
@@ -31,7 +33,7 @@ namespace broadside::cli {
 namespace {
 
 struct CompareArguments {
-  std::string algorithms = "all";
+  ContenderOptions contenders{.algorithms = "all"};
   std::vector<std::string> scenes;
   InputOptions input;
   std::vector<std::string> boxes;
@@ -39,7 +41,6 @@ struct CompareArguments {
   std::vector<double> moving;
   std::string frames;
   MotionOptions motion;
-  std::vector<std::string> threads = {"1"};
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
   ResultFiles files;
@@ -106,13 +107,8 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
-  options.algorithms = arguments.algorithms;
-  options.threads.clear();
-  for (const std::string& text : arguments.threads) {
-    const std::size_t threads = read_threads(text);
-    if (std::ranges::find(options.threads, threads) == options.threads.end())
-      options.threads.push_back(threads);
-  }
+  options.algorithms = arguments.contenders.algorithms;
+  options.threads = threads_of(arguments.contenders);
   options.find = lab::scene_finder(read_options(arguments.input));
   options.plan = plan_of(arguments, options.find);
   warn_of_ignored(arguments, options.find);
@@ -137,11 +133,12 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(comparison, command);
     write(arguments.files, json, [&] {
-      return lab::PageContent{.date = lab::today(),
-                              .comparison = json,
-                              .experiments = {},
-                              .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
-                                                           catalogue.select(arguments.algorithms))};
+      return lab::PageContent{
+          .date = lab::today(),
+          .comparison = json,
+          .experiments = {},
+          .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
+                                       catalogue.select(arguments.contenders.algorithms))};
     });
     if (comparison.stopped)
       say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
@@ -161,10 +158,7 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
       "compare",
       "Compares algorithms on scenes, every result verified. Without options: the quick comparison, which "
       "takes at most two minutes.");
-  verb->add_option(
-          "--algorithms", arguments->algorithms,
-          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between")
-      ->capture_default_str();
+  add_algorithms(*verb, arguments->contenders);
   verb->add_option("--scenes", arguments->scenes,
                    "Names, specs or files, - for standard input; a comma between (standard: every generated "
                    "scene)")
@@ -182,11 +176,9 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
   add_motion_options(*verb, arguments->motion);
-  verb->add_option("--threads", arguments->threads,
-                   "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
-                   "1,2, each. Our own use them, others are there once, with one thread")
-      ->delimiter(',')
-      ->capture_default_str();
+  add_threads(*verb, arguments->contenders,
+              "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
+              "1,2, each. Our own use them, others are there once, with one thread");
   verb->add_option("--seed", arguments->seed,
                    "Seed of a scene's first input; the others count up from it (standard: 1)")
       ->check(is_seed);
