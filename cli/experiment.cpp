@@ -1,8 +1,6 @@
 // broadside experiment: the paper's claims, tested.
 #include <algorithm>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +15,8 @@
 #include "cli/verbs.hpp"
 #include "lab/experiments/results.hpp"
 #include "lab/numbers.hpp"
+#include "lab/readers/format.hpp"
+#include "lab/readers/input.hpp"
 #include "lab/report/scene_drawings.hpp"
 
 namespace broadside::cli {
@@ -42,14 +42,19 @@ std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names
   return all;
 }
 
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  // Of an empty file nothing goes over, which is a failure of `content`.
-  if (file && file.peek() != std::ifstream::traits_type::eof()) content << file.rdbuf();
-  if (!file.is_open() || file.bad() || content.fail())
-    throw Unusable(fmt::format("{}: cannot be read; expected results of experiments", path));
-  return content.str();
+struct NamedText {
+  std::string name;  ///< what errors call it
+  std::string text;
+};
+
+/// All of a file, or of standard input where the path is "-".
+NamedText read_whole(const std::string& path) {
+  try {
+    lab::Input input(path);
+    return {input.name(), std::string(input.bytes())};
+  } catch (const lab::FileError& error) {
+    throw Unusable(fmt::format("{}; expected results of experiments", error.what()));
+  }
 }
 
 void print_list() {
@@ -65,14 +70,15 @@ void print_result(const lab::ExperimentResult& result) {
 
 /// Results of an earlier run, judged anew.
 lab::ExperimentResults read(const ExperimentArguments& arguments) {
-  lab::ExperimentResults results = lab::read_experiments(content_of(arguments.from), arguments.from);
+  const auto [name, text] = read_whole(arguments.from);
+  lab::ExperimentResults results = lab::read_experiments(text, name);
   const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
   std::erase_if(results.results, [&](const lab::ExperimentResult& result) {
     return std::ranges::find(wanted, result.experiment) == wanted.end();
   });
   if (results.results.empty())
     throw Unusable(
-        fmt::format("{}: no results of {}; expected some", arguments.from, fmt::join(arguments.names, ", ")));
+        fmt::format("{}: no results of {}; expected some", name, fmt::join(arguments.names, ", ")));
   for (const lab::ExperimentResult& result : results.results) print_result(result);
   return results;
 }
@@ -136,8 +142,9 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
                    "Names or numbers of experiments, as --list shows them (standard: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
   verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
-  verb->add_option("--from", arguments->from,
-                   "Measure nothing; judge the results in this file, which --json has written")
+  verb->add_option(
+          "--from", arguments->from,
+          "Measure nothing; judge the results in this file, which --json has written; - is standard input")
       ->type_name("FILE");
   add_result_files(*verb, arguments->files);
   return [arguments, command] { return run(*arguments, command); };

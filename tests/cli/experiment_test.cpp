@@ -6,6 +6,7 @@
 #include <csignal>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -96,6 +97,32 @@ TEST(ExperimentVerb, JudgesAFileByItsTables) {
   const Ended refuted = run({"experiment", "--from", folder.put("altered.json", json.dump())});
   EXPECT_EQ(refuted.status, 0) << refuted.errors;
   EXPECT_THAT(refuted.output, HasSubstr("Verdict: does not hold. 1 of 2 numbers"));
+}
+
+TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
+  const TemporaryFolder folder;
+  Json json = results();
+  // More than a pipe holds at once.
+  json["build"]["flags"] = std::string(1 << 20, 'x');
+  const std::string whole = folder.put("whole.json", json.dump());
+  const Ended judged = run({"experiment", "--from", whole, "--json", folder.file("a.json")});
+  for (const std::string& line : {"cat " + whole + " | $BROADSIDE experiment --from - --json ",
+                                  "$BROADSIDE experiment --from - < " + whole + " --json "}) {
+    const Ended ended = shell(line + folder.file("b.json"));
+    EXPECT_EQ(ended.status, 0) << ended.errors;
+    EXPECT_THAT(ended.output, AllOf(HasSubstr("Verdict: holds. 2 of 2 numbers"), judged.output));
+    EXPECT_TRUE(text_of(folder.file("b.json")) == text_of(folder.file("a.json")));
+  }
+  for (const auto& [line, part] :
+       {std::pair("head -c 300 " + whole + " | $BROADSIDE experiment --from -", "expected JSON"),
+        std::pair(std::string("$BROADSIDE experiment --from - < /dev/null"), "expected JSON"),
+        std::pair(std::string("$BROADSIDE experiment --from - <&-"), "expected results of experiments"),
+        std::pair("$BROADSIDE experiment winners --from - < " + whole, "no results of winners")}) {
+    const Ended ended = shell(line);
+    EXPECT_EQ(ended.status, 2) << line;
+    EXPECT_THAT(ended.output, IsEmpty());
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("standard input: "), HasSubstr(part)));
+  }
 }
 
 TEST(ExperimentVerb, RefusesNamesAndFilesThatItCannotUse) {
