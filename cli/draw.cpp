@@ -1,4 +1,5 @@
 // broadside draw: a scene's boxes and what algorithms lay over them, as a picture.
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -28,6 +29,9 @@ constexpr std::size_t standard_boxes = 300;
 /// Of more boxes a picture is a black square, and too large a file.
 constexpr std::size_t most_boxes = 20'000;
 
+/// Of a scene that is made; a file has as many as it has.
+constexpr std::size_t most_frames = 10'000;
+
 struct DrawArguments {
   std::string scene;
   std::string algorithms;
@@ -36,18 +40,53 @@ struct DrawArguments {
   std::string boxes;
   int dimension = 0;
   std::optional<std::uint64_t> seed;
+  std::string frame;
 };
 
-std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const DrawArguments& arguments,
+/// Of what is asked for by its own name, each; of a group, those that lay something over boxes.
+std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const std::string& list,
                                        int dimension) {
   std::vector<lab::Contender> chosen;
-  if (!arguments.algorithms.empty()) chosen = catalogue.select(arguments.algorithms);
-  for (const lab::Contender& contender : chosen) {
-    if (!contender.algorithm->has_dimension(dimension))
-      throw Unusable(fmt::format("--algorithm is '{}', which does not do {}D; expected --dimension {}",
-                                 contender.algorithm->name, dimension, 5 - dimension));
+  if (list.empty()) return chosen;
+  const auto choose = [&](const lab::Contender& contender) {
+    const auto same = [&](const lab::Contender& c) { return c.spec.text() == contender.spec.text(); };
+    if (std::ranges::none_of(chosen, same)) chosen.push_back(contender);
+  };
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string part = list.substr(begin, end - begin);
+    begin = end + 1;
+    for (const lab::Contender& contender : catalogue.select(part)) {
+      const bool is_group = Spec::parse(part).name != contender.algorithm->name;
+      if (is_group) {
+        if (lab::has_outline(contender, dimension)) choose(contender);
+        continue;
+      }
+      if (!contender.algorithm->has_dimension(dimension))
+        throw Unusable(fmt::format("--algorithm is '{}', which does not do {}D; expected --dimension {}",
+                                   contender.algorithm->name, dimension, 5 - dimension));
+      choose(contender);
+    }
+  }
+  if (chosen.empty()) {
+    std::vector<std::string> known;
+    for (const lab::Contender& contender : contenders(catalogue, "all", dimension))
+      known.push_back(contender.algorithm->name);
+    throw Unusable(fmt::format(
+        "--algorithm is '{}', of which none lays anything over boxes in {}D; expected some of: {}", list,
+        dimension, fmt::join(known, ", ")));
   }
   return chosen;
+}
+
+/// The frame that is asked for, counted from 0.
+std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
+  if (arguments.frame.empty()) return 0;
+  const std::size_t frame = read_index("--frame", arguments.frame);
+  if (scene.kind != lab::SceneKind::file && frame > most_frames)
+    throw Unusable(fmt::format("--frame is {}; expected at most {}, as all frames before it are made", frame,
+                               most_frames));
+  return frame;
 }
 
 Exit run(const DrawArguments& arguments) {
@@ -68,8 +107,8 @@ Exit run(const DrawArguments& arguments) {
     throw Unusable(fmt::format("-n is {}; expected at most {}, which is more than an eye tells apart", boxes,
                                most_boxes));
   const lab::Drawing drawing =
-      lab::draw_scene(named, dimension, 0, contenders(catalogue, arguments, dimension), boxes,
-                      arguments.seed.value_or(lab::SceneRequest{}.seed));
+      lab::draw_scene(named, dimension, 0, contenders(catalogue, arguments.algorithms, dimension), boxes,
+                      arguments.seed.value_or(lab::SceneRequest{}.seed), frame_of(arguments, named.scene));
   const std::string picture = lab::svg_of(drawing);
   lab::write_file(arguments.output, [&picture](std::ostream& file) { file << picture; });
   return Exit::fine;
@@ -87,7 +126,8 @@ Verb add_draw(CLI::App& program) {
   verb->add_option("-o,--output", arguments->output, "The file; - is standard output")->required();
   verb->add_option("--algorithm", arguments->algorithms,
                    "What to lay over the boxes: a spec such as quadtree:capacity=16, or several with commas, "
-                   "side by side (standard: only the boxes)");
+                   "side by side; own, paper or all for those of them that lay something over boxes "
+                   "(standard: only the boxes)");
   verb->add_option(
       "-n", arguments->boxes,
       fmt::format("Number of boxes (standard: {}); of a scene or file of more, so many are taken "
@@ -97,6 +137,8 @@ Verb add_draw(CLI::App& program) {
       ->check(is_dimension);
   verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
       ->check(is_seed);
+  verb->add_option("--frame", arguments->frame,
+                   "The frame of a scene or file whose boxes move, counted from 0 (standard: the first)");
   add_file_options(*verb, arguments->input);
   return [arguments] { return run(*arguments); };
 }

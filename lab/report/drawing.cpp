@@ -9,13 +9,16 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
 #include "broadside/find_pairs.hpp"
 #include "broadside/outline.hpp"
 #include "broadside/sinks.hpp"
 
+#include "lab/numbers.hpp"
 #include "lab/report/drawing_paths.hpp"
 
 namespace broadside::lab {
@@ -92,6 +95,22 @@ std::vector<bool> touching(std::span<const Box<D>> boxes) {
   return touches;
 }
 
+/// A scene's boxes in a frame, which must be there.
+template <int D>
+std::vector<Box<D>> boxes_at(std::size_t frame, const NamedScene& named, SceneRequest request) {
+  const bool moves = D == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d);
+  // Boxes that rest could be set moving; they would not be the scene's own frames.
+  request.frames = moves ? frame : 0;
+  History<D> history = make_history<D>(named.scene, named.spec, request);
+  const std::size_t last = history.steps.size();
+  if (frame > last)
+    throw InvalidSpec(fmt::format("{}: --frame is {}; expected 0{}, as the scene has {}", named.spec.text(),
+                                  frame, last == 0 ? "" : fmt::format(" to {}", last),
+                                  counted(last + 1, "frame", "frames")));
+  for (const Step<D>& step : history.steps) apply(step, history.boxes);
+  return std::move(history.boxes);
+}
+
 }  // namespace
 
 template <int D>
@@ -151,8 +170,18 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
   return drawing;
 }
 
+bool has_outline(const Contender& contender, int dimension) {
+  if (!contender.algorithm->has_dimension(dimension)) return false;
+  const auto in_dimension = [&]<int D>() {
+    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*contender.algorithm, contender.spec);
+    return dynamic_cast<const Outlined<D>*>(finder.get()) != nullptr;
+  };
+  return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
+}
+
 Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of,
-                   std::span<const Contender> contenders, std::size_t most, std::uint64_t seed) {
+                   std::span<const Contender> contenders, std::size_t most, std::uint64_t seed,
+                   std::size_t frame) {
   std::vector<Contender> able;
   for (const Contender& contender : contenders) {
     if (contender.algorithm->has_dimension(dimension)) able.push_back(contender);
@@ -161,11 +190,12 @@ Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of,
     SceneRequest request;
     request.boxes = most;
     request.seed = seed;
-    const History<D> history = make_history<D>(named.scene, named.spec, request);
-    const std::vector<Box<D>> boxes = thinned<D>(history.boxes, most);
-    const auto present = static_cast<std::size_t>(std::ranges::count_if(history.boxes, is_present<D, float>));
+    const std::vector<Box<D>> all = boxes_at<D>(frame, named, request);
+    const std::vector<Box<D>> boxes = thinned<D>(all, most);
+    const auto present = static_cast<std::size_t>(std::ranges::count_if(all, is_present<D, float>));
     const bool is_own = named.scene.fixed_count || boxes.size() < present;
-    return draw<D>(named.spec.text(), boxes, is_own ? present : std::max(of, present), able);
+    const std::string title = named.spec.text() + (frame > 0 ? fmt::format(", frame {}", frame) : "");
+    return draw<D>(title, boxes, is_own ? present : std::max(of, present), able);
   };
   return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
 }

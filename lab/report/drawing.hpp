@@ -60,13 +60,17 @@ template <int D>
 Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_t of,
              std::span<const Contender> contenders);
 
-/// Draws a scene's first frame in a dimension that it has: made with `most` boxes, which have the density of
-/// more, or, where their number is the scene's own, thinned() to that. `of` is how many boxes the scene is
-/// said to have; for a number of its own, that is told instead. Contenders that do not do the dimension are
-/// left out.
+/// Whether the contender lays anything over boxes in this dimension.
+bool has_outline(const Contender& contender, int dimension);
+
+/// Draws a frame of a scene, counted from 0, in a dimension that it has: made with `most` boxes, which have
+/// the density of more, or, where their number is the scene's own, thinned() to that. `of` is how many boxes
+/// the scene is said to have; for a number of its own, that is told instead. Contenders that do not do the
+/// dimension are left out. Throws InvalidSpec if there are not so many frames; boxes that do not move by
+/// themselves have one.
 Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of,
                    std::span<const Contender> contenders, std::size_t most = most_drawn,
-                   std::uint64_t seed = 1);
+                   std::uint64_t seed = 1, std::size_t frame = 0);
 
 /// {"scene", "dimension", "boxes", "of", "views": [{"axes", "width", "height", "boxes", "layers":
 /// [{"algorithm", "caption", "levels": [...]}]}]}: all boxes in one path, a sweep's line a level of its own.
