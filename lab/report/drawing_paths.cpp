@@ -34,6 +34,11 @@ std::string joined(const std::string& first, const std::string& second) {
   return second.starts_with('-') ? first + second : first + " " + second;
 }
 
+/// A straight line from a point on: 'h' to the right, 'v' down.
+std::string stroke(const std::string& x, const std::string& y, char command, const std::string& length) {
+  return "M" + joined(x, y) + command + length;
+}
+
 double place(double world, double low, double high, int length) {
   if (world <= low) return 0;
   return world >= high ? length : (world - low) / (high - low) * length;
@@ -117,13 +122,13 @@ void append_rectangle(std::string& path, const Rectangle& rectangle, const Windo
   const long top = in_tenths(window.y(rectangle.max[1]));
   const std::string width = tenths(in_tenths(window.x(rectangle.max[0])) - left);
   const std::string height = tenths(in_tenths(window.y(rectangle.min[1])) - top);
-  path += "M" + joined(tenths(left), tenths(top)) + "h" + width + "v" + height + "h";
+  path += stroke(tenths(left), tenths(top), 'h', width) + "v" + height + "h";
   path += (width == "0" ? "0" : "-" + width) + "z";
 }
 
 void append_line(std::string& path, int axis, double at, double from, double to, const Window& window) {
   const auto line = [&path](char command, double x, double y, double length) {
-    path += "M" + joined(tenths(in_tenths(x)), tenths(in_tenths(y))) + command + tenths(in_tenths(length));
+    path += stroke(tenths(in_tenths(x)), tenths(in_tenths(y)), command, tenths(in_tenths(length)));
   };
   if (axis == 0)
     line('h', window.x(from), window.y(at), window.x(to) - window.x(from));
@@ -154,8 +159,8 @@ std::string Edges::next_level(std::span<const Rectangle> rectangles) {
           if (to <= from) return;
           const int x = axis == 0 ? from : across;
           const int y = axis == 0 ? across : from;
-          path += "M" + std::to_string(x) + " " + std::to_string(y) + (axis == 0 ? "h" : "v") +
-                  std::to_string(to - from);
+          path +=
+              stroke(std::to_string(x), std::to_string(y), axis == 0 ? 'h' : 'v', std::to_string(to - from));
         };
         for (const auto& [old_begin, old_end] : drawn) {
           if (old_end <= from || old_begin >= end) continue;

@@ -65,6 +65,10 @@ std::string shortened(const std::string& text) {
   return text.size() <= caption_length ? text : text.substr(0, caption_length - 3) + "...";
 }
 
+std::string caption_of(const DrawingLayer& layer) {
+  return layer.caption.empty() ? "nothing laid over the boxes" : layer.caption;
+}
+
 /// Of a layer's levels, the uppermost ones stand out.
 std::string lines_of(const DrawingLayer& layer) {
   std::string lines;
@@ -83,9 +87,7 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
   const double scale = static_cast<double>(panel_width) / view.width;
   std::string title = panel.layer == nullptr ? drawing.scene : panel.layer->algorithm;
   if (drawing.dimension == 3) title += fmt::format(", {} to the right, {} up", view.axes[0], view.axes[1]);
-  std::string caption;
-  if (panel.layer != nullptr)
-    caption = panel.layer->caption.empty() ? "nothing laid over the boxes" : panel.layer->caption;
+  const std::string caption = panel.layer == nullptr ? "" : caption_of(*panel.layer);
   std::string text = fmt::format("<g transform=\"translate({} {})\">\n<text class=\"t\" y=\"15\">{}</text>\n",
                                  x, y, escaped(shortened(title)));
   text += fmt::format("<text class=\"c\" y=\"34\">{}</text>\n", escaped(shortened(caption)));
@@ -109,8 +111,7 @@ std::string description_of(const Drawing& drawing) {
   text += "; those that overlap another one are orange.";
   if (drawing.views.empty()) return text;
   for (const DrawingLayer& layer : drawing.views[0].layers) {
-    text += fmt::format(" {}: {}.", layer.algorithm,
-                        layer.caption.empty() ? "nothing laid over the boxes" : layer.caption);
+    text += fmt::format(" {}: {}.", layer.algorithm, caption_of(layer));
     if (!layer.active.empty())
       text += " Half way of a sweep, its line and the boxes that it crosses are green.";
   }
