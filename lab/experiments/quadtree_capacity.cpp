@@ -154,17 +154,19 @@ Finding judge(const std::vector<Table>& tables) {
   }
   const Density& sparsest = listed.front();
   const Density& densest = listed.back();
+  constexpr double margin = 100 * (as_good - 1);
   finding.reason = fmt::format(
       "Leaves of {} take the listing up to {:.2f} times the time of the best ones (at {} neighbours). From "
       "{} to {} neighbours a box's references in them grow from {:.1f} to {:.1f}, where our mending ends the "
-      "splitting, and the best leaf from {} to {} boxes. In the densest world they take {} tests a box where "
-      "{} would do{}. The own quadtree takes up to {:.2f} times its best time in leaves of {}; its best in "
-      "the sparsest world hold {}.",
+      "splitting, and the smallest leaf within {:.0f} % of the best time from {} to {} boxes. In the densest "
+      "world they take {} tests a box where {} would do{}. The own quadtree takes up to {:.2f} times its "
+      "best time in leaves of {}; in the "
+      "sparsest world the smallest leaf within {:.0f} % of it holds {}.",
       usual_capacity, worst, worst_at, sparsest.neighbours, densest.neighbours, sparsest.usual_references,
-      densest.usual_references, sparsest.best_capacity, densest.best_capacity, rounded(densest.usual_tests),
-      rounded(densest.fewest_tests),
+      densest.usual_references, margin, sparsest.best_capacity, densest.best_capacity,
+      rounded(densest.usual_tests), rounded(densest.fewest_tests),
       densest.usual_tests > 1.05 * densest.fewest_tests ? ", since a pair meets in many leaves" : "",
-      own_worst, own_capacity, owned.front().best_capacity);
+      own_worst, own_capacity, margin, owned.front().best_capacity);
   finding.figures = {{"worst_time_over_best", worst},
                      {"worst_at", worst_at, "neighbours"},
                      {"references_in_sparsest", sparsest.usual_references, "references a box"},
