@@ -15,29 +15,15 @@
 #include <utility>
 
 #include "algorithms/bvh_buckets.hpp"
-#include "kernels/nowhere.hpp"
 
 namespace broadside::own {
 namespace {
 
 using kernels::fan_out;
 
-constexpr std::size_t round_up(std::size_t size) { return (size + fan_out - 1) / fan_out * fan_out; }
-
 /// Sizes beyond which a box belongs to the next class, in units of a typical one.
 constexpr std::array<float, 4> class_borders = {4, 32, 256, 2048};
 constexpr std::size_t classes = class_borders.size() + 1;
-
-/// The elements of `memory`, at least `size` of them.
-template <typename Element>
-Element* grown(std::vector<Element>& memory, std::size_t size) {
-  if (memory.size() < size) memory.resize(size);
-  return memory.data();
-}
-
-/// What is neutral to bounds.
-template <int D>
-constexpr Box<D> none = absent_box<D>();
 
 }  // namespace
 
@@ -46,7 +32,7 @@ void BoxTreePacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_coun
   sample_.take(boxes);
   partition(boxes, left_count);
   place_all();
-  build();
+  levels_.build();
 }
 
 /// Sorts the boxes into entries_: by set and class, and in these roughly along the first axis.
@@ -93,7 +79,7 @@ void BoxTreePacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left
 template <int D>
 void BoxTreePacker<D>::choose_axes(std::size_t boxes) {
   std::iota(axes_.begin(), axes_.end(), 0);
-  const std::array<double, D> parts = parts_of(round_up(boxes) / fan_out, 1);
+  const std::array<double, D> parts = parts_of(whole_leaves(boxes) / fan_out, 1);
   // Not a stable sort, which takes memory.
   std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
 }
@@ -128,22 +114,19 @@ void BoxTreePacker<D>::place_all() {
   std::size_t size = 0;
   std::size_t begin = 0;
   for (const std::size_t end : group_ends_) {
-    size += round_up(end - begin);
+    size += whole_leaves(end - begin);
     begin = end;
   }
-  resize(0, size);
-  if (ids_.size() < round_up(size)) ids_.resize(round_up(size));
+  levels_.start(size);
   size = 0;
   begin = 0;
-  gaps_.clear();
-  tree_.left_size = 0;
   for (std::size_t group = 0; group < group_ends_.size(); ++group) {
     const std::size_t end = group_ends_[group];
     place_group(begin, end, size, group % classes);
-    gaps_.push_back({size + (end - begin), size + round_up(end - begin)});
-    size += round_up(end - begin);
+    levels_.leave(size + (end - begin), size + whole_leaves(end - begin));
+    size += whole_leaves(end - begin);
     begin = end;
-    if (group_ends_.size() > classes && group == classes - 1) tree_.left_size = size;
+    if (group_ends_.size() > classes && group == classes - 1) levels_.set_left_size(size);
   }
 }
 
@@ -152,7 +135,7 @@ template <int D>
 void BoxTreePacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
                                    std::size_t size_class) {
   if (begin == end) return;
-  const std::size_t leaves = round_up(end - begin) / fan_out;
+  const std::size_t leaves = whole_leaves(end - begin) / fan_out;
   const float size = size_class == 0 ? 1 : class_borders[size_class - 1];
   std::array<double, D> parts = parts_of(leaves, size);
   const auto share = [](std::size_t count, double part) {
@@ -164,15 +147,17 @@ void BoxTreePacker<D>::place_group(std::size_t begin, std::size_t end, std::size
     const std::size_t count = std::min(slab, end - at);
     const auto entry = [this, at](std::size_t i) -> const Entry& { return entries_[at + i]; };
     if constexpr (D == 2) {
-      order(count, axes_[1], entry, [&](std::size_t i, std::size_t to) { put(place + to, entry(i)); });
+      order(count, axes_[1], entry,
+            [&](std::size_t i, std::size_t to) { levels_.put(place + to, entry(i).box, entry(i).id); });
     } else {
       order_.resize(std::max(order_.size(), count));
       order(count, axes_[1], entry,
             [this](std::size_t i, std::size_t to) { order_[to] = static_cast<std::uint32_t>(i); });
       for (std::size_t from = 0; from < count; from += strip) {
         const auto in_strip = [&](std::size_t i) -> const Entry& { return entry(order_[from + i]); };
-        order(std::min(strip, count - from), axes_[2], in_strip,
-              [&](std::size_t i, std::size_t to) { put(place + from + to, in_strip(i)); });
+        order(std::min(strip, count - from), axes_[2], in_strip, [&](std::size_t i, std::size_t to) {
+          levels_.put(place + from + to, in_strip(i).box, in_strip(i).id);
+        });
       }
     }
   }
@@ -252,70 +237,10 @@ void BoxTreePacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put
 }
 
 template <int D>
-void BoxTreePacker<D>::put(std::size_t place, const Entry& entry) {
-  for (int axis = 0; axis < D; ++axis) {
-    tree_.levels[0].min[axis][place] = entry.box.min[axis];
-    tree_.levels[0].max[axis][place] = entry.box.max[axis];
-  }
-  ids_[place] = entry.id;
-}
-
-/// The bounds over the leaves, level by level.
-template <int D>
-void BoxTreePacker<D>::build() {
-  for (const Gap gap : gaps_) fill(0, gap, none<D>);
-  tree_.id = ids_.data();
-  tree_.level_count = 1;
-  do {
-    const std::size_t level = tree_.level_count++;
-    resize(level, round_up(tree_.levels[level - 1].size) / fan_out);
-    kernels::set_bounds(tree_, level);
-    fill(level, gap_behind(level), none<D>);
-  } while (tree_.levels[tree_.level_count - 1].size > fan_out);
-  for (const Gap gap : gaps_) fill(0, gap, kernels::nowhere<D>());
-  for (std::size_t level = 1; level < tree_.level_count; ++level)
-    fill(level, gap_behind(level), kernels::nowhere<D>());
-}
-
-template <int D>
-auto BoxTreePacker<D>::gap_behind(std::size_t level) const -> Gap {
-  const std::size_t size = tree_.levels[level].size;
-  return {size, round_up(size)};
-}
-
-template <int D>
-void BoxTreePacker<D>::fill(std::size_t level, Gap gap, const Box<D>& box) {
-  for (std::size_t place = gap.begin; place < gap.end; ++place) {
-    for (int axis = 0; axis < D; ++axis) {
-      tree_.levels[level].min[axis][place] = box.min[axis];
-      tree_.levels[level].max[axis][place] = box.max[axis];
-    }
-    if (level == 0) ids_[place] = BoxId{0};
-  }
-}
-
-/// Makes `size` the size of a level, whose elements are then to be set.
-template <int D>
-void BoxTreePacker<D>::resize(std::size_t level, std::size_t size) {
-  LevelMemory& memory = memory_[level];
-  for (int axis = 0; axis < D; ++axis) {
-    tree_.levels[level].min[axis] = grown(memory.min[axis], round_up(size));
-    tree_.levels[level].max[axis] = grown(memory.max[axis], round_up(size));
-  }
-  tree_.levels[level].size = size;
-  if (level != 0) tree_.candidates[level] = grown(memory.candidates, round_up(size) + fan_out);
-}
-
-template <int D>
 std::size_t BoxTreePacker<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
-  std::size_t bytes = held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(order_) +
-                      radix_.bytes() + held(gaps_) + held(ids_);
-  for (const LevelMemory& level : memory_) {
-    bytes += held(level.candidates);
-    for (int axis = 0; axis < D; ++axis) bytes += held(level.min[axis]) + held(level.max[axis]);
-  }
-  return bytes;
+  return held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(order_) + radix_.bytes() +
+         levels_.bytes();
 }
 
 template class BoxTreePacker<2>;

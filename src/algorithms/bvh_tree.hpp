@@ -10,6 +10,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "algorithms/bvh_levels.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -36,29 +37,17 @@ class BoxTreePacker {
   void pack(std::span<const Box<D>> boxes, std::size_t left_count = 0);
 
   /// The tree built last. Whoever changes what its levels hold keeps to what BoxTree says of them.
-  const kernels::BoxTree<D>& tree() const noexcept { return tree_; }
+  const kernels::BoxTree<D>& tree() const noexcept { return levels_.tree(); }
 
   /// The ids on level 0, one for each of its places, to be renamed by who has other names; 0 where there is
   /// no box.
-  std::span<BoxId> ids() noexcept { return {ids_.data(), tree_.levels[0].size}; }
+  std::span<BoxId> ids() noexcept { return levels_.ids(); }
 
   /// The bytes held, of which building alone takes about half.
   std::size_t bytes() const noexcept;
 
  private:
   using Entry = core::SortedBox<D>;
-
-  /// Places from one to before another that hold nothing.
-  struct Gap {
-    std::size_t begin;
-    std::size_t end;
-  };
-
-  struct LevelMemory {
-    std::array<std::vector<float>, D> min;
-    std::array<std::vector<float>, D> max;
-    std::vector<std::uint32_t> candidates;
-  };
 
   void partition(std::span<const Box<D>> boxes, std::size_t left);
   void choose_axes(std::size_t boxes);
@@ -69,11 +58,6 @@ class BoxTreePacker {
   std::array<double, D> parts_of(std::size_t leaves, float size) const;
   template <typename EntryOf, typename Put>
   void order(std::size_t count, int axis, EntryOf entry, Put put);
-  void put(std::size_t place, const Entry& entry);
-  void build();
-  Gap gap_behind(std::size_t level) const;
-  void fill(std::size_t level, Gap gap, const Box<D>& box);
-  void resize(std::size_t level, std::size_t size);
 
   core::Sample<D> sample_;
   std::array<int, D> axes_{};        // slabs are cut along the first one, and leaves along the last one
@@ -84,10 +68,7 @@ class BoxTreePacker {
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> order_;
   core::RadixSort radix_;
-  std::vector<Gap> gaps_;
-  std::array<LevelMemory, kernels::most_levels> memory_;
-  std::vector<BoxId> ids_;
-  kernels::BoxTree<D> tree_{};
+  BoxTreeLevels<D> levels_;
 };
 
 }  // namespace broadside::own
