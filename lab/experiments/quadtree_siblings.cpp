@@ -20,6 +20,9 @@ constexpr double usual_drift = 0.2;
 /// What is less than this faster is as fast.
 constexpr double margin = 0.1;
 
+/// A way that takes so many times as long as the one from the root is horrible.
+constexpr double horrible = 2;
+
 struct Trial {
   int dimension;
   std::size_t boxes;
@@ -28,21 +31,31 @@ struct Trial {
   double drift;
 };
 
-/// What varies, and then what both ways cost.
+/// The two ways that are no descent from the root, by the columns in which they are compared with it.
+const std::string relative_gain = "from the root over relative";
+const std::string siblings_gain = "from the root over siblings";
+
+/// What varies, and then what the three ways cost.
 std::vector<Column> columns_after(std::vector<Column> first) {
   first.insert(first.end(), {{"leaves a box"},
                              {"from the root", "ns"},
                              {"relative", "ns"},
-                             {"from the root over relative"},
+                             {"siblings", "ns"},
+                             {relative_gain},
+                             {siblings_gain},
                              {"tests a mover"}});
   return first;
 }
 
 std::vector<Cell> row_of(const Laboratory& laboratory, const Trial& trial, std::vector<Cell> first) {
-  const std::string root = fmt::format("quadtree:capacity={}:update=root", trial.capacity);
-  const std::string relative = fmt::format("quadtree:capacity={}:update=relative", trial.capacity);
+  const auto spec = [&](const char* update) {
+    return fmt::format("quadtree:capacity={}:update={}", trial.capacity, update);
+  };
+  const std::string root = spec("root");
+  const std::string relative = spec("relative");
+  const std::string siblings = spec("siblings");
   const CaseResult result =
-      laboratory.measure(root + "," + relative,
+      laboratory.measure(root + "," + relative + "," + siblings,
                          {.scene = fmt::format("uniform:neighbours={}", trial.neighbours),
                           .dimension = trial.dimension,
                           .boxes = trial.boxes,
@@ -51,19 +64,20 @@ std::vector<Cell> row_of(const Laboratory& laboratory, const Trial& trial, std::
                           .drift = trial.drift},
                          effort_to_follow(laboratory));
   const Cell slow = mover_cell(result, root);
-  const Cell fast = mover_cell(result, relative);
-  const Measurement& measured = measurement_of(result, relative);
+  const Cell common = mover_cell(result, relative);
+  const Cell across = mover_cell(result, siblings);
+  const Measurement& measured = measurement_of(result, siblings);
   const auto boxes = static_cast<double>(trial.boxes);
-  first.insert(first.end(),
-               {scaled_cell(references_cell(measured), 1 / boxes), slow, fast, ratio_cell(slow, fast),
-                scaled_cell(tests_cell(measured), 1 / (moving * boxes))});
+  first.insert(first.end(), {scaled_cell(references_cell(measured), 1 / boxes), slow, common, across,
+                             ratio_cell(slow, common), ratio_cell(slow, across),
+                             scaled_cell(tests_cell(measured), 1 / (moving * boxes))});
   return first;
 }
 
-Chart chart_of(const std::string& title, const std::string& x) {
-  return {.title = title + ": from the root over relative, above 1 relative wins",
+Chart chart_of(const std::string& title, const std::string& x, const std::string& gain) {
+  return {.title = fmt::format("{}: {}, above 1 the root loses", title, gain),
           .x = x,
-          .y = "from the root over relative",
+          .y = gain,
           .series = "tree",
           .log_x = true};
 }
@@ -74,17 +88,18 @@ std::vector<Table> measure(const Laboratory& laboratory) {
                   "A mover filed anew, by the number of boxes: the deeper the tree, the longer the way "
                   "from the root",
               .columns = columns_after({{"tree"}, {"boxes"}}),
-              .charts = {chart_of("By the number of boxes", "boxes")}};
+              .charts = {chart_of("By the number of boxes", "boxes", siblings_gain)}};
   Table step{.name = "step",
              .title = "A mover filed anew, by how far it goes in a frame",
              .columns = columns_after({{"tree"}, {"drift", "of a box"}}),
-             .charts = {chart_of("By how far a mover goes", "drift")}};
+             .charts = {chart_of("By how far a mover goes", "drift", siblings_gain)}};
   Table spanning{.name = "spanning",
                  .title =
                      "A mover filed anew, by the leaves that a box is in: neighbours make boxes larger "
                      "against leaves",
                  .columns = columns_after({{"tree"}, {"neighbours"}}),
-                 .charts = {chart_of("By the leaves a box is in", "leaves a box")}};
+                 .charts = {chart_of("By the leaves a box is in", "leaves a box", siblings_gain),
+                            chart_of("By the leaves a box is in", "leaves a box", relative_gain)}};
   for (const int dimension : {2, 3}) {
     const auto many =
         laboratory.either<std::vector<std::size_t>>({1'000, 6'000, 25'000, 100'000}, {6'000, 25'000});
@@ -109,32 +124,44 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   return {depth, step, spanning};
 }
 
-/// A tree, from the boxes in the fewest leaves to those in the most.
+/// A way in a tree, from the boxes in the fewest leaves to those in the most.
 struct Line {
   std::string tree;
-  std::vector<std::pair<double, double>> gains;  ///< leaves a box, from the root over relative
-  double until = 0;  ///< leaves a box from which on relative is not faster by the margin
+  std::vector<std::pair<double, double>> gains;  ///< leaves a box, from the root over this way
+  double until = 0;  ///< leaves a box from which on it is not faster by the margin
 
   double fewest() const { return gains.front().second; }
   double most() const { return gains.back().second; }
+  /// Where it gains least.
+  std::pair<double, double> worst() const {
+    return std::ranges::min(gains, {}, &std::pair<double, double>::second);
+  }
+  double least() const { return worst().second; }
   bool pays() const { return fewest() > 1 + margin; }
 };
 
-std::vector<std::pair<double, double>> gains_over(const Table& table, const std::string& x) {
-  auto gains = table.points(x, "from the root over relative");
+std::vector<std::pair<double, double>> gains_over(const Table& table, const std::string& x,
+                                                  const std::string& gain) {
+  auto gains = table.points(x, gain);
   if (gains.size() < 2)
     throw std::invalid_argument(
-        fmt::format("table '{}': {} rows with both times; expected two a tree", table.name, gains.size()));
+        fmt::format("table '{}': {} rows with '{}'; expected two a tree", table.name, gains.size(), gain));
   std::ranges::sort(gains);
   return gains;
 }
 
-Line line_of(const Table& table, const std::string& tree) {
-  Line line{.tree = tree, .gains = gains_over(table.where("tree", tree), "leaves a box")};
-  std::vector<std::pair<double, double>> enough = line.gains;
-  for (auto& [leaves, gain] : enough) gain = 1 + margin;
-  line.until = crossover(line.gains, enough).value_or(line.gains.back().first);
-  return line;
+std::vector<Line> lines_of(const Table& table, const std::string& gain) {
+  std::vector<Line> lines;
+  for (const std::string& tree : table.distinct_texts("tree")) {
+    Line line{.tree = tree, .gains = gains_over(table.where("tree", tree), "leaves a box", gain)};
+    std::vector<std::pair<double, double>> enough = line.gains;
+    for (auto& [leaves, least] : enough) least = 1 + margin;
+    line.until = crossover(line.gains, enough).value_or(line.gains.back().first);
+    lines.push_back(line);
+  }
+  if (lines.empty())
+    throw std::invalid_argument(fmt::format("table '{}' has no rows; expected two a tree", table.name));
+  return lines;
 }
 
 /// "2d_capacity_32" of "2D, capacity 32".
@@ -147,61 +174,75 @@ std::string figure_name(const std::string& tree) {
   return name;
 }
 
+/// From the least to the greatest of what lines gain.
+std::string range_text(const std::vector<Line>& lines, double (Line::*gain)() const) {
+  const auto [least, most] = std::ranges::minmax(lines, {}, gain);
+  return fmt::format("{:.2f} ({}) to {:.2f} ({})", (least.*gain)(), least.tree, (most.*gain)(), most.tree);
+}
+
+/// What becomes of boxes in many leaves, by how many times as long as from the root they take at worst.
+std::string spanning_text(double slowdown) {
+  if (slowdown > 1 + margin)
+    return fmt::format(
+        "in more it takes up to {:.2f} times as long as from the root, a loss but not horrible", slowdown);
+  return "in more it gains nothing, but is not horrible";
+}
+
 Finding judge(const std::vector<Table>& tables) {
   const Table& depth = table_named(tables, "depth");
   const Table& step = table_named(tables, "step");
   const Table& spanning = table_named(tables, "spanning");
-  std::vector<Line> lines;
-  for (const std::string& tree : spanning.distinct_texts("tree")) lines.push_back(line_of(spanning, tree));
-  if (lines.empty()) throw std::invalid_argument("table 'spanning' has no rows; expected two a tree");
+  const std::vector<Line> across = lines_of(spanning, siblings_gain);
+  const std::vector<Line> common = lines_of(spanning, relative_gain);
 
   double until = INFINITY;
-  for (const Line& line : lines) {
+  for (const Line& line : across) {
     if (line.pays()) until = std::min(until, line.until);
   }
-  const auto fewest = std::ranges::minmax(lines, {}, &Line::fewest);
-  const auto most = std::ranges::minmax(lines, {}, &Line::most);
-  const double most_leaves = most.min.gains.back().first;
-  const bool is_horrible = most.min.most() < 1 / (1 + margin);
-  const std::string shallow = depth.distinct_texts("tree").at(0);
-  const auto by_depth = gains_over(depth.where("tree", shallow), "boxes");
-  const auto by_step = gains_over(step.where("tree", step.distinct_texts("tree").at(0)), "drift");
+  const Line worst = std::ranges::min(across, {}, &Line::least);
+  const auto [worst_leaves, least] = worst.worst();
+  const double slowdown = 1 / least;
+  const std::string first = depth.distinct_texts("tree").at(0);
+  const auto by_depth = gains_over(depth.where("tree", first), "boxes", siblings_gain);
+  const auto by_step =
+      gains_over(step.where("tree", step.distinct_texts("tree").at(0)), "drift", siblings_gain);
 
   Finding finding;
-  if (std::ranges::none_of(lines, &Line::pays)) {
+  if (std::ranges::none_of(across, &Line::pays)) {
     finding.verdict = Verdict::does_not_hold;
-  } else if (is_horrible) {
+  } else if (slowdown >= horrible) {
     finding.verdict = Verdict::holds;
   } else {
     finding.verdict = Verdict::holds_when;
-    finding.condition = fmt::format(
-        "boxes are in fewer than {:.1f} leaves on average; in more it gains nothing, but is not horrible",
-        until);
+    finding.condition =
+        fmt::format("boxes are in fewer than {:.1f} leaves on average; {}", until, spanning_text(slowdown));
   }
   finding.reason = fmt::format(
-      "With boxes in {:.1f} leaves, filing a mover from where it was is {:.2f} times as fast as from the "
-      "root "
-      "({}), and from {:.2f} times in the tree that gains least ({}). With boxes in {:.1f} leaves it is "
+      "Times as fast as from the root, a mover whose references are carried across to siblings and cousins: "
+      "with boxes in the fewest leaves {}, in the most {}. At its worst, in {:.1f} leaves ({}), it takes "
       "{:.2f} "
-      "times as fast ({}). Steps of {} of a box gain {:.2f} times, those of {} boxes {:.2f}. From {} to {} "
-      "boxes the gain goes from {:.2f} to {:.2f} ({}): the way down grows, and so does all else.{}",
-      fewest.max.gains.front().first, fewest.max.fewest(), fewest.max.tree, fewest.min.fewest(),
-      fewest.min.tree, most_leaves, most.min.most(), most.min.tree, rounded(by_step.front().first),
-      by_step.front().second, rounded(by_step.back().first), by_step.back().second,
-      grouped(static_cast<std::uint64_t>(by_depth.front().first)),
+      "times as long as from the root: horrible would be {} times. The way by the one node that holds both "
+      "places is {} times as fast in the fewest leaves, and {} in the most. Across to siblings, steps of {} "
+      "of a box gain {:.2f} times, those of {} boxes {:.2f}; from {} to {} boxes the gain goes from {:.2f} "
+      "to {:.2f} ({}).",
+      range_text(across, &Line::fewest), range_text(across, &Line::most), worst_leaves, worst.tree, slowdown,
+      rounded(horrible), range_text(common, &Line::fewest), range_text(common, &Line::most),
+      rounded(by_step.front().first), by_step.front().second, rounded(by_step.back().first),
+      by_step.back().second, grouped(static_cast<std::uint64_t>(by_depth.front().first)),
       grouped(static_cast<std::uint64_t>(by_depth.back().first)), by_depth.front().second,
-      by_depth.back().second, shallow,
-      is_horrible
-          ? ""
-          : " Our tree climbs once, to the first node that holds all of the old and the new box: for a "
-            "box in many leaves that is often the root. It does not carry each reference to a sibling "
-            "by itself.");
-  for (const Line& line : lines) {
-    finding.figures.push_back({"gain_fewest_leaves_" + figure_name(line.tree), line.fewest()});
-    finding.figures.push_back({"gain_most_leaves_" + figure_name(line.tree), line.most()});
-  }
+      by_depth.back().second, first);
+  const auto add_gains = [&](const std::string& way, const std::vector<Line>& lines) {
+    for (const Line& line : lines) {
+      finding.figures.push_back({way + "_fewest_leaves_" + figure_name(line.tree), line.fewest()});
+      finding.figures.push_back({way + "_most_leaves_" + figure_name(line.tree), line.most()});
+    }
+  };
+  add_gains("siblings", across);
+  add_gains("relative", common);
   finding.figures.insert(finding.figures.end(), {{"pays_below", std::isfinite(until) ? until : 0, "leaves"},
-                                                 {"most_leaves", most_leaves, "leaves"},
+                                                 {"worst_leaves", worst_leaves, "leaves"},
+                                                 {"worst_slowdown", slowdown},
+                                                 {"horrible", horrible},
                                                  {"gain_least_drift", by_step.front().second},
                                                  {"gain_greatest_drift", by_step.back().second},
                                                  {"gain_fewest_boxes", by_depth.front().second},
@@ -212,22 +253,26 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment quadtree_siblings() {
-  return {.number = 14,
-          .name = "quadtree_siblings",
-          .title = "Quadtree: by way of siblings or from the root",
-          .claim =
-              "So instead of reinserting at the root which can take O(lg(n)) time to search for the correct "
-              "node for each element ..., we can insert based on relative position. ... we can insert "
-              "references to siblings ... If sibling is not available then we can go to the cousin by "
-              "traversing through the parent. This, however is a horrible idea for spanning elements.",
-          .section = "VI-D",
-          .measured =
-              "A mover of our quadtree, kept from frame to frame, on uniform boxes of which a tenth moves: "
-              "filed anew from the root (update=root), or from its leaf up to the first node that holds its "
-              "old and its new box and down from there (update=relative). By the number of boxes, by how far "
-              "they go, and by how many leaves they are in.",
-          .measure = measure,
-          .judge = judge};
+  return {
+      .number = 14,
+      .name = "quadtree_siblings",
+      .title = "Quadtree: by way of siblings or from the root",
+      .claim =
+          "So instead of reinserting at the root which can take O(lg(n)) time to search for the correct "
+          "node for each element ..., we can insert based on relative position. ... we can insert "
+          "references to siblings ... If sibling is not available then we can go to the cousin by "
+          "traversing through the parent. This, however is a horrible idea for spanning elements.",
+      .section = "VI-D",
+      .measured =
+          "A mover of our quadtree, kept from frame to frame, on uniform boxes of which a tenth moves: "
+          "filed anew from the root (update=root); from its leaf up to the first node that holds its old "
+          "and its new box, and down from there (update=relative); or by the claim's words "
+          "(update=siblings): the reference of each leaf that it leaves goes up to the parent, or "
+          "further, and down to the nearest leaf that it is in now, and leaves without one get it from "
+          "those beside them. By the number of boxes, by how far they go, and by how many leaves they are "
+          "in.",
+      .measure = measure,
+      .judge = judge};
 }
 
 }  // namespace broadside::lab

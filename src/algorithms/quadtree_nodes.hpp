@@ -64,6 +64,13 @@ struct QuadtreeNode {
     return inside;
   }
 
+  /// Whether a box touches the node's region.
+  bool touches(const Box<D>& box) const {
+    bool meets = true;
+    for (int axis = 0; axis < D; ++axis) meets &= box.max[axis] >= low[axis] && box.min[axis] < high[axis];
+    return meets;
+  }
+
   std::uint32_t whole = 0;  ///< the children on either side of the axes that are split
 };
 
@@ -107,6 +114,9 @@ class QuadtreeNodes {
   std::size_t kept() const noexcept { return kept_; }
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
+
+  /// Every node's number is less.
+  std::size_t node_end() const noexcept { return nodes_.size(); }
 
   /// Whether the tree has become too deep to be left as it is.
   bool is_degenerate() const noexcept { return degenerate_; }

@@ -2,7 +2,8 @@
 //
 // Section VI-A and VI-D of the paper. A box that moves is filed anew either by a descent from the root, or
 // relative to where it was: from its leaf up through parents until a node holds all of the way that it went,
-// and from there down to siblings and cousins. While it stays in one leaf, nothing has to be filed at all.
+// and from there down to siblings and cousins; or each of its references by itself, from leaf to leaf. While
+// it stays in one leaf, nothing has to be filed at all.
 // What is near a mover is in the nodes that it was and is in: there it is compared with everything.
 //
 // A frame has three parts. Movers are filed in addition wherever they go, as bounds of the old and the new
@@ -19,6 +20,7 @@
 #include "broadside/broad_phase.hpp"
 
 #include "algorithms/quadtree_nodes.hpp"
+#include "algorithms/quadtree_siblings.hpp"
 #include "core/incremental_tracker.hpp"
 #include "kernels/packs.hpp"
 
@@ -49,8 +51,9 @@ class Candidates final : public PairSink {
   PairSink& ended_;
 };
 
-/// From where a mover is filed anew: the root; where it was; or there if it was in one leaf, else the root.
-enum class From { root, home, automatic };
+/// From where a mover is filed anew: the root; where it was; each leaf in which it was; or, where it was if
+/// that is one leaf, else the root.
+enum class From { root, home, siblings, automatic };
 
 template <int D>
 class QuadtreeTracker final : public core::IncrementalTracker<D> {
@@ -167,6 +170,7 @@ class QuadtreeTracker final : public core::IncrementalTracker<D> {
         looks_.push_back({number, from});
         return;
       }
+      if (from_ == From::siblings && is && carry(number)) return;
       const auto holds = [&](std::uint32_t node) {
         return tree_[node].contains(mover.before) && (!is || tree_[node].contains(mover.now));
       };
@@ -180,6 +184,20 @@ class QuadtreeTracker final : public core::IncrementalTracker<D> {
       tree_.home(mover.id) = {};
     else if (places_ > 1)
       tree_.home(mover.id).several = 1;
+  }
+
+  /// Files a mover from leaf to leaf. False if it has been left as it was: not all of its nodes are leaves.
+  bool carry(std::uint32_t number) {
+    const kernels::MovingBox<D>& mover = movers_[number];
+    if (!siblings_.carry(tree_, home_.node, mover.before, mover.now)) return false;
+    places_ = 0;
+    for (const auto& reference : siblings_.references()) {
+      place(number, reference.node, {reference.was, reference.is, 0});
+      looks_.push_back({number, reference.node});
+      above_.push_back({number, reference.node});
+    }
+    tree_.home(mover.id).several = places_ > 1 ? 1 : 0;
+    return true;
   }
 
   /// Goes down from a node to all in which the mover is or will be, and where something may be near it.
@@ -238,26 +256,31 @@ class QuadtreeTracker final : public core::IncrementalTracker<D> {
     };
     for (const Look& at : looks_) look(at.mover, at.node);
     if (tree_.kept() == 0) return;
-    // Boxes that stay in the nodes above may touch anything below.
-    for (const Look& below : above_) {
-      for (std::uint32_t at = tree_[below.node].parent; at != no_node; at = tree_[at].parent)
+    // Boxes that stay in the nodes above may touch anything below. Ways up from several leaves join.
+    for (std::size_t i = 0; i < above_.size(); ++i) {
+      const Look& below = above_[i];
+      if (from_ == From::siblings && (i == 0 || above_[i - 1].mover != below.mover)) siblings_.start(tree_);
+      for (std::uint32_t at = tree_[below.node].parent; at != no_node; at = tree_[at].parent) {
+        if (from_ == From::siblings && !siblings_.meet(at)) break;
         look(below.mover, at);
+      }
     }
   }
 
   std::size_t structure_bytes() const noexcept override {
     return tree_.bytes() + movers_.capacity() * sizeof(kernels::MovingBox<D>) +
            filed_.capacity() * sizeof(Filed) + (looks_.capacity() + above_.capacity()) * sizeof(Look) +
-           tasks_.capacity() * sizeof(kernels::PackTask);
+           tasks_.capacity() * sizeof(kernels::PackTask) + siblings_.bytes();
   }
 
   From from_;
   QuadtreeNodes<D> tree_;
+  QuadtreeSiblings<D> siblings_;
   std::size_t moved_since_build_ = 0;
   std::vector<kernels::MovingBox<D>> movers_;
   std::vector<Filed> filed_;
   std::vector<Look> looks_;
-  std::vector<Look> above_;  // for each mover the uppermost node it has looked at
+  std::vector<Look> above_;  // for each mover the uppermost nodes it has looked at
   std::vector<kernels::PackTask> tasks_;
 
   // The mover that is being filed: where it was at home, and in how many nodes it stays.
@@ -271,10 +294,11 @@ Tunable quadtree_update() {
   return {.name = "update",
           .summary =
               "for tracking only: file a mover anew from the root, or relative to where it was, by way "
-              "of parents, siblings and cousins, or find all pairs anew",
+              "of the parent that holds both places, or each leaf's reference by itself, across to siblings "
+              "and cousins, or find all pairs anew",
           .standard = "auto",
           .type = Tunable::Type::choice,
-          .choices = {"root", "relative", "rebuild"}};
+          .choices = {"root", "relative", "siblings", "rebuild"}};
 }
 
 template <int D>
@@ -283,7 +307,10 @@ std::unique_ptr<PairTracker<D>> make_quadtree_tracker(const Settings& settings,
   using Way = typename core::IncrementalTracker<D>::Way;
   const std::string& update = settings.text("update");
   const Way way = update == "auto" ? Way::choose : update == "rebuild" ? Way::rebuild : Way::follow;
-  const From from = update == "root" ? From::root : update == "relative" ? From::home : From::automatic;
+  const From from = update == "root"       ? From::root
+                    : update == "relative" ? From::home
+                    : update == "siblings" ? From::siblings
+                                           : From::automatic;
   const auto capacity = settings.is_auto("capacity")
                             ? tracking_capacity
                             : static_cast<std::uint32_t>(settings.integer("capacity"));

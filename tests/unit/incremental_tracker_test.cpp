@@ -17,10 +17,15 @@ namespace {
 
 using testing::StartsWith;
 
-const std::vector<std::string> following = {
-    "brute_force:update=changed",       "grid:update=reinsert",          "grid:update=translate",
-    "grid:update=translate:span=8",     "sweep_and_prune:update=binary", "sweep_and_prune:update=merge",
-    "sweep_and_prune:update=insertion", "sweep_and_prune:update=heap"};
+const std::vector<std::string> following = {"brute_force:update=changed",
+                                            "grid:update=reinsert",
+                                            "grid:update=translate",
+                                            "grid:update=translate:span=8",
+                                            "quadtree:capacity=4:update=siblings",
+                                            "sweep_and_prune:update=binary",
+                                            "sweep_and_prune:update=merge",
+                                            "sweep_and_prune:update=insertion",
+                                            "sweep_and_prune:update=heap"};
 
 /// Unit boxes in a square that has room for four times as many.
 std::vector<Box2> scattered(std::size_t count) {
@@ -73,7 +78,8 @@ TEST(IncrementalTracker, ComparesAMoverWithItsNeighbourhoodOnly) {
 }
 
 TEST(IncrementalTracker, TakesItsFirstBoxesWithoutComparingAllOfThem) {
-  for (const std::string spec : {"quadtree:update=root", "quadtree:update=relative"}) {
+  for (const std::string spec :
+       {"quadtree:update=root", "quadtree:update=relative", "quadtree:update=siblings"}) {
     const auto tracker = make_tracker<2>(spec);
     const std::vector<Box2> boxes = scattered(20'000);
     EXPECT_GT(update(*tracker, boxes, {}), 1'000U) << spec;
