@@ -7,6 +7,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/instruction_set.hpp"
 
+#include "lab/experiments/following.hpp"
 #include "lab/experiments/winners_measure.hpp"
 #include "lab/measure/samples.hpp"
 
@@ -42,6 +43,26 @@ std::vector<std::size_t> thread_counts() {
   return counts;
 }
 
+/// Alike for both tables but for the time that an algorithm may take.
+Effort effort_of(const Laboratory& laboratory, double share_seconds) {
+  return {.budget_seconds = 2,
+          .share_seconds = share_seconds,
+          .least_samples = laboratory.either<std::size_t>(5, 3),
+          .most_samples = 100,
+          .single_sample_seconds = 1};
+}
+
+Chart time_chart(const std::string& by, ChartKind kind, const std::string& x, const std::string& series,
+                 const std::string& dimension) {
+  return {.title = fmt::format("Time by {}, {}", by, dimension),
+          .kind = kind,
+          .x = x,
+          .y = "time",
+          .series = series,
+          .log_y = true,
+          .where = {{"dimension", dimension}}};
+}
+
 }  // namespace
 
 Table measure_instruction_sets(const Laboratory& laboratory) {
@@ -51,20 +72,11 @@ Table measure_instruction_sets(const Laboratory& laboratory) {
   std::vector<std::string> sets = instruction_sets();
   if (laboratory.is_quick() && sets.size() > 2) sets = {sets.front(), sets.back()};
   const std::size_t boxes = laboratory.either<std::size_t>(10'000, 5'000);
-  const Effort effort{.budget_seconds = 2,
-                      .share_seconds = laboratory.either(0.05, 0.01),
-                      .least_samples = laboratory.either<std::size_t>(5, 3),
-                      .most_samples = 100,
-                      .single_sample_seconds = 1};
+  const Effort effort = effort_of(laboratory, laboratory.either(0.05, 0.01));
   for (const int dimension : {2, 3}) {
-    const std::string dimension_text = fmt::format("{}D", dimension);
-    table.charts.push_back({.title = "Time by instruction set, " + dimension_text,
-                            .kind = ChartKind::bars,
-                            .x = "algorithm",
-                            .y = "time",
-                            .series = "instruction set",
-                            .log_y = true,
-                            .where = {{"dimension", dimension_text}}});
+    const std::string axes = dimension_text(dimension);
+    table.charts.push_back(
+        time_chart("instruction set", ChartKind::bars, "algorithm", "instruction set", axes));
     // One set after the other, more than once: the least of each, so that what else the machine does is not
     // taken for a difference between them.
     std::map<std::pair<std::string, std::string>, double> least;
@@ -85,7 +97,7 @@ Table measure_instruction_sets(const Laboratory& laboratory) {
     for (const std::string& name : single_algorithms()) {
       for (const std::string& set : sets) {
         const auto found = least.find({name, set});
-        table.add({dimension_text, static_cast<double>(boxes), name, set,
+        table.add({axes, static_cast<double>(boxes), name, set,
                    found == least.end() ? Cell() : Cell(found->second)});
       }
     }
@@ -103,24 +115,14 @@ Table measure_threads(const Laboratory& laboratory) {
     for (const std::size_t threads : thread_counts())
       specs.push_back(threads == 1 ? name : fmt::format("{}:threads={}", name, threads));
   }
-  const Effort effort{.budget_seconds = 2,
-                      .share_seconds = laboratory.either(0.5, 0.02),
-                      .least_samples = laboratory.either<std::size_t>(5, 3),
-                      .most_samples = 100,
-                      .single_sample_seconds = 1};
+  const Effort effort = effort_of(laboratory, laboratory.either(0.5, 0.02));
   for (const int dimension : {2, 3}) {
-    const std::string dimension_text = fmt::format("{}D", dimension);
-    table.charts.push_back({.title = "Time by threads, " + dimension_text,
-                            .kind = ChartKind::lines,
-                            .x = "threads",
-                            .y = "time",
-                            .series = "algorithm",
-                            .log_y = true,
-                            .where = {{"dimension", dimension_text}}});
+    const std::string axes = dimension_text(dimension);
+    table.charts.push_back(time_chart("threads", ChartKind::lines, "threads", "algorithm", axes));
     const CaseResult result = laboratory.measure(
         list_of(specs), {.scene = "uniform", .dimension = dimension, .boxes = boxes}, effort);
     for (const Measurement& measurement : result.measurements) {
-      table.add({dimension_text, static_cast<double>(boxes),
+      table.add({axes, static_cast<double>(boxes),
                  measurement.algorithm.substr(0, measurement.algorithm.find(':')),
                  static_cast<double>(measurement.threads), time_cell(measurement)});
     }
