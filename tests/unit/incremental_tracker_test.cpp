@@ -148,7 +148,9 @@ TEST(IncrementalTracker, CarriesReferencesAcrossToTheTreeThatADescentMakes) {
     ASSERT_EQ(update(*across, boxes, changed), update(*down, boxes, changed)) << frame;
     ASSERT_EQ(across->statistics()->references, down->statistics()->references) << frame;
     ASSERT_EQ(across->statistics()->cells, down->statistics()->cells) << frame;
-    for (const BoxId id : changed) shift(boxes[index(id)], 0.75F);
+    // Up, down, and in jumps over several leaves.
+    const float by = frame % 10 == 9 ? 5 : frame % 2 == 0 ? 0.75F : -1.25F;
+    for (const BoxId id : changed) shift(boxes[index(id)], by);
   }
   EXPECT_GT(across->statistics()->references, boxes.size());
   EXPECT_LE(across->bytes(), down->bytes() + down->bytes() / 4);
