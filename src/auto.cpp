@@ -19,6 +19,7 @@
 #include "algorithms/descriptions.hpp"
 #include "auto_tracker.hpp"
 #include "core/double_finder.hpp"
+#include "core/glance.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "double_follower.hpp"
@@ -28,10 +29,36 @@ namespace {
 
 /// Up to here comparing all costs less than any order.
 template <int D>
-constexpr std::size_t few_boxes = D == 2 ? 320 : 400;
+constexpr std::size_t few_boxes = D == 2 ? 256 : 400;
+
+/// And up to here where this part of all pairs overlaps, which then are most of the work.
+constexpr std::size_t few_boxes_in_one_place = 1000;
+constexpr double most_pairs = 0.5;
 
 /// Up to here a grid's cells cost more to lay out than they save over a tree.
 constexpr std::size_t boxes_for_cells = 6000;
+
+/// But for shapes for which a tree's bounds overlap, and for boxes of one size in 3D: cells pay from fewer
+/// boxes on where a box's longest side is so many times its shortest, where the mean of the sides' squares is
+/// so many times their mean's square, and where so many pairs overlap on some axis.
+constexpr double long_boxes = 4;
+constexpr double uneven_boxes = 1.6;
+constexpr double most_uneven_boxes = 40;
+constexpr double of_one_size = 1.0001;
+constexpr double flat = 0.9;
+template <int D>
+constexpr std::size_t long_boxes_for_cells = D == 2 ? 4000 : 1000;
+template <int D>
+constexpr std::size_t uneven_boxes_for_cells = D == 2 ? 3500 : 3000;
+constexpr std::size_t most_uneven_boxes_for_cells = 1000;
+constexpr std::size_t flat_boxes_for_cells = 1100;
+constexpr double most_overlaps_for_their_shape = 50;
+
+/// Up to so many tests a box a sweep beats a tree over boxes that stand in a line: those of which this part
+/// overlaps on each other axis.
+constexpr double tests_of_a_line = 16;
+constexpr double in_line = 0.5;
+constexpr std::size_t boxes_of_a_line = 800;
 
 /// Up to so many tests a box, a sweep along one axis needs no help.
 constexpr double tests_of_a_good_axis = 4;
@@ -47,7 +74,7 @@ template <int D>
 constexpr double clustered = D == 2 ? 2.2 : 3;
 
 /// Boxes of a sample are near if they begin within this part of its range, on every axis.
-constexpr double near = 1.0 / 16;
+constexpr float near = 1.0F / 16;
 
 constexpr std::size_t most_compared = 96;
 
@@ -56,10 +83,10 @@ constexpr std::size_t most_compared = 96;
 constexpr double telling_overlaps = 8;
 
 /// What is chosen, and what for.
-enum class Choice { few, one_axis, tree, dense, clusters, cells };
+enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
 
-constexpr std::array<std::string_view, 6> chosen_algorithm = {
-    "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid"};
+constexpr std::array<std::string_view, 9> chosen_algorithm = {
+    "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
 
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D> {
@@ -86,6 +113,12 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
                " times as many are near each other as evenly spread ones would be";
       case Choice::cells:
         return text + boxes + " spread as evenly as these suit cells";
+      case Choice::few_in_one_place:
+      case Choice::one_place:
+        return text + "a box overlaps some " + rounded(overlaps_) + " of " + boxes +
+               ", so that nothing is gained by parting them";
+      case Choice::shapes:
+        return text + "the shapes of these " + boxes + " suit cells better than a tree's bounds";
     }
     return text;
   }
@@ -115,7 +148,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
 
   Choice choose(std::span<const Box<D>> boxes) {
     if (boxes.size() <= few_boxes<D>) return Choice::few;
-    if (boxes.size() <= boxes_for_cells) return Choice::tree;
+    if (boxes.size() <= boxes_for_cells) return choose_at_a_glance(boxes);
     sample_.take(boxes, most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
@@ -123,9 +156,47 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
+    if (overlaps_ >= most_pairs * count / 2) return Choice::one_place;
     if (overlaps_ >= many_overlaps<D>) return Choice::dense;
-    clustering_ = clustering(boxes);
+    std::array<float, D> reach;
+    for (int axis = 0; axis < D; ++axis)
+      reach[axis] =
+          static_cast<float>(double{near} * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
+    glance_.take(boxes, most_compared);
+    clustering_ = glance_.clustering(reach);
     return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
+  }
+
+  /// Chooses for so few boxes that to sort a sample of them would take a good part of the time.
+  Choice choose_at_a_glance(std::span<const Box<D>> boxes) {
+    const std::size_t size = boxes.size();
+    const auto half = static_cast<double>(size) / 2;
+    glance_.take(boxes, size < 2 * boxes_of_a_line ? 32 : 48);
+    glance_.compare();
+    overlaps_ = half * glance_.overlap_on_all();
+    if (glance_.overlap_on_all() >= most_pairs)
+      return size <= few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
+    if (size < boxes_of_a_line) return Choice::tree;
+    std::array<double, D> overlap = glance_.overlap();
+    std::ranges::sort(overlap);
+    tests_ = half * overlap[0];
+    if (overlap[1] >= in_line && tests_ <= tests_of_a_line) return Choice::one_axis;
+    if (!shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
+    std::array<float, D> reach = glance_.range();
+    for (float& distance : reach) distance *= near;
+    clustering_ = glance_.clustering(reach);
+    return clustering_ >= clustered<D> ? Choice::clusters : Choice::shapes;
+  }
+
+  bool shapes_suit_cells(std::span<const Box<D>> boxes, double most_on_an_axis) const {
+    const std::size_t size = boxes.size();
+    if (overlaps_ >= most_overlaps_for_their_shape) return false;
+    if (D == 3 && size >= flat_boxes_for_cells && most_on_an_axis >= flat) return true;
+    if (size < most_uneven_boxes_for_cells) return false;
+    const core::Sides sides = core::look_at_sides<D>(boxes);
+    if (sides.unevenness >= most_uneven_boxes || (D == 3 && sides.unevenness <= of_one_size)) return true;
+    return (size >= long_boxes_for_cells<D> && sides.longest_over_shortest >= long_boxes) ||
+           (size >= uneven_boxes_for_cells<D> && sides.unevenness >= uneven_boxes);
   }
 
   /// About how many tests a box a sweep of `count` boxes along the axis takes.
@@ -147,39 +218,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     return count * density * sample.mean_extent;
   }
 
-  /// How many times as many pairs of boxes are near on all axes as the single axes would let expect: 1 where
-  /// boxes are spread evenly.
-  double clustering(std::span<const Box<D>> boxes) const {
-    const std::size_t count = std::min(boxes.size(), most_compared);
-    std::array<std::array<float, most_compared>, D> minima;
-    std::array<float, D> reach;
-    for (int axis = 0; axis < D; ++axis) {
-      reach[axis] = static_cast<float>(near * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-      for (std::size_t i = 0; i < count; ++i)
-        minima[axis][i] = boxes[core::sampled_place(i, boxes.size())].min[axis];
-    }
-    std::array<std::uint32_t, D> on_axis{};
-    std::uint32_t on_all = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        std::uint32_t all = 1;
-        for (int axis = 0; axis < D; ++axis) {
-          const float difference = minima[axis][i] - minima[axis][j];
-          const std::uint32_t is_near = static_cast<std::uint32_t>(difference <= reach[axis]) &
-                                        static_cast<std::uint32_t>(-difference <= reach[axis]);
-          on_axis[axis] += is_near;
-          all &= is_near;
-        }
-        on_all += all;
-      }
-    }
-    const double pairs = static_cast<double>(count * (count - 1)) / 2;
-    double expected = pairs;
-    for (int axis = 0; axis < D; ++axis) expected *= on_axis[axis] / pairs;
-    // A few by chance say nothing.
-    return on_all / std::max(expected, 4.0);
-  }
-
+  core::Glance<D> glance_;
   core::Sample<D> sample_;
   std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
   Choice choice_ = Choice::few;
@@ -204,14 +243,15 @@ template <int D>
 std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
   return std::make_unique<AutoTracker<D, float>>(
       std::make_unique<Auto<D>>(), make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}),
-      [](std::span<const Box<D>>) { return true; }, way_of(settings));
+      make_tracker<D>(*find_algorithm("brute_force"), Spec{}), [](std::span<const Box<D>>) { return true; },
+      way_of(settings));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
   return std::make_unique<AutoTracker<D, double>>(
       std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
-      std::make_unique<DoubleFollower<D>>(), floats_suffice<D>, way_of(settings));
+      std::make_unique<DoubleFollower<D>>(), nullptr, floats_suffice<D>, way_of(settings));
 }
 
 }  // namespace

@@ -31,13 +31,20 @@ constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have
 /// Below so many boxes that moved nobody needs to think.
 constexpr std::size_t few = 8;
 
+/// Up to so many boxes comparing each that changed with all others costs less than keeping cells, or at most
+/// so many where it was done in the frame before.
+constexpr std::size_t few_boxes = 320;
+constexpr std::size_t most_few_boxes = 400;
+
 }  // namespace
 
 template <int D, typename Real>
 AutoTracker<D, Real>::AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder,
-                                  std::unique_ptr<PairTracker<D, Real>> follower, Suits suits, Way way)
+                                  std::unique_ptr<PairTracker<D, Real>> follower,
+                                  std::unique_ptr<PairTracker<D, Real>> for_few, Suits suits, Way way)
     : finder_(std::move(finder)),
       follower_(std::move(follower)),
+      for_few_(std::move(for_few)),
       suits_(suits),
       way_(way),
       cost_of_mover_(cost_of_moving<D>),
@@ -46,6 +53,16 @@ AutoTracker<D, Real>::AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder,
 template <int D, typename Real>
 void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
   changed_ = change.changed.size();
+  const bool has_few = std::exchange(were_few_, are_few(change.now.size()));
+  if (were_few_) {
+    Change<D, Real> seen = change;
+    seen.rebuild |= !has_few;
+    this->update_with(*for_few_, seen, begun, ended);
+    followed_ = false;
+    has_pairs_ = false;
+    saved_ = 0;
+    return;
+  }
   was_incremental_ = is_incremental(change);
   if (was_incremental_) {
     follow(change, begun, ended);
@@ -66,6 +83,12 @@ void AutoTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) 
   this->update_with(*follower_, nothing, none, none);
   this->count(statistics);
   followed_ = true;
+}
+
+/// Who has them keeps some more: boxes may come and go by turns.
+template <int D, typename Real>
+bool AutoTracker<D, Real>::are_few(std::size_t boxes) const {
+  return for_few_ && way_ == Way::automatic && boxes <= (were_few_ ? most_few_boxes : few_boxes);
 }
 
 template <int D, typename Real>
@@ -124,6 +147,7 @@ void AutoTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& begun
 
 template <int D, typename Real>
 std::string AutoTracker<D, Real>::explanation() const {
+  if (were_few_) return "brute_force, since so few boxes need no cells; " + for_few_->explanation();
   const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
   if (was_incremental_) {
     const std::string why = way_ == Way::incremental ? std::string(", as asked for")
@@ -138,7 +162,8 @@ std::string AutoTracker<D, Real>::explanation() const {
 
 template <int D, typename Real>
 std::size_t AutoTracker<D, Real>::algorithm_bytes() const noexcept {
-  return this->kept_bytes(*follower_) + (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
+  const std::size_t for_few = for_few_ ? this->kept_bytes(*for_few_) : 0;
+  return for_few + this->kept_bytes(*follower_) + (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
 }
 
 template class AutoTracker<2, float>;

@@ -25,9 +25,10 @@ class AutoTracker final : public PairTracker<D, Real> {
   /// Whether boxes suit the follower.
   using Suits = bool (*)(std::span<const Box<D, Real>> boxes);
 
-  /// Both are of the library: what finds all pairs, and what follows boxes that move, where they suit it.
+  /// All are of the library: what finds all pairs; what follows boxes that move, where they suit it; and what
+  /// does all of it where boxes are few, or null for none.
   AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder, std::unique_ptr<PairTracker<D, Real>> follower,
-              Suits suits, Way way);
+              std::unique_ptr<PairTracker<D, Real>> for_few, Suits suits, Way way);
 
   std::string explanation() const override;
 
@@ -36,6 +37,7 @@ class AutoTracker final : public PairTracker<D, Real> {
   void workers_changed() override { finder_->set_workers(this->workers()); }
   std::size_t algorithm_bytes() const noexcept override;
 
+  bool are_few(std::size_t boxes) const;
   bool is_incremental(const Change<D, Real>& change);
   void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void start_following(std::span<const Box<D, Real>> boxes);
@@ -43,9 +45,11 @@ class AutoTracker final : public PairTracker<D, Real> {
 
   std::unique_ptr<PairFinder<D, Real>> finder_;
   std::unique_ptr<PairTracker<D, Real>> follower_;
+  std::unique_ptr<PairTracker<D, Real>> for_few_;  // null: none
   Suits suits_;
   Way way_;
 
+  bool were_few_ = false;  // whether for_few_ has the boxes of the last frame
   bool followed_ = false;  // whether the follower has the boxes of the last frame
   double cost_of_mover_;   // in nanoseconds of one machine; only their ratios matter
   double cost_of_box_;
