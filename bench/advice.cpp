@@ -67,8 +67,9 @@ double measure(const lab::Catalogue& catalogue, const lab::CaseRequest& request,
   const lab::Measurement* best = nullptr;
   const lab::Measurement* named = nullptr;
   const auto time = [&](const lab::Measurement& m) {
-    return lab::undisturbed(m.samples_ms,
-                            result.of.seeds.size() * std::max<std::size_t>(result.of.frames, 1));
+    const std::size_t inputs = result.of.seeds.size();
+    return result.of.mode == lab::Mode::find ? lab::undisturbed(m.samples_ms, inputs)
+                                             : lab::undisturbed_mean(m.samples_ms, inputs * result.of.frames);
   };
   for (const lab::Measurement& measurement : result.measurements) {
     if (measurement.algorithm == advice.spec) named = &measurement;

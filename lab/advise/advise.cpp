@@ -25,8 +25,34 @@ constexpr std::size_t most_finalists = 4;
 /// So many of the best have their tunables tried.
 constexpr std::size_t most_with_variants = 2;
 
-/// The frames of a history that are measured: as many as the budget allows, from the middle, where boxes have
-/// come to do what they usually do.
+/// The first of `frames` frames in which about as many boxes change as in the mean of the history: those
+/// nearest its middle, where boxes have come to do what they usually do.
+template <int D, typename Real>
+std::size_t typical_frames(const History<D, Real>& history, std::size_t frames) {
+  const auto changes = [&](std::size_t step) {
+    return static_cast<double>(history.steps[step].changed.size());
+  };
+  const std::size_t places = history.steps.size() - frames + 1;
+  double all = 0;
+  for (std::size_t i = 0; i < history.steps.size(); ++i) all += changes(i);
+  const double expected = all * static_cast<double>(frames) / static_cast<double>(history.steps.size());
+  std::vector<double> excess(places, 0.0);  // of each place for the first frame, in changed boxes
+  double some = 0;
+  for (std::size_t i = 0; i < history.steps.size(); ++i) {
+    some += changes(i);
+    if (i >= frames) some -= changes(i - frames);
+    if (i + 1 >= frames) excess[i + 1 - frames] = std::max(std::abs(some - expected), 0.1 * expected);
+  }
+  std::size_t best = (places - 1) / 2;
+  const std::size_t middle = best;
+  for (std::size_t away = 1; away < places; ++away) {
+    if (away <= middle && excess[middle - away] < excess[best]) best = middle - away;
+    if (middle + away < places && excess[middle + away] < excess[best]) best = middle + away;
+  }
+  return best;
+}
+
+/// The frames of a history that are measured: as many as the budget allows.
 template <int D, typename Real>
 History<D, Real> window(const History<D, Real>& history, double budget_seconds, Advice& advice) {
   const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
@@ -35,7 +61,7 @@ History<D, Real> window(const History<D, Real>& history, double budget_seconds, 
   if (places <= static_cast<double>(most_tracked_boxes_by_definition))
     most = std::min(most, std::max(budget_seconds * 2e8 / (places * places), 8.0));
   advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(most));
-  advice.first_frame = (history.steps.size() - advice.frames) / 2;
+  if (advice.frames < history.steps.size()) advice.first_frame = typical_frames(history, advice.frames);
   History<D, Real> part{history.boxes, {}};
   for (std::size_t i = 0; i < advice.first_frame; ++i) apply(history.steps[i], part.boxes);
   const auto begin = history.steps.begin() + static_cast<std::ptrdiff_t>(advice.first_frame);
@@ -130,9 +156,9 @@ class Adviser {
  private:
   /// The time that counts of one that was measured.
   double time(const Measurement& measurement) const {
-    return is_timed(measurement)
-               ? undisturbed(measurement.samples_ms, images_.size() * std::max<std::size_t>(case_.frames, 1))
-               : time_of(measurement);
+    if (!is_timed(measurement)) return time_of(measurement);
+    if (advice_.mode == Mode::find) return undisturbed(measurement.samples_ms, images_.size());
+    return undisturbed_mean(measurement.samples_ms, images_.size() * case_.frames);
   }
 
   void add(Measurement measurement, bool is_variant, bool is_finalist) {

@@ -2,6 +2,8 @@
 #include "lab/advise/choice.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "lab/measure/samples.hpp"
@@ -15,6 +17,15 @@ bool is_eligible(const Rival& rival) {
 }
 
 bool is_peer(const Rival& rival) { return rival.measurement->kind == AlgorithmKind::peer; }
+
+/// Of each input, in rotation, the least sample.
+std::vector<double> least_of(std::span<const double> samples, std::size_t inputs) {
+  std::vector<double> least(samples.begin(),
+                            samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
+  for (std::size_t i = least.size(); i < samples.size(); ++i)
+    least[i % inputs] = std::min(least[i % inputs], samples[i]);
+  return least;
+}
 
 /// The fastest of those that `counts`; empty if there are none.
 template <typename Counts>
@@ -42,11 +53,13 @@ bool is_clearly_faster(const Rival& variant, const Rival& plain) {
 }  // namespace
 
 double undisturbed(std::span<const double> samples, std::size_t inputs) {
-  std::vector<double> least(samples.begin(),
-                            samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
-  for (std::size_t i = least.size(); i < samples.size(); ++i)
-    least[i % inputs] = std::min(least[i % inputs], samples[i]);
-  return median(least);
+  return median(least_of(samples, inputs));
+}
+
+double undisturbed_mean(std::span<const double> samples, std::size_t inputs) {
+  const std::vector<double> least = least_of(samples, inputs);
+  if (least.empty()) throw std::invalid_argument("0 samples; expected at least 1");
+  return std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
 }
 
 double part_of_rounds(std::span<const double> a, std::span<const double> b) {

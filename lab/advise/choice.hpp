@@ -52,6 +52,10 @@ struct Choice {
 /// the result. Throws std::invalid_argument if there are none.
 double undisturbed(std::span<const double> samples, std::size_t inputs);
 
+/// Likewise, but their mean: of frames in which much moves and others in which nothing does, the median would
+/// be that of either.
+double undisturbed_mean(std::span<const double> samples, std::size_t inputs);
+
 /// In which part of the rounds `b` took longer than `a`. Samples are matched in their order, in which all
 /// take turns; where one has fewer, the first ones count. 0 where there are none.
 double part_of_rounds(std::span<const double> a, std::span<const double> b);

@@ -104,6 +104,20 @@ TEST(Advise, MeasuresAPartOfALongHistoryFromItsMiddle) {
   EXPECT_THAT(text_of(advice), HasSubstr("Measured on the 240 frames from frame 381 on"));
 }
 
+TEST(Advise, MeasuresFramesInWhichAsMuchMovesAsInAll) {
+  // 600 frames at rest, then 400 in motion: of 240 about 96 are to be in motion, and it is 87 as soon as may
+  // be.
+  History<2> history = {{{{0, 0}, {1, 1}}, {{3, 0}, {4, 1}}}, {}};
+  for (int i = 1; i <= 1000; ++i) {
+    const auto x = static_cast<float>(i);
+    history.steps.push_back(i <= 600 ? Step<2>{2, {}, {}} : Step<2>{2, {BoxId(0)}, {{{x, 0}, {x + 1, 1}}}});
+  }
+  const Advice advice = advise(Catalogue(), "long", history, quickly("brute_force,auto"));
+  EXPECT_TRUE(advice.all_verified());
+  EXPECT_EQ(advice.frames, 240u);
+  EXPECT_EQ(advice.first_frame, 447u);
+}
+
 TEST(Advise, OffersNothingWhereNothingIsVerified) {
   Catalogue catalogue;
   Algorithm blind{.name = "blind", .summary = {}, .source = {}};
@@ -153,6 +167,12 @@ TEST(Undisturbed, IsTheMedianOfTheInputsLeastSamples) {
   EXPECT_EQ(undisturbed(std::vector<double>{1, 20, 300, 10, 2, 3}, 3), 2);
   EXPECT_EQ(undisturbed(std::vector<double>{5, 7}, 3), 6);
   EXPECT_THROW(undisturbed(std::vector<double>{}, 3), std::invalid_argument);
+}
+
+TEST(Undisturbed, IsTheMeanOverFramesThatDiffer) {
+  EXPECT_EQ(undisturbed_mean(std::vector<double>{1, 20, 300, 10, 2, 3}, 3), 2);
+  EXPECT_EQ(undisturbed_mean(std::vector<double>{1, 1, 1, 97}, 4), 25);
+  EXPECT_THROW(undisturbed_mean(std::vector<double>{}, 3), std::invalid_argument);
 }
 
 }  // namespace
