@@ -68,6 +68,7 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
     if (measurement.outcome == Outcome::failed)
       throw std::runtime_error(fmt::format("scene '{}': {}", request.scene, measurement.reason));
   }
+  steadiness_.add(steadiness_of(comparison.cases[0]));
   return std::move(comparison.cases[0]);
 }
 

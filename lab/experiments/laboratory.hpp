@@ -11,6 +11,7 @@
 #include "lab/measure/contest.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/plan.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -45,6 +46,9 @@ class Laboratory {
   /// The same on a scene of the experiment's own; `request.scene` is what it is called.
   CaseResult measure(const std::string& algorithms, const Scene& scene, const CaseRequest& request) const;
 
+  /// How steady everything was that it has measured until now.
+  const Steadiness& steadiness() const noexcept { return steadiness_; }
+
   /// Shows what is going on and asks whether to go on. Throws Stopped.
   void at(std::string_view what) const { watch_.at(what); }
 
@@ -55,6 +59,7 @@ class Laboratory {
   const Catalogue* catalogue_;
   bool quick_;
   Watch watch_;
+  mutable Steadiness steadiness_;  // measuring changes nothing else, and experiments only measure
 };
 
 /// These specs as the list that Laboratory::measure reads.

@@ -98,11 +98,15 @@ void do_experiments(std::span<const Experiment* const> chosen, const Laboratory&
   try {
     for (const Experiment* const experiment : chosen) {
       laboratory.at(experiment->name);
+      const Steadiness before = laboratory.steadiness();
       const Stopwatch watch;
       std::vector<Table> tables = experiment->measure(laboratory);
       const double seconds = watch.milliseconds() / 1e3;
+      Steadiness steadiness = laboratory.steadiness();
+      steadiness.measurements -= before.measurements;
+      steadiness.unsteady -= before.unsteady;
       Finding finding = judged(*experiment, tables);
-      results.results.push_back({experiment, std::move(tables), std::move(finding), seconds});
+      results.results.push_back({experiment, std::move(tables), std::move(finding), seconds, steadiness});
       if (finished) finished(results.results.back());
     }
   } catch (const Stopped&) {
@@ -123,14 +127,17 @@ std::string text_of(const ExperimentResult& result) {
 std::string summary_of(const ExperimentResults& results) {
   Columns columns("><<>");
   double seconds = 0;
+  Steadiness steadiness;
   for (const ExperimentResult& result : results.results) {
     columns.add({std::to_string(result.experiment->number), result.experiment->name,
                  result.finding.verdict_text(), duration(result.seconds)});
     seconds += result.seconds;
+    steadiness.add(result.steadiness.value_or(Steadiness{}));
   }
-  return columns.text("") + fmt::format("{} in {}{}\n",
-                                        counted(results.results.size(), "experiment", "experiments"),
-                                        duration(seconds), results.stopped ? "; stopped before the end" : "");
+  return columns.text("") +
+         fmt::format("{} in {}{}\n", counted(results.results.size(), "experiment", "experiments"),
+                     duration(seconds), results.stopped ? "; stopped before the end" : "") +
+         hint_of(steadiness, results.quick ? "without --quick for more samples" : "");
 }
 
 }  // namespace broadside::lab

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct ExperimentResult {
   const Experiment* experiment;  ///< one of experiments()
   std::vector<Table> tables;
   Finding finding;
-  double seconds = 0;  ///< that measuring took
+  double seconds = 0;                      ///< that measuring took
+  std::optional<Steadiness> steadiness{};  ///< empty in results of before it was noted
 };
 
 /// All that were done in one run.
@@ -47,12 +49,12 @@ void do_experiments(std::span<const Experiment* const> chosen, const Laboratory&
 /// One experiment as text for a terminal: the claim, the tables, the verdict and why.
 std::string text_of(const ExperimentResult& result);
 
-/// A line for each: number, name, verdict.
+/// A line for each: number, name, verdict; and one that says how many measurements were unsteady, if any.
 std::string summary_of(const ExperimentResults& results);
 
 /// One object by the schema "broadside.experiments/1": schema, machine, build, target, date, command, quick,
-/// stopped and a list of experiments, each with its texts, its tables (columns, charts, rows) and its
-/// finding.
+/// stopped and a list of experiments, each with its texts, its tables (columns, charts, rows), its
+/// finding and, where it is known, how many measurements there were and how many of them unsteady.
 std::string json_of(const ExperimentResults& results);
 
 /// What json_of() wrote, read back from the JSON in `text`; findings are not read but made anew from the

@@ -57,11 +57,14 @@ std::string json_text_of(const ExperimentResult& result) {
   Json figures = Json::object();
   for (const Figure& figure : finding.figures)
     figures[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
-  const Json head = {
+  Json head = {
       {"number", experiment.number}, {"name", experiment.name},          {"title", experiment.title},
       {"claim", experiment.claim},   {"section", experiment.section},    {"measured", experiment.measured},
       {"seconds", result.seconds},   {"verdict", name(finding.verdict)}, {"condition", finding.condition},
       {"reason", finding.reason},    {"figures", std::move(figures)}};
+  if (result.steadiness)
+    head["steadiness"] = {{"measurements", result.steadiness->measurements},
+                          {"unsteady", result.steadiness->unsteady}};
   std::string text = json_text(head);
   text.pop_back();  // its brace, behind the tables
   text += ",\n\"tables\": [";
@@ -211,6 +214,16 @@ ExperimentResult read_result(const Json& json, const std::string& name) {
     throw FileError(fmt::format("{}: {}", name, unknown.what()));
   }
   result.seconds = reader.get<double>("seconds", "a number");
+  if (json.contains("steadiness")) {
+    const Reader counts(json["steadiness"], where + ", steadiness");
+    const auto count = [&](const char* key) {
+      const auto number = counts.get<double>(key, "a whole number from 0");
+      if (!(number >= 0 && number <= 1e15) || number != std::floor(number))
+        counts.fail(key, number, "a whole number from 0");
+      return static_cast<std::size_t>(number);
+    };
+    result.steadiness = Steadiness{count("measurements"), count("unsteady")};
+  }
   for (const Json& json_table : reader.list("tables")) {
     Table table = read_table(json_table, where);
     for (const Table& earlier : result.tables) {

@@ -9,6 +9,7 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/measure/samples.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/report/machine_json.hpp"
 
 namespace broadside::lab {
@@ -51,6 +52,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
   json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
   json["samples_ms"] = timed ? Json(samples) : Json();
+  json["unsteady"] = timed ? Json(is_unsteady(of, measurement)) : Json();
   json["build_ms"] = timed ? or_null(measurement.build_ms) : Json();
   json["search_ms"] = nullptr;
   json["ns_per_box"] =

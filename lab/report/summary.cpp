@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "lab/measure/samples.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/ranking.hpp"
@@ -86,7 +87,9 @@ std::string summary_of(const Comparison& comparison) {
   std::size_t measured = 0;
   std::size_t skipped = 0;
   std::vector<std::string> failures;
+  Steadiness steadiness;
   for (const CaseResult& result : comparison.cases) {
+    steadiness.add(steadiness_of(result));
     for (const Measurement& measurement : result.measurements) {
       ++(measurement.outcome == Outcome::skipped ? skipped : measured);
       if (measurement.outcome == Outcome::failed)
@@ -113,7 +116,7 @@ std::string summary_of(const Comparison& comparison) {
   if (comparison.stopped) text += "; stopped before the end";
   text += "\n";
   for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
-  return text;
+  return text + hint_of(steadiness, "or go by the least times (min_ms in --json)");
 }
 
 }  // namespace broadside::lab

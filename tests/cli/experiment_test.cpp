@@ -77,6 +77,7 @@ TEST(ExperimentVerb, MeasuresWhatIsNamedAndWritesWhatCanBeJudgedAgain) {
   EXPECT_EQ(json["stopped"], false);
   ASSERT_EQ(json["experiments"].size(), 1u);
   EXPECT_EQ(json["experiments"][0]["verdict"], "holds");
+  EXPECT_GT(json["experiments"][0]["steadiness"]["measurements"], 0);
   EXPECT_NEAR(json["experiments"][0]["figures"]["share_of_all_pairs"]["value"].get<double>(), 0.5, 0.01);
 
   const Ended again =

@@ -1,4 +1,5 @@
 // Results of experiments: written as JSON and read back, and every way in which a file is none.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using Json = nlohmann::ordered_json;
 
 /// The tables of experiment 1, with a text, an empty cell and every field of a chart in them.
@@ -80,6 +82,31 @@ TEST(ExperimentResults, AreReadBackAsTheyWereWritten) {
   EXPECT_EQ(read.results[0].tables, tables());
   EXPECT_EQ(read.results[0].finding, written.results[0].finding);
   EXPECT_EQ(read.results[0].seconds, 1.5);
+}
+
+TEST(ExperimentResults, SayHowManyMeasurementsWereUnsteadyWhereThatIsKnown) {
+  ExperimentResults results_of_before = results();
+  EXPECT_THAT(json_of(results_of_before), Not(HasSubstr("steadi")));
+  EXPECT_EQ(read_experiments(json_of(results_of_before), "x.json").results[0].steadiness, std::nullopt);
+  EXPECT_THAT(summary_of(results_of_before), Not(HasSubstr("unsteady")));
+
+  ExperimentResults written = results();
+  written.results[0].steadiness = Steadiness{7, 0};
+  EXPECT_THAT(summary_of(written), Not(HasSubstr("unsteady")));
+  written.results[0].steadiness = Steadiness{7, 2};
+  const ExperimentResults read = read_experiments(json_of(written), "x.json");
+  EXPECT_EQ(read.results[0].steadiness, (Steadiness{7, 2}));
+  EXPECT_THAT(summary_of(read),
+              AllOf(HasSubstr("\nunsteady: 2 of 7 measurements, "), HasSubstr(", without --quick for")));
+
+  const auto refused = [&](const Json& count) {
+    return refusal_after([&](Json& json) {
+      first(json)["steadiness"] = {{"measurements", 7}, {"unsteady", count}};
+    });
+  };
+  for (const Json& count : {Json(-1), Json(1.5), Json("two"), Json(nullptr)})
+    EXPECT_THAT(refused(count), AllOf(HasSubstr("steadiness, unsteady: " + count.dump()),
+                                      HasSubstr("expected a whole number from 0")));
 }
 
 TEST(ExperimentResults, AreJudgedAnewWhenTheyAreRead) {

@@ -239,13 +239,13 @@ TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
     EXPECT_TRUE(json["build"].contains(field));
   std::vector<std::string> fields;
   for (const auto& item : json["measurements"][0].items()) fields.push_back(item.key());
-  EXPECT_THAT(fields,
-              testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes", "frames",
-                                   "moving", "drift", "teleport", "algorithm", "version", "kind", "mode",
-                                   "threads", "target", "pairs", "pair_hash", "verified", "verified_by",
-                                   "skipped", "median_ms", "min_ms", "p99_ms", "max_ms", "samples_ms",
-                                   "build_ms", "search_ms", "ns_per_box", "ns_per_mover", "floor_ms", "tests",
-                                   "references", "explanation", "own_bytes", "peak_bytes"));
+  EXPECT_THAT(fields, testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes",
+                                           "frames", "moving", "drift", "teleport", "algorithm", "version",
+                                           "kind", "mode", "threads", "target", "pairs", "pair_hash",
+                                           "verified", "verified_by", "skipped", "median_ms", "min_ms",
+                                           "p99_ms", "max_ms", "samples_ms", "unsteady", "build_ms",
+                                           "search_ms", "ns_per_box", "ns_per_mover", "floor_ms", "tests",
+                                           "references", "explanation", "own_bytes", "peak_bytes"));
 }
 
 TEST(JsonResults, HoldWhatWasMeasured) {
@@ -254,6 +254,7 @@ TEST(JsonResults, HoldWhatWasMeasured) {
   EXPECT_EQ(measurement["seeds"], (Json{1, 2}));
   EXPECT_EQ(measurement["algorithm"], "grid:cell=2");
   EXPECT_EQ(measurement["kind"], "own");
+  EXPECT_EQ(measurement["unsteady"], false);
   EXPECT_EQ(measurement["mode"], "find");
   EXPECT_EQ(measurement["pair_hash"], "fedcba9876543210");
   EXPECT_EQ(measurement["verified"], true);
@@ -305,7 +306,7 @@ TEST(JsonResults, SayWhyThereIsNoTimeAndLeaveNullWhatIsNotKnown) {
   EXPECT_TRUE(slow["verified_by"].is_null());
   EXPECT_THAT(slow["skipped"].get<std::string>(), HasSubstr("estimated 41.0 s"));
   for (const char* const field :
-       {"median_ms", "samples_ms", "ns_per_box", "pairs", "pair_hash", "own_bytes", "tests"})
+       {"median_ms", "samples_ms", "unsteady", "ns_per_box", "pairs", "pair_hash", "own_bytes", "tests"})
     EXPECT_TRUE(slow[field].is_null()) << field;
 }
 

@@ -40,6 +40,8 @@ export interface Experiment {
   condition: string;
   reason: string;
   figures: Record<string, { value: number; unit: string }>;
+  /** Not in results of before it was noted. */
+  steadiness?: { measurements: number; unsteady: number };
   tables: Table[];
 }
 
@@ -97,6 +99,8 @@ export interface Measurement {
   p99_ms: number | null;
   max_ms: number | null;
   samples_ms: number[] | null;
+  /** Whether its samples lie too far apart to be trusted; not in results of before it was noted. */
+  unsteady?: boolean | null;
   build_ms: number | null;
   ns_per_box: number | null;
   ns_per_mover: number | null;

@@ -11,7 +11,7 @@ import type { DataColumn } from "./data_table.ts";
 import { add, choices, el, picker } from "./dom.ts";
 import { csv_of_comparison, download_button } from "./downloads.ts";
 import { chart_figure } from "./figure.ts";
-import { facts, tile } from "./summary.ts";
+import { facts, tile, unsteady_tile } from "./summary.ts";
 
 function outcome_of(measurement: Measurement): string {
   return measurement.verified === null ? "skipped" : measurement.verified ? "verified" : "FAILED";
@@ -41,7 +41,8 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
     worst !== undefined && tile("At the least", `${ratio_text(worst.ratio)} times`, `as fast: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
     tile("Verified", failed.length === 0 ? `all ${grouped(measured)}` : `${grouped(failed.length)} FAILED`,
       `${plural(measured, "measurement")} in ${plural(cases.length, "case")}; ${grouped(skipped)} skipped` +
-        (comparison.stopped ? "; stopped before the end" : "")));
+        (comparison.stopped ? "; stopped before the end" : "")),
+    unsteady_tile(comparison.measurements.filter(({ unsteady }) => unsteady === true).length, comparison.measurements.filter(is_timed).length));
 }
 
 function failures(comparison: Comparison): HTMLElement | null {

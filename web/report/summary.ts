@@ -1,11 +1,17 @@
 // What a reader wants to know first: what was done, where, and what came of it.
 import type { Build, Machine } from "../charts/data.ts";
-import { bytes_text } from "../charts/numbers.ts";
+import { bytes_text, grouped } from "../charts/numbers.ts";
 import { el } from "./dom.ts";
 
 /** A figure that stands out. */
 export function tile(name: string, big: string, small = ""): HTMLElement {
   return el("div", { class: "tile" }, el("dt", {}, name), el("dd", { class: "big" }, big), small !== "" && el("dd", { class: "small" }, small));
+}
+
+/** A tile that says how many times are not to be trusted; none where all are. */
+export function unsteady_tile(unsteady: number, measurements: number): HTMLElement | false {
+  return unsteady > 0 && tile("Unsteady", `${grouped(unsteady)} of ${grouped(measurements)}`,
+    "measurements, whose median sample is far above the least: quiet the machine and measure again");
 }
 
 function command_text(command: readonly string[]): string {
