@@ -70,7 +70,7 @@ TEST(Unsteady, IsNoHistoryBecauseItsFramesDiffer) {
 }
 
 TEST(Unsteady, AreCountedAmongWhatHasTimes) {
-  const CaseResult result = {searched(1), {with({1, 1, 1}), with({1, 4, 4}), with({}), with({7})}};
+  const CaseResult result = {searched(1), {with({1, 1, 1, 1}), with({1, 4, 4, 4}), with({}), with({7})}};
   EXPECT_EQ(steadiness_of(result), (Steadiness{3, 1}));
 }
 
