@@ -123,7 +123,7 @@ std::string reading_text(const FileInfo& info) {
     const auto bytes_a_second = static_cast<std::uint64_t>(static_cast<double>(info.bytes) / seconds);
     text += fmt::format("{}, {} a second, ", bytes(info.bytes), bytes(bytes_a_second));
   }
-  return text + fmt::format("{} boxes a second\n", grouped(static_cast<std::uint64_t>(boxes_a_second)));
+  return text + fmt::format("{} boxes a second\n", whole(boxes_a_second));
 }
 
 }  // namespace

@@ -14,12 +14,19 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+std::string whole(double number) {
+  // Figures may come from a file, and no integer holds all that follows from what a file may say.
+  if (std::isnan(number)) return "nan";
+  if (number >= 1e18) return fmt::format("{:.2e}", number);
+  return grouped(static_cast<std::uint64_t>(std::llround(std::max(number, 0.0))));
+}
+
 std::string counted(std::uint64_t number, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
 }
 
 std::string rounded(double number) {
-  if (number >= 99.95) return grouped(static_cast<std::uint64_t>(std::llround(number)));
+  if (std::isnan(number) || number >= 99.95) return whole(number);
   if (number <= 0) return "0";
   // One digit fewer for each power of ten; from 9.995 on, "10.0" and not "10.00".
   const int power = static_cast<int>(std::floor(std::log10(number * (1 + 0.0005))));
@@ -32,12 +39,11 @@ std::string duration(double seconds) {
   return rounded(seconds * 1e6) + " us";
 }
 
-std::string bytes(std::uint64_t count) {
-  if (count < 1000) return std::to_string(count) + " B";
-  const double number = static_cast<double>(count);
-  if (number < 999.5e3) return rounded(number / 1e3) + " kB";
-  if (number < 999.5e6) return rounded(number / 1e6) + " MB";
-  return rounded(number / 1e9) + " GB";
+std::string bytes(double count) {
+  if (count < 1000) return whole(count) + " B";
+  if (count < 999.5e3) return rounded(count / 1e3) + " kB";
+  if (count < 999.5e6) return rounded(count / 1e6) + " MB";
+  return rounded(count / 1e9) + " GB";
 }
 
 }  // namespace broadside::lab

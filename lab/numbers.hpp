@@ -10,6 +10,10 @@ namespace broadside::lab {
 /// "1,234,567".
 std::string grouped(std::uint64_t number);
 
+/// The nearest whole number: "1,234,567"; "0" below 0, and from 10^18 on, which nothing measured is,
+/// "1.00e+300"; "nan".
+std::string whole(double number);
+
 /// "1 pair", "1,234,567 pairs".
 std::string counted(std::uint64_t number, std::string_view one, std::string_view many);
 
@@ -20,6 +24,6 @@ std::string rounded(double number);
 std::string duration(double seconds);
 
 /// A size with the unit that suits it: "512 B", "71.2 kB", "4.21 MB", "1.30 GB"; 1 kB is 1,000 bytes.
-std::string bytes(std::uint64_t count);
+std::string bytes(double count);
 
 }  // namespace broadside::lab

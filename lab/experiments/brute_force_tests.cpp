@@ -41,7 +41,7 @@ Finding judge(const std::vector<Table>& tables) {
   finding.reason = fmt::format(
       "{} of {} numbers of boxes took exactly n (n - 1) / 2 tests; with {} boxes that is {:.4f} of n^2, and "
       "time grows as n^{:.2f}.",
-      exact, table.rows.size(), grouped(static_cast<std::uint64_t>(boxes.back())), share, growth);
+      exact, table.rows.size(), whole(boxes.back()), share, growth);
   finding.figures = {
       {"most_boxes", boxes.back(), "boxes"}, {"share_of_all_pairs", share}, {"growth", growth}};
   return finding;

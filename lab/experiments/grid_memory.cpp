@@ -187,11 +187,9 @@ Finding judge(const std::vector<Table>& tables) {
       "has it, the grid holds {} and its cells grow with the world: {:.1f} times as many tests a box as in "
       "the smallest. The hierarchical grid holds {} at most (in 3D {}), {:.2f} times as much as in the "
       "smallest world and with {:.1f} times the tests, and our grid {}.",
-      matrix.growth, matrix.cell_bytes, rounded(world), bytes(static_cast<std::uint64_t>(printed_bytes)),
-      bytes(16'000'000'000), rounded(full), rounded(most_hashed),
-      bytes(static_cast<std::uint64_t>(capped.bytes)), capped.tests_growth,
-      bytes(static_cast<std::uint64_t>(level.bytes)), bytes(static_cast<std::uint64_t>(level_3d.bytes)),
-      level.growth, level.tests_growth, bytes(static_cast<std::uint64_t>(own.bytes)));
+      matrix.growth, matrix.cell_bytes, rounded(world), bytes(printed_bytes), bytes(16'000'000'000),
+      rounded(full), rounded(most_hashed), bytes(capped.bytes), capped.tests_growth, bytes(level.bytes),
+      bytes(level_3d.bytes), level.growth, level.tests_growth, bytes(own.bytes));
   finding.figures = {{"memory_growth", matrix.growth},
                      {"bytes_a_cell", matrix.cell_bytes, "bytes"},
                      {"largest_world", world, "cells"},

@@ -228,9 +228,8 @@ Finding judge(const std::vector<Table>& tables) {
       range_text(across, &Line::fewest), range_text(across, &Line::most), worst_leaves, worst.tree, slowdown,
       rounded(horrible), range_text(common, &Line::fewest), range_text(common, &Line::most),
       rounded(by_step.front().first), by_step.front().second, rounded(by_step.back().first),
-      by_step.back().second, grouped(static_cast<std::uint64_t>(by_depth.front().first)),
-      grouped(static_cast<std::uint64_t>(by_depth.back().first)), by_depth.front().second,
-      by_depth.back().second, first);
+      by_step.back().second, whole(by_depth.front().first), whole(by_depth.back().first),
+      by_depth.front().second, by_depth.back().second, first);
   const auto add_gains = [&](const std::string& way, const std::vector<Line>& lines) {
     for (const Line& line : lines) {
       finding.figures.push_back({way + "_fewest_leaves_" + figure_name(line.tree), line.fewest()});

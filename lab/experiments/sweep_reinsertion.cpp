@@ -203,11 +203,9 @@ Finding judge(const std::vector<Table>& tables) {
       "as n^{:.2f}, of boxes that go a fifth of their size as n^{:.2f}. A heap takes {:.2f} times as long as "
       "a sort of {} boxes, and a frame in which one of {} jumps {} times as long by a heap as by merging. "
       "Binary search is ahead of merging up to about {} boxes that jump.",
-      comparisons, grouped(static_cast<std::uint64_t>(most)), grouped(static_cast<std::uint64_t>(given_way)),
-      100 * share, far_growth, near_growth, heaped.back().second / sorted.back().second,
-      grouped(static_cast<std::uint64_t>(heaped.back().first)),
-      grouped(static_cast<std::uint64_t>(frames.number("boxes"))), rounded(heap_frame / merge_frame),
-      rounded(most_movers(frames, "binary", "merge")));
+      comparisons, whole(most), whole(given_way), 100 * share, far_growth, near_growth,
+      heaped.back().second / sorted.back().second, whole(heaped.back().first), whole(frames.number("boxes")),
+      rounded(heap_frame / merge_frame), rounded(most_movers(frames, "binary", "merge")));
   finding.figures = {
       {"comparisons_a_search", comparisons},
       {"places_moved_anywhere", largest.number("places moved"), "places"},

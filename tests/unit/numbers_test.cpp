@@ -1,6 +1,8 @@
 // Numbers as people read them.
 #include "lab/numbers.hpp"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace broadside::lab {
@@ -11,6 +13,21 @@ TEST(Grouped, PutsACommaBetweenThousands) {
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(grouped(1'000), "1,000");
   EXPECT_EQ(grouped(1'234'567), "1,234,567");
+}
+
+TEST(Whole, IsTheNearestWholeNumber) {
+  EXPECT_EQ(whole(1234.5), "1,235");
+  EXPECT_EQ(whole(-3), "0");
+}
+
+TEST(Whole, TakesWhatNoIntegerHolds) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(whole(1e300), "1.00e+300");
+  EXPECT_EQ(whole(infinity), "inf");
+  EXPECT_EQ(whole(-infinity), "0");
+  EXPECT_EQ(rounded(1e300), "1.00e+300");
+  EXPECT_EQ(rounded(-std::numeric_limits<double>::quiet_NaN()), "nan");
+  EXPECT_EQ(bytes(1e300), "1.00e+291 GB");
 }
 
 TEST(Rounded, KeepsThreeDigits) {
