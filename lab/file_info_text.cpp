@@ -110,19 +110,16 @@ std::string kinds_text(const FileInfo& info) {
 }
 
 std::string reading_text(const FileInfo& info) {
+  const auto size = static_cast<double>(info.bytes);
   // What takes no time has no speed: what is measured is the opening.
   constexpr std::uint64_t least_bytes = 1'000'000;
   constexpr std::uint64_t least_boxes = 50'000;
   if (info.bytes > 0 ? info.bytes < least_bytes : info.boxes < least_boxes)
-    return fmt::format("  read in {}{}\n", duration(info.seconds),
-                       info.bytes > 0 ? ": " + bytes(info.bytes) : "");
+    return fmt::format("  read in {}{}\n", duration(info.seconds), info.bytes > 0 ? ": " + bytes(size) : "");
   const double seconds = std::max(info.seconds, 1e-9);
   const double boxes_a_second = static_cast<double>(info.boxes) / seconds;
   std::string text = fmt::format("  read in {}: ", duration(info.seconds));
-  if (info.bytes > 0) {
-    const auto bytes_a_second = static_cast<std::uint64_t>(static_cast<double>(info.bytes) / seconds);
-    text += fmt::format("{}, {} a second, ", bytes(info.bytes), bytes(bytes_a_second));
-  }
+  if (info.bytes > 0) text += fmt::format("{}, {} a second, ", bytes(size), bytes(size / seconds));
   return text + fmt::format("{} boxes a second\n", whole(boxes_a_second));
 }
 
