@@ -23,6 +23,7 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
@@ -125,10 +126,12 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
 
   on_signal(OnSignal::note_then_end);
   const lab::Catalogue catalogue;
+  const lab::ProcessorShare share;
   const lab::Comparison comparison = lab::compare(catalogue, options);
+  const std::string busy = lab::busy_hint(share.value());
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
-  print(lab::summary_of(comparison));
+  print(lab::summary_of(comparison) + busy);
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(comparison, command);

@@ -14,6 +14,7 @@
 #include "cli/unusable.hpp"
 #include "cli/verbs.hpp"
 #include "lab/experiments/results.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/numbers.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/readers/input.hpp"
@@ -105,9 +106,10 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
     return Exit::fine;
   }
   check(arguments.files, arguments.from);
-  const lab::ExperimentResults results =
-      arguments.from.empty() ? measure(arguments, command) : read(arguments);
-  print(lab::summary_of(results));
+  const bool are_measured = arguments.from.empty();
+  const lab::ProcessorShare share;
+  const lab::ExperimentResults results = are_measured ? measure(arguments, command) : read(arguments);
+  print(lab::summary_of(results) + (are_measured ? lab::busy_hint(share.value()) : ""));
   if (arguments.files.any() && !results.results.empty()) {
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(results);
@@ -120,7 +122,7 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
           .experiments = json,
           .drawings = lab::drawings_of(lab::scenes_of_experiments(), find, catalogue.select("own,paper"))};
     });
-    if (results.stopped && arguments.from.empty())
+    if (results.stopped && are_measured)
       say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
                       lab::counted(results.results.size(), "experiment", "experiments")));
   } else if (arguments.files.any()) {

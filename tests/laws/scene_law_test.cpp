@@ -52,6 +52,8 @@ TEST_P(SceneLaw, FindsEachOverlappingPairOnce) {
 TEST_P(SceneLaw, TracksMovingBoxes) {
   in_dimension([&]<int D>() {
     for (const lab::Scene& scene : lab::scenes()) {
+      // Those are large, and move like all others.
+      if (scene.fixed_count && sanitized) continue;
       for (const lab::SceneRequest& request :
            {lab::SceneRequest{.boxes = 200, .frames = 12, .moving = 0.1},
             lab::SceneRequest{.boxes = 200, .seed = 2, .frames = 12, .moving = 1, .drift = 0.5},
@@ -60,6 +62,7 @@ TEST_P(SceneLaw, TracksMovingBoxes) {
         if (!history) continue;
         EXPECT_TRUE(tracks_the_pairs<D>(algorithm(), spec(), *history))
             << scene.name << ", seed " << request.seed;
+        if (scene.fixed_count) break;
       }
     }
   });
