@@ -95,4 +95,5 @@ tests-clang: build/clang/build.ninja
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
 
-build/clang/build.ninja: | setup-ci
+# Both are clang's.
+build/asan/build.ninja build/clang/build.ninja: | setup-ci
