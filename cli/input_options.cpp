@@ -20,7 +20,7 @@ lab::Progress progress_of(const std::string& path) {
                            : path == "-" ? "standard input"
                                          : std::filesystem::path(path).filename().string();
   return [name, line = std::make_shared<ProgressLine>()](std::uint64_t done, std::uint64_t total) {
-    line->show(total == 0 ? fmt::format("reading {}: {}", name, lab::bytes(static_cast<double>(done)))
+    line->show(total == 0 ? fmt::format("reading {}: {}", name, lab::bytes(done))
                           : fmt::format("reading {}: {} %", name, done * 100 / total));
   };
 }

@@ -1,6 +1,7 @@
 // Numbers as people read them: thousands apart, few digits, bytes and seconds with a unit.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -25,5 +26,9 @@ std::string duration(double seconds);
 
 /// A size with the unit that suits it: "512 B", "71.2 kB", "4.21 MB", "1.30 GB"; 1 kB is 1,000 bytes.
 std::string bytes(double count);
+template <std::integral Count>
+std::string bytes(Count count) {
+  return bytes(static_cast<double>(count));
+}
 
 }  // namespace broadside::lab
