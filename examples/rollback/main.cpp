@@ -21,8 +21,10 @@ struct Game {
   std::array<broadside::Handle, 2> players;
 
   Game() {
-    for (int i = 0; i <= 10; ++i)
-      world.add({{4.0F * i, 0}, {4.0F * i + 0.5F, 1}}, {.filter = {.is_static = true}});
+    for (int i = 0; i <= 10; ++i) {
+      const auto wall = 4 * static_cast<float>(i);
+      world.add({{wall, 0}, {wall + 0.5F, 1}}, {.filter = {.is_static = true}});
+    }
     for (broadside::Handle& player : players) player = world.add({{20, 0}, {21, 1}});
     world.update();
   }
