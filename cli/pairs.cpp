@@ -23,7 +23,7 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/join.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
 #include "lab/readers/swept_mesh.hpp"

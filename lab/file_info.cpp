@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lab/catalogue.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/readers/format.hpp"
 

@@ -13,7 +13,7 @@
 #include "lab/measure/reference.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/track_case.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -171,9 +171,11 @@ class Adviser {
     return {.budget_seconds = budget / 12,
             .history_seconds = budget / 3,
             .share_seconds = 0.3 * budget / static_cast<double>(contenders),
-            .least_samples = 6,
-            .most_samples = 64,
-            .single_sample_seconds = budget / 20};
+            .least_rounds = 6,
+            .most_rounds = 64,
+            .slow_seconds = budget / 20,
+            .slow_history_seconds = budget / 20,
+            .slow_rounds = 1};
   }
 
   Effort final_effort(std::size_t contenders) const {
@@ -181,15 +183,17 @@ class Adviser {
     return {.budget_seconds = budget,
             .history_seconds = budget,
             .share_seconds = 0.6 * budget / static_cast<double>(contenders),
-            .least_samples = 9,
-            .most_samples = 400,
-            .single_sample_seconds = budget / 8};
+            .least_rounds = 9,
+            .most_rounds = 400,
+            .slow_seconds = budget / 8,
+            .slow_history_seconds = budget / 8,
+            .slow_rounds = 1};
   }
 
   std::vector<Measurement> measure(std::span<const Contender> contenders, const Effort& effort) {
-    const Contest contest{contenders, catalogue_.algorithms(), effort, options_.watch};
-    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, contest);
-    CaseResult result = measure_find<D, Real>(case_, images_, contest);
+    const Benchmark benchmark{contenders, catalogue_.algorithms(), effort, options_.watch};
+    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, benchmark);
+    CaseResult result = measure_find<D, Real>(case_, images_, benchmark);
     if (!result.floor_ms.empty()) advice_.floor_ms = median(result.floor_ms);
     return std::move(result.measurements);
   }

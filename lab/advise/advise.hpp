@@ -10,7 +10,7 @@
 #include "lab/advise/choice.hpp"
 #include "lab/advise/signals.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {

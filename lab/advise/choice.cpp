@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lab/measure/samples.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

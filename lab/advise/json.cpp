@@ -10,7 +10,7 @@
 #include "lab/advise/advise.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/report/machine_json.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

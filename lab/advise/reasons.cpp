@@ -9,7 +9,7 @@
 #include "lab/advise/advise.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

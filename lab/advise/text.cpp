@@ -8,7 +8,7 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

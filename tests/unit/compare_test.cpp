@@ -134,7 +134,7 @@ TEST(Compare, SeesWhatGoesWrongOnlyLater) {
   }));
   CompareOptions options = options_for("late", {small_still});
   options.effort.share_seconds = 60;
-  options.effort.most_samples = 30;
+  options.effort.most_rounds = 30;
   const Measurement still = only(compare(catalogue, options));
   EXPECT_EQ(still.outcome, Outcome::failed);
   EXPECT_THAT(still.reason,
