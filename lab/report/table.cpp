@@ -149,8 +149,8 @@ std::string still_rows(const CaseResult& result) {
     if (floor > 0) row.insert(row.begin() + 4, over_floor);
     columns.add(std::move(row));
   };
-  add({"algorithm", scale.unit.name + scale.no_mark, "ratio", "95 %", "ns a box", "tests a box", "memory",
-       "peak", "min..max", ""},
+  add({"algorithm", scale.unit.name + scale.no_mark, "ratio", "95 % interval", "ns a box", "tests a box",
+       "memory", "peak", "min..max", ""},
       "floors");
   for (const Measurement* const measurement : in_order(result)) {
     const bool timed = is_timed(*measurement);
@@ -174,8 +174,9 @@ std::string moving_rows(const CaseResult& result) {
   const Scale scale(result);
   const double movers = std::max(result.of.moving * scale.boxes, 1.0);
   Columns columns("<>>>><>>>>>><");
-  columns.add({"algorithm", scale.unit.name + " a frame" + scale.no_mark, "p99", "worst", "ratio", "95 %",
-               "to a peer", "ns a mover", "first frame", "tests a box", "memory", "peak", ""});
+  columns.add({"algorithm", scale.unit.name + " a frame" + scale.no_mark, "p99", "worst", "ratio",
+               "95 % interval", "to a peer", "ns a mover", "first frame", "tests a box", "memory", "peak",
+               ""});
   for (const Measurement* const measurement : in_order(result)) {
     const std::vector<double>& samples = measurement->samples_ms;
     const bool timed = is_timed(*measurement);

@@ -107,7 +107,8 @@ TEST(GeometricMean, AveragesNoiseOutOverCases) {
 }
 
 TEST(AddRatios, ComparesWithTheFastestOurBestAndTheFastestPeer) {
-  CaseResult result{{}, {with("auto", {2}), with("auto:cell=1", {1.5}), with("grid", {3}), with("peer", {6})}};
+  CaseResult result{{},
+                    {with("auto", {2}), with("auto:cell=1", {1.5}), with("grid", {3}), with("peer", {6})}};
   result.measurements[3].kind = AlgorithmKind::peer;
   result.measurements.push_back(with("failed", {}));
   add_ratios(result);
