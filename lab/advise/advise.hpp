@@ -20,7 +20,7 @@ struct AdviseOptions {
   std::string algorithms = "own";          ///< as Catalogue::select reads it
   std::vector<std::size_t> threads = {1};  ///< that may be used besides one; plain algorithms have one, and
                                            ///< the best are tried with more, which must pay to be advised
-  double budget_seconds = 6;               ///< about how long it may take, but for what checking takes
+  double budget_seconds = 6;               ///< about how long it may take, checks included
   Watch watch{};
 };
 

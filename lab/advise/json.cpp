@@ -8,9 +8,9 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/advise/advise.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/report/machine_json.hpp"
-#include "lab/measure/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -43,6 +43,11 @@ bool Participation::goes_on(const Effort& effort) const noexcept {
   return rounds_ < effort.least_rounds || spent_ms_ < effort.share_seconds * 1e3;
 }
 
+bool has_time(const Effort& effort, std::size_t round, const Stopwatch& of_case) {
+  constexpr std::size_t always = 2;
+  return round < always || of_case.milliseconds() < effort.case_seconds * 1e3;
+}
+
 void keep_freed_memory() {
 #ifdef __GLIBC__
   // Nothing goes back to the system at the heap's end, and large blocks come from the heap as well, where

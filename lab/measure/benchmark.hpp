@@ -83,6 +83,9 @@ class Participation {
   bool has_ended_ = false;
 };
 
+/// Whether a round is still to be played: the first two, and others while the case has time.
+bool has_time(const Effort& effort, std::size_t round, const Stopwatch& of_case);
+
 /// Has the process keep memory that is freed. An allocation that was made before then costs no page faults,
 /// whichever algorithm made it: without this, the first to need memory pays for all that follow. Where the C
 /// library is not glibc it does nothing.

@@ -68,7 +68,7 @@ class FindCase {
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
-    for (std::size_t round = 0; goes_on(); ++round) play(round);
+    for (std::size_t round = 0; goes_on() && has_time(benchmark_.effort, round, watch_); ++round) play(round);
     return {case_, std::move(measurements), std::move(floor_ms_)};
   }
 
@@ -232,6 +232,7 @@ class FindCase {
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
   CacheState caches_;
+  Stopwatch watch_;
   std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;
   bool has_floor_ = false;
   std::vector<double> floor_ms_;

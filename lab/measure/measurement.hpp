@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -99,6 +100,8 @@ struct Effort {
   double slow_seconds = 0.1;           ///< ... but if one search takes longer than this,
   double slow_history_seconds = 0.35;  ///< or one history longer than this,
   std::size_t slow_rounds = 2;         ///< it takes part in the first few only
+  double case_seconds = std::numeric_limits<double>::infinity();  ///< for all algorithms and checks together:
+                                                                  ///< once over, no round follows the second
 };
 
 }  // namespace broadside::lab

@@ -93,7 +93,7 @@ class TrackCase {
         entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
     warm_up();
-    for (std::size_t round = 0; play(round); ++round) {
+    for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_) && play(round); ++round) {
     }
     return measurements;
   }
@@ -287,6 +287,7 @@ class TrackCase {
   std::vector<std::unique_ptr<Expectation>> expectations_;
   Events events_;  // of the last update; its memory serves all
   CacheState caches_;
+  Stopwatch watch_;
 };
 
 }  // namespace
