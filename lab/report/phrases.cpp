@@ -13,7 +13,9 @@ namespace broadside::lab {
 std::string interval_text(const std::optional<Interval>& interval) {
   if (!interval) return "-";
   if (interval->includes(1)) return "level";
-  return ratio_text(interval->low) + " to " + ratio_text(interval->high);
+  const std::string low = ratio_text(interval->low);
+  const std::string high = ratio_text(interval->high);
+  return low == high && low == ratio_text(1) ? "nearly level" : low + " to " + high;
 }
 
 std::string ratio_text(double ratio, const std::optional<Interval>& interval) {
