@@ -1,6 +1,7 @@
 // A comparison's cases: who is how fast in each, and over all. The rules are those of lab/report/ranking.cpp.
-import type { Measurement } from "./data.ts";
+import type { Measurement, Ratio } from "./data.ts";
 import { geometric_mean, grouped } from "./numbers.ts";
+import { inverse } from "./ratios.ts";
 
 /** What was measured on the same boxes. */
 export interface Case {
@@ -55,12 +56,24 @@ export function ranking(of: Case): Timed[] {
   return of.measurements.filter(is_timed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
+/** A time in a case over that of the fastest, which is 1 of itself. */
+export function ratioToFastest(of: Case, measurement: Timed): Ratio {
+  const fastest = ranking(of)[0] ?? measurement;
+  const one: Ratio = { of: fastest.algorithm, median: 1, low: null, high: null, rounds: measurement.rounds };
+  if (measurement === fastest) return one;
+  return measurement.ratio_to_fastest ?? { ...one, median: measurement.median_ms / fastest.median_ms };
+}
+
 /** The time of the fastest peer over that of the fastest of ours; undefined where one of them is not there. */
-export function lead_of(of: Case): { ratio: number; own: Timed; peer: Timed } | undefined {
+export function lead_of(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
   const ranked = ranking(of);
   const own = ranked.find((measurement) => measurement.kind === "own");
   const peer = ranked.find((measurement) => measurement.kind === "peer");
-  return own === undefined || peer === undefined ? undefined : { ratio: peer.median_ms / own.median_ms, own, peer };
+  if (own === undefined || peer === undefined) return undefined;
+  const medians: Ratio = {
+    of: peer.algorithm, median: own.median_ms / peer.median_ms, low: null, high: null, rounds: own.rounds,
+  };
+  return { ratio: { ...inverse(own.ratio_to_fastest_peer ?? medians), of: own.algorithm }, own, peer };
 }
 
 export interface Standing {
@@ -82,7 +95,7 @@ export function standings(cases: readonly Case[]): Standing[] {
       const label = label_of(measurement);
       const entry = ratios.get(label) ?? { kind: measurement.kind, ratios: [], fastest: 0 };
       ratios.set(label, entry);
-      entry.ratios.push(measurement.median_ms / best);
+      entry.ratios.push(ratioToFastest(of, measurement).median);
       if (measurement.median_ms === best) ++entry.fastest;
     }
   }

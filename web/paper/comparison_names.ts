@@ -7,22 +7,26 @@ import {
   draw_winners,
   scaled_scenes,
 } from "../charts/comparison_charts.ts";
-import type { Comparison } from "../charts/data.ts";
+import type { Comparison, Ratio } from "../charts/data.ts";
 import type { Drawn, Place } from "../charts/frame.ts";
 import { geometric_mean, ratio_text, rounded } from "../charts/numbers.ts";
+import { intervalOf, intervalText, isFaster } from "../charts/ratios.ts";
 import { greatest, least, leads_of, type Facts } from "./facts.ts";
 import { plain, table_text } from "./markdown.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown } from "./words.ts";
 
-const mean = (all: readonly { ratio: number }[]) => ratio_text(geometric_mean(all.map(({ ratio }) => ratio)));
+const mean = (all: readonly { ratio: Ratio }[]) => ratio_text(geometric_mean(all.map(({ ratio }) => ratio.median)));
 
-export function comparison_data(facts: Facts, { command, build }: Comparison): Record<string, unknown> {
+export function comparison_data(facts: Facts, comparison: Comparison): Record<string, unknown> {
+  const { command, build, busy, measurements } = comparison;
   const { cases, leads, choices } = facts;
   const worst = greatest(choices);
   const peers = facts.standings.filter((standing) => standing.kind === "peer");
-  const lost = leads.filter((lead) => lead.ratio < 1);
   return {
+    /** Whether ratios are of times taken in the same round, with an interval. */
+    paired: measurements.some(({ ratio_to_fastest: ratio }) => ratio !== null && intervalOf(ratio) !== undefined),
+    busy: busy === true,
     cases: shown(cases.length),
     still_cases: shown(facts.still.length),
     moving_cases: shown(facts.moving.length),
@@ -33,14 +37,18 @@ export function comparison_data(facts: Facts, { command, build }: Comparison): R
     mean_lead: mean(leads),
     mean_lead_still: mean(leads_of(facts.still)),
     mean_lead_moving: mean(leads_of(facts.moving)),
-    least_lead: ratio_text(least(leads).ratio),
+    least_lead: ratio_text(least(leads).ratio.median),
+    least_lead_interval: intervalText(least(leads).ratio),
     least_lead_case: least(leads).of.name,
     least_lead_peer: least(leads).peer.algorithm,
-    greatest_lead: ratio_text(greatest(leads).ratio),
+    greatest_lead: ratio_text(greatest(leads).ratio.median),
+    greatest_lead_interval: intervalText(greatest(leads).ratio),
     greatest_lead_case: greatest(leads).of.name,
-    lost: shown(lost.length),
+    lost: shown(facts.lost.length),
+    level: shown(facts.level.length),
     auto_mean: mean(choices),
-    auto_worst: ratio_text(worst.ratio),
+    auto_worst: ratio_text(worst.ratio.median),
+    auto_worst_interval: intervalText(worst.ratio),
     auto_worst_case: worst.of.name,
     command: command.join(" "),
     revision: build.revision,
@@ -64,12 +72,12 @@ export function leads_table(facts: Facts, which: string): string {
         return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
       };
       const ratio = leads_of([of])[0]?.ratio;
-      const lead = ratio === undefined ? "-" : ratio_text(ratio);
+      const lead = ratio === undefined ? "-" : intervalText(ratio);
       return [
         plain(of.name),
         ...fastest("own"),
         ...fastest("peer"),
-        ratio !== undefined && ratio < 1 ? `**${lead}**` : lead,
+        ratio !== undefined && isFaster(ratio) ? `**${lead}**` : lead,
         ...fastest("paper"),
       ];
     }),
@@ -77,14 +85,13 @@ export function leads_table(facts: Facts, which: string): string {
 }
 
 /** The cases in which a peer is faster than all of ours, as a list; a sentence where there is none. */
-export function lost_list(facts: Facts): string {
-  const lost = facts.leads.filter((lead) => lead.ratio < 1);
+export function lost_list({ lost }: Facts): string {
   if (lost.length === 0) return "In no case was a peer faster than the fastest of ours.";
   return lost
     .map(
       ({ of, own, peer, ratio }) =>
         `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, the fastest of ours, ` +
-        `\`${own.algorithm}\`, ${rounded(own.median_ms)} ms, which is a lead of ${ratio_text(ratio)}.`,
+        `\`${own.algorithm}\`, ${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
     )
     .join("\n");
 }
