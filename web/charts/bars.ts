@@ -19,7 +19,6 @@ export interface BarsSpec {
   colours?: readonly string[];
   /** Where bars begin, marked by a line; standard: 0, or where a logarithmic axis begins. */
   from?: number;
-  value_text?: (value: number) => string;
   /** Of each label, where there is one series: what stands at its bar, and in full where there is room. */
   texts?: readonly { short: string; full: string }[];
   /** Likewise: the interval in which its value lies, or none. */
@@ -43,7 +42,7 @@ function describe(spec: BarsSpec, text: (value: number, at: number) => string): 
 export function draw_bars(spec: BarsSpec, place: Place): Drawn {
   const { theme } = place;
   const whiskers = spec.whiskers ?? [];
-  const text = (value: number, at: number): string => spec.texts?.[at]?.full ?? (spec.value_text ?? rounded)(value);
+  const text = (value: number, at: number): string => spec.texts?.[at]?.full ?? rounded(value);
   const description = describe(spec, text);
   const names = spec.series.map((series) => series.name);
   const colours = colours_of(names, theme);

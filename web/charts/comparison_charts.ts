@@ -7,7 +7,7 @@ import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
 import { draw_lines } from "./lines.ts";
 import { draw_map } from "./map.ts";
-import { ratio_text, short, time_text } from "./numbers.ts";
+import { short, time_text } from "./numbers.ts";
 import { intervalOf, intervalText, shortRatioText } from "./ratios.ts";
 import { family_colour } from "./theme.ts";
 import type { Theme } from "./theme.ts";
@@ -52,7 +52,6 @@ export function draw_standings(cases: readonly Case[], place: Place): Drawn {
     series: [{ name: "", values: all.map((standing) => standing.ratio) }],
     colours: all.map((standing) => colour_of(standing, place.theme)),
     from: 1,
-    value_text: ratio_text,
   }, place);
 }
 

@@ -47,7 +47,7 @@ export function geometric_mean(values: readonly number[]): number {
   return Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
 }
 
-/** A ratio to two significant digits, as the program's tables show it: "0.97", "1.0", "19", "1,300". */
+/** A ratio of two times to two significant digits, which is what intervals allow: "0.97", "1.0", "19", "1,300". */
 export function ratio_text(ratio: number): string {
   const rounded_off = ratio.toPrecision(2);
   return Number(rounded_off) < 10 ? rounded_off : grouped(Number(rounded_off));

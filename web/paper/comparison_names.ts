@@ -16,7 +16,7 @@ import { plain, table_text } from "./markdown.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown } from "./words.ts";
 
-const mean = (all: readonly { ratio: Ratio }[]) => ratio_text(geometric_mean(all.map(({ ratio }) => ratio.median)));
+const mean = (all: readonly { ratio: Ratio }[]) => rounded(geometric_mean(all.map(({ ratio }) => ratio.median)));
 
 export function comparison_data(facts: Facts, comparison: Comparison): Record<string, unknown> {
   const { command, build, busy, measurements } = comparison;
@@ -48,7 +48,6 @@ export function comparison_data(facts: Facts, comparison: Comparison): Record<st
     level: shown(facts.level.length),
     auto_mean: mean(choices),
     auto_worst: ratio_text(worst.ratio.median),
-    auto_worst_interval: intervalText(worst.ratio),
     auto_worst_case: worst.of.name,
     command: command.join(" "),
     revision: build.revision,
@@ -106,7 +105,7 @@ export function standings_table(facts: Facts): string {
       kinds[kind] ?? kind,
       shown(cases),
       shown(fastest),
-      ratio_text(ratio),
+      rounded(ratio),
     ]),
   );
 }

@@ -44,9 +44,9 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
   const measured = comparison.measurements.length - skipped;
   return el("dl", { class: "tiles" },
     best !== undefined && tile("Fastest over all", best.algorithm,
-      `${ratio_text(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
+      `${rounded(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
     leads.length > 0 && tile("Ours against the fastest peer",
-      `${ratio_text(geometric_mean(leads.map(({ ratio }) => ratio.median)))} times`,
+      `${rounded(geometric_mean(leads.map(({ ratio }) => ratio.median)))} times`,
       `as fast, the fastest of each; geometric mean of ${plural(leads.length, "case")}`),
     worst !== undefined && tile("At the least", isLevel(worst.ratio) ? "level" : `${ratio_text(worst.ratio.median)} times`,
       `${isLevel(worst.ratio) ? "with it" : "as fast"}${rangeText(worst.ratio)}: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),

@@ -161,7 +161,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
   test("says at its top that the machine was busy and times unsteady", async () => {
     const { page } = await open("doubtful.html");
     const notice = page.locator("main .intro .notice");
-    assert.match(await notice.innerText(), /^Busy machine\. Other programs had the processor for 42 % .*\nUnsteady times\. 1 of 10 /);
+    assert.match(await notice.innerText(), /^Busy machine\. Other programs had the processor for 42 % .*\n+Unsteady times\. 1 of 10 /);
     const { y, height } = (await notice.boundingBox())!;
     assert.ok(y + height < 900, "below the first screen");
     await page.goto(`file://${join(folder, "fixture.html")}`);
