@@ -1,7 +1,7 @@
 // The charts of a comparison.
 import { draw_bars } from "./bars.ts";
 import type { BarsSpec } from "./bars.ts";
-import { is_timed, label_of, lead_of, percent, ranking, ratioToFastest, standings } from "./comparison.ts";
+import { is_timed, label_of, lead_of, percent, ranking, standings } from "./comparison.ts";
 import type { Case } from "./comparison.ts";
 import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
@@ -18,12 +18,14 @@ function colour_of(measurement: { algorithm: string }, theme: Theme): string {
   return family_colour(measurement.algorithm, theme) ?? theme.muted;
 }
 
+const noText = { short: "", full: "none" };
+
 /** The values of a bar for each ratio, with its interval as a whisker. */
-function ratioBars(ratios: readonly Ratio[]): Pick<BarsSpec, "series" | "whiskers" | "texts"> {
+function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "series" | "whiskers" | "texts"> {
   return {
-    series: [{ name: "", values: ratios.map(({ median }) => median) }],
-    whiskers: ratios.map(intervalOf),
-    texts: ratios.map((ratio) => ({ short: shortRatioText(ratio), full: intervalText(ratio) })),
+    series: [{ name: "", values: ratios.map((ratio) => ratio?.median ?? null) }],
+    whiskers: ratios.map((ratio) => (ratio === null ? undefined : intervalOf(ratio))),
+    texts: ratios.map((ratio) => (ratio === null ? noText : { short: shortRatioText(ratio), full: intervalText(ratio) })),
   };
 }
 
@@ -35,7 +37,7 @@ export function draw_ratios(of: Case, place: Place): Drawn {
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: true },
     labels: ranked.map(label_of),
-    ...ratioBars(ranked.map((measurement) => ratioToFastest(of, measurement))),
+    ...ratioBars(ranked.map((measurement) => measurement.ratio_to_fastest)),
     colours: ranked.map((measurement) => colour_of(measurement, place.theme)),
     from: 1,
   }, place);
@@ -55,14 +57,14 @@ export function draw_standings(cases: readonly Case[], place: Place): Drawn {
   }, place);
 }
 
-/** How many times as fast the fastest of ours is as the fastest peer, case by case. */
+/** How many times as fast our best is as the fastest peer, case by case. */
 export function draw_leads(cases: readonly Case[], place: Place): Drawn {
   const leads = cases.flatMap((of) => {
     const lead = lead_of(of);
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   return draw_bars({
-    title: "The fastest peer's time over that of the fastest of ours",
+    title: "The fastest peer's time over that of our best",
     x: { name: "case", unit: "" },
     y: { name: "times as fast", unit: "", log: true },
     labels: leads.map(({ of }) => short_name(of)),

@@ -1,5 +1,5 @@
 // Comparisons of the schema before, "broadside.results/1", as those of today.
-import { cases_of } from "./comparison.ts";
+import { bestOwn, cases_of, ranking } from "./comparison.ts";
 import type { Comparison, Measurement, Ratio, RatioName } from "./data.ts";
 
 /** Has no rounds and no ratios, and a field that was always null. */
@@ -10,13 +10,10 @@ export interface OldComparison extends Omit<Comparison, "schema" | "date" | "pro
   measurements: OldMeasurement[];
 }
 
-/** To the fastest of `others`, by their medians: old results have no pairs of times, hence no interval. */
-function ratioTo(others: readonly Measurement[], measurement: Measurement): Ratio | null {
-  const [best] = others
-    .filter((other) => other.median_ms !== null)
-    .sort((a, b) => Number(a.median_ms) - Number(b.median_ms));
-  if (best === undefined || best === measurement || measurement.median_ms === null) return null;
-  return { of: best.algorithm, median: measurement.median_ms / Number(best.median_ms), low: null, high: null, rounds: null };
+/** Over the time of another by their medians: old results have no pairs of times, hence no interval. */
+function ratioTo(other: Measurement | undefined, { median_ms }: Measurement): Ratio | null {
+  if (other === undefined || other.median_ms === null || median_ms === null) return null;
+  return { of: other.algorithm, median: median_ms / other.median_ms, low: null, high: null, rounds: null };
 }
 
 /** The same comparison in the shape of "broadside.results/2"; one that is in it already is handed back. */
@@ -25,13 +22,14 @@ export function inTodaysShape(comparison: Comparison | OldComparison): Compariso
   const measurements = comparison.measurements.map(({ search_ms: _, ...old }): Measurement => ({
     ...old, rounds: null, ratio_to_fastest: null, ratio_to_best_own: null, ratio_to_fastest_peer: null,
   }));
-  for (const { measurements: all } of cases_of(measurements)) {
-    const own = all.filter(({ kind, algorithm }) => kind === "own" && algorithm.split(":")[0] !== "auto");
-    const peers = all.filter(({ kind }) => kind === "peer");
-    for (const measurement of all) {
-      measurement.ratio_to_fastest = ratioTo(all, measurement);
+  for (const of of cases_of(measurements)) {
+    const [fastest] = ranking(of);
+    const own = bestOwn(of);
+    const peer = ranking(of).find(({ kind }) => kind === "peer");
+    for (const measurement of of.measurements) {
+      measurement.ratio_to_fastest = ratioTo(fastest, measurement);
       measurement.ratio_to_best_own = ratioTo(own, measurement);
-      measurement.ratio_to_fastest_peer = ratioTo(peers, measurement);
+      measurement.ratio_to_fastest_peer = ratioTo(peer, measurement);
     }
   }
   return {

@@ -4,9 +4,9 @@ import { ratio_text } from "./numbers.ts";
 
 export type Interval = readonly [low: number, high: number];
 
-/** The interval of a ratio; undefined where there is none. */
+/** The interval of a ratio; undefined where there is none, as of an algorithm's ratio to itself, which is just 1. */
 export function intervalOf({ low, high }: Ratio): Interval | undefined {
-  return low === null || high === null ? undefined : [low, high];
+  return low === null || high === null || low === high ? undefined : [low, high];
 }
 
 /** Whether nothing tells the two apart: the interval holds 1. */
@@ -20,19 +20,14 @@ export function isFaster(ratio: Ratio): boolean {
   return (intervalOf(ratio)?.[1] ?? ratio.median) < 1;
 }
 
-/** The other's time over this one's. */
-export function inverse({ median, low, high, ...rest }: Ratio): Ratio {
-  return { ...rest, median: 1 / median, low: high === null ? null : 1 / high, high: low === null ? null : 1 / low };
-}
-
-/** "19 (18 to 20)", "level (0.97 to 1.1)", or the ratio alone where it has no interval. */
+/** "19 (18 to 20)", "1.0 (level)", or the ratio alone where it has no interval. */
 export function intervalText(ratio: Ratio): string {
   const interval = intervalOf(ratio);
   if (interval === undefined) return ratio_text(ratio.median);
-  return `${shortRatioText(ratio)} (${ratio_text(interval[0])} to ${ratio_text(interval[1])})`;
+  return `${ratio_text(ratio.median)} (${isLevel(ratio) ? "level" : interval.map(ratio_text).join(" to ")})`;
 }
 
-/** The same without the interval: "19", "level". */
+/** The same in short: "19", "level". */
 export function shortRatioText(ratio: Ratio): string {
   return isLevel(ratio) ? "level" : ratio_text(ratio.median);
 }

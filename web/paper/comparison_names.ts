@@ -1,5 +1,5 @@
 // What templates may name of the comparison with other libraries.
-import { ranking, type Case } from "../charts/comparison.ts";
+import { bestOwn, ranking, type Case } from "../charts/comparison.ts";
 import {
   draw_leads,
   draw_scaling,
@@ -61,13 +61,13 @@ function cases_named(facts: Facts, which: string): Case[] {
   return found;
 }
 
-/** Who of ours, of the peers and of the draft's is fastest in each case. */
+/** Which of ours other than auto, of the peers and of the draft's is fastest in each case. */
 export function leads_table(facts: Facts, which: string): string {
   return table_text(
     ["boxes", "ours", " ms", "fastest peer", " ms", " lead", "fastest of the draft's", " ms"],
     cases_named(facts, which).map((of) => {
       const fastest = (kind: string) => {
-        const found = ranking(of).find((measurement) => measurement.kind === kind);
+        const found = kind === "own" ? bestOwn(of) : ranking(of).find((measurement) => measurement.kind === kind);
         return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
       };
       const ratio = leads_of([of])[0]?.ratio;
@@ -83,14 +83,14 @@ export function leads_table(facts: Facts, which: string): string {
   );
 }
 
-/** The cases in which a peer is faster than all of ours, as a list; a sentence where there is none. */
+/** The cases in which a peer is faster than our best, as a list; a sentence where there is none. */
 export function lost_list({ lost }: Facts): string {
-  if (lost.length === 0) return "In no case was a peer faster than the fastest of ours.";
+  if (lost.length === 0) return "In no case was a peer faster than our best.";
   return lost
     .map(
       ({ of, own, peer, ratio }) =>
-        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, the fastest of ours, ` +
-        `\`${own.algorithm}\`, ${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
+        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, our best, \`${own.algorithm}\`, ` +
+        `${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
     )
     .join("\n");
 }
@@ -123,11 +123,11 @@ export function comparison_charts(facts: Facts): Record<string, NamedChart> {
       draw: (place) => draw_standings(facts.cases, place),
     },
     leads_still: {
-      caption: "Boxes that rest: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
+      caption: "Boxes that rest: time of the fastest peer over that of our best, in the colour of the latter",
       draw: (place) => draw_leads(facts.still, place),
     },
     leads_moving: {
-      caption: "Boxes that move: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
+      caption: "Boxes that move: time of the fastest peer over that of our best, in the colour of the latter",
       draw: (place) => draw_leads(facts.moving, place),
     },
     winners: { caption: "The fastest in each case", draw: (place) => draw_winners(facts.cases, place) },

@@ -1,5 +1,5 @@
 // The comparison: who is fastest where, by how much, and every measurement.
-import { cases_of, is_timed, label_of, lead_of, ranking, ratioToFastest, standings } from "../charts/comparison.ts";
+import { cases_of, is_timed, label_of, lead_of, ranking, standings } from "../charts/comparison.ts";
 import type { Case } from "../charts/comparison.ts";
 import {
   draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings, draw_winners, scaled_scenes,
@@ -47,7 +47,7 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
       `${rounded(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
     leads.length > 0 && tile("Ours against the fastest peer",
       `${rounded(geometric_mean(leads.map(({ ratio }) => ratio.median)))} times`,
-      `as fast, the fastest of each; geometric mean of ${plural(leads.length, "case")}`),
+      `as fast, the best of each; geometric mean of ${plural(leads.length, "case")}`),
     worst !== undefined && tile("At the least", isLevel(worst.ratio) ? "level" : `${ratio_text(worst.ratio.median)} times`,
       `${isLevel(worst.ratio) ? "with it" : "as fast"}${rangeText(worst.ratio)}: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
     tile("Verified", failed.length === 0 ? `all ${grouped(measured)}` : `${grouped(failed.length)} FAILED`,
@@ -121,7 +121,7 @@ function case_table(of: Case): HTMLElement {
     columns: [
       { title: "algorithm", value: label_of },
       { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
-      ratioColumn("to the fastest", (m) => (is_timed(m) ? ratioToFastest(of, m) : null)),
+      ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
       ratioColumn("to our best", (m) => m.ratio_to_best_own),
       ratioColumn("to the fastest peer", (m) => m.ratio_to_fastest_peer),
       { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
@@ -160,8 +160,7 @@ function case_view(cases: readonly Case[]): HTMLElement | null {
   return box;
 }
 
-function measurements_table(comparison: Comparison, cases: readonly Case[]): HTMLElement {
-  const ratios = new Map(cases.flatMap((of) => of.measurements.filter(is_timed).map((m) => [m as Measurement, ratioToFastest(of, m)])));
+function measurements_table(comparison: Comparison): HTMLElement {
   const columns: DataColumn<Measurement>[] = [
     { title: "scene", value: (m) => m.scene },
     { title: "D", value: (m) => m.dimension },
@@ -170,7 +169,7 @@ function measurements_table(comparison: Comparison, cases: readonly Case[]): HTM
     { title: "algorithm", value: label_of },
     { title: "kind", value: (m) => m.kind },
     { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
-    ratioColumn("to the fastest", (m) => ratios.get(m) ?? null),
+    ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
     { title: "least", value: (m) => m.min_ms, text: (m) => time(m.min_ms) },
     { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
     { title: "ns a box", value: (m) => m.ns_per_box, text: (m) => number(m.ns_per_box) },
@@ -225,13 +224,13 @@ export function comparison_sections(
         "The fastest in each case", (place) => draw_winners(cases, place),
         "Scene, boxes and, where they move, how many of them.").element)),
     leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chart_figure(
-      "How many times as fast as the fastest peer the fastest of ours is", (place) => draw_leads(cases, place),
-      `Below 1, the peer is faster. Each bar has the colour of the one of ours.${whiskersNote(cases)}`).element));
+      "How many times as fast as the fastest peer our best is", (place) => draw_leads(cases, place),
+      `Below 1, the peer is faster. Each bar has the colour of our best, which is never auto: that takes one of the others.${whiskersNote(cases)}`).element));
   }
   add(charts, scaling(cases), case_view(cases));
   return [
     ["summary", "Summary", summary],
     ["charts", "Charts", charts],
-    ["measurements", "Measurements", el("section", {}, el("div", { class: "card" }, measurements_table(comparison, cases)))],
+    ["measurements", "Measurements", el("section", {}, el("div", { class: "card" }, measurements_table(comparison)))],
   ];
 }

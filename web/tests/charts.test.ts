@@ -121,7 +121,7 @@ test("ratios have two significant digits, and are level where their interval hol
   const text = (low: number | null, high: number | null): string =>
     intervalText({ of: "grid", median: 1.02, low, high, rounds: 5 });
   assert.deepEqual([text(1.01, 1.03), text(0.98, 1.06), text(1, 1.06), text(null, null)],
-    ["1.0 (1.0 to 1.0)", "level (0.98 to 1.1)", "level (1.0 to 1.1)", "1.0"]);
+    ["1.0 (1.0 to 1.0)", "1.0 (level)", "1.0 (level)", "1.0"]);
 });
 
 test("results of the schema before are read with ratios of their medians, which have no interval", () => {
@@ -130,8 +130,8 @@ test("results of the schema before are read with ratios of their medians, which 
     ["broadside.results/2", null, null, null]);
   const [grid, bvh, box2d] = read.measurements;
   assert.deepEqual(grid?.ratio_to_fastest, { of: "bvh", median: 2, low: null, high: null, rounds: null });
-  assert.equal(bvh?.ratio_to_fastest, null);
-  assert.deepEqual([box2d?.ratio_to_best_own?.median, box2d?.ratio_to_fastest_peer], [4, null]);
+  assert.equal(bvh?.ratio_to_fastest?.median, 1);
+  assert.deepEqual([box2d?.ratio_to_best_own?.median, box2d?.ratio_to_fastest_peer?.median], [4, 1]);
   assert.equal(bvh?.ratio_to_fastest_peer?.median, 0.25);
   assert.equal(read.measurements[7]?.ratio_to_fastest, null);
   assert.equal(inTodaysShape(comparison), comparison);
@@ -143,10 +143,10 @@ test("a ratio's interval is a whisker of its bar, and told in words", () => {
   const drawn = draw_ratios(cases[0]!, place);
   const [bars, whiskers] = series_of(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
   assert.deepEqual([bars?.type, whiskers?.type], ["bar", "custom"]);
-  // The fastest is compared with nothing.
+  // Of the fastest, the ratio is to itself.
   assert.deepEqual(bars?.data.map(({ label }) => label === undefined), [true, false, false, false]);
   assert.match(drawn.description, / bvh: 1\.0\. grid: 2\.0 \(1\.9 to 2\.1\)\. /);
-  assert.match(draw_ratios(cases[2]!, place).description, / bvh: level \(0\.92 to 1\.6\)\. /);
+  assert.match(draw_ratios(cases[2]!, place).description, / bvh: 1\.2 \(level\)\. /);
 });
 
 test("an algorithm's threads are told once", () => {

@@ -42,6 +42,7 @@ export const oldComparison: OldComparison = {
 /** With an interval of some per cent about it; of a factor to 1.25 it holds 1. */
 function withInterval(ratio: Ratio | null): Ratio | null {
   if (ratio === null) return null;
+  if (ratio.median === 1) return { ...ratio, low: 1, high: 1, rounds: 4 };
   const width = ratio.median > 0.8 && ratio.median <= 1.25 ? 1.3 : 1.06;
   return { ...ratio, low: ratio.median / width, high: ratio.median * width, rounds: 4 };
 }
