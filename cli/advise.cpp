@@ -23,6 +23,7 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/readers/write_file.hpp"
 #include "lab/scenes/motion.hpp"
 
@@ -164,6 +165,7 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
 
   on_signal(OnSignal::note_then_end);
   lab::Advice advice;
+  const lab::ProcessorShare share;
   try {
     advice =
         std::visit([&](const auto& history) { return lab::advise(catalogue, boxes.name, history, options); },
@@ -171,10 +173,11 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
   } catch (const lab::Stopped&) {
     throw Interruption();
   }
+  advice.processor_share = share.value();
   progress.clear();
   advice.warning = boxes.warning;
   if (!advice.warning.empty()) say(advice.warning);
-  print(lab::text_of(advice));
+  print(lab::text_of(advice) + lab::busy_hint(advice.processor_share));
   flush_output();
   if (!arguments.json.empty()) {
     on_signal(OnSignal::note);

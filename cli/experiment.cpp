@@ -93,10 +93,12 @@ lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<c
       {.stop = interrupted, .progress = [&](std::string_view what) { progress.show(what); }});
   lab::ExperimentResults results = lab::begin_results(command, arguments.is_quick);
   on_signal(OnSignal::note_then_end);
+  const lab::ProcessorShare share;
   lab::do_experiments(wanted, laboratory, results, [&](const lab::ExperimentResult& result) {
     progress.clear();
     print_result(result);
   });
+  results.processor_share = share.value();
   return results;
 }
 
@@ -107,9 +109,8 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
   }
   check(arguments.files, arguments.from);
   const bool are_measured = arguments.from.empty();
-  const lab::ProcessorShare share;
   const lab::ExperimentResults results = are_measured ? measure(arguments, command) : read(arguments);
-  print(lab::summary_of(results) + (are_measured ? lab::busy_hint(share.value()) : ""));
+  print(lab::summary_of(results) + (results.processor_share ? lab::busy_hint(*results.processor_share) : ""));
   if (arguments.files.any() && !results.results.empty()) {
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(results);

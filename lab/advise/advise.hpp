@@ -36,8 +36,9 @@ struct Ranked {
 /// What is advised and what that is based on. Without a choice there is nothing to advise: nothing was
 /// verified.
 struct Advice {
-  std::string input;    ///< the file's or scene's name
-  std::string warning;  ///< of a file that was read in part; empty otherwise
+  std::string input;           ///< the file's or scene's name
+  std::string warning;         ///< of a file that was read in part; empty otherwise
+  double processor_share = 1;  ///< ProcessorShare of measuring
   Signals signals{};
   Mode mode = Mode::find;
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
