@@ -104,7 +104,8 @@ void warn_of_ignored(const CompareArguments& arguments, const lab::FindScene& fi
   }
 }
 
-Exit run(const CompareArguments& arguments, std::span<const std::string> command) {
+Exit run(const CompareArguments& arguments, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
@@ -125,7 +126,6 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   };
 
   on_signal(OnSignal::note_then_end);
-  const lab::Catalogue catalogue;
   const lab::ProcessorShare share;
   const lab::Comparison comparison = lab::compare(catalogue, options);
   const std::string busy = lab::busy_hint(share.value());
@@ -155,7 +155,7 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
 
 }  // namespace
 
-Verb add_compare(CLI::App& program, std::span<const std::string> command) {
+Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> command) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* const verb = program.add_subcommand(
       "compare",
@@ -192,7 +192,7 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
                                lab::long_effort().budget_seconds));
   add_result_files(*verb, arguments->files);
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
-  return [arguments, command] { return run(*arguments, command); };
+  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
 }
 
 }  // namespace broadside::cli
