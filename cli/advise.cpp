@@ -142,7 +142,8 @@ void check(const AdviseArguments& arguments) {
   check_is_other_file("--json", arguments.json, arguments.input);
 }
 
-Exit run(const AdviseArguments& arguments, std::span<const std::string> command) {
+Exit run(const AdviseArguments& arguments, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   on_signal(OnSignal::end);
   check(arguments);
   ProgressLine progress;
@@ -152,7 +153,6 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  const lab::Catalogue catalogue;
   // Refused before the file is read.
   const auto is_peer = [](const lab::Contender& contender) {
     return contender.algorithm->kind == AlgorithmKind::peer;
@@ -189,7 +189,7 @@ Exit run(const AdviseArguments& arguments, std::span<const std::string> command)
 
 }  // namespace
 
-Verb add_advise(CLI::App& program, std::span<const std::string> command) {
+Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> command) {
   const auto arguments = std::make_shared<AdviseArguments>();
   CLI::App* const verb = program.add_subcommand(
       "advise",
@@ -220,7 +220,7 @@ Verb add_advise(CLI::App& program, std::span<const std::string> command) {
   verb->add_option("--json", arguments->json,
                    "Write the advice and all that it is based on to this file as well")
       ->type_name("FILE");
-  return [arguments, command] { return run(*arguments, command); };
+  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
 }
 
 }  // namespace broadside::cli

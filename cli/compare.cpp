@@ -111,7 +111,8 @@ std::string details_hint(const ResultFiles& files) {
   return fmt::format("details: --details prints each case's table; {} every sample\n", written);
 }
 
-Exit run(const CompareArguments& arguments, std::span<const std::string> command) {
+Exit run(const CompareArguments& arguments, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
@@ -136,7 +137,6 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
   };
 
   on_signal(OnSignal::note_then_end);
-  const lab::Catalogue catalogue;
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
@@ -165,7 +165,7 @@ Exit run(const CompareArguments& arguments, std::span<const std::string> command
 
 }  // namespace
 
-Verb add_compare(CLI::App& program, std::span<const std::string> command) {
+Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> command) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* const verb = program.add_subcommand(
       "compare",
@@ -204,7 +204,7 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
   verb->add_flag("--details", arguments->has_details,
                  "Print a table a case, with every algorithm's time, memory and tests, instead of a line");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
-  return [arguments, command] { return run(*arguments, command); };
+  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
 }
 
 }  // namespace broadside::cli

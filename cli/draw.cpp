@@ -89,11 +89,10 @@ std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
   return frame;
 }
 
-Exit run(const DrawArguments& arguments) {
+Exit run(const DrawArguments& arguments, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);
-  const lab::Catalogue catalogue;
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
   if (!named.scene.warning.empty()) say(named.scene.warning);
@@ -116,7 +115,7 @@ Exit run(const DrawArguments& arguments) {
 
 }  // namespace
 
-Verb add_draw(CLI::App& program) {
+Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<DrawArguments>();
   CLI::App* const verb = program.add_subcommand(
       "draw",
@@ -140,7 +139,7 @@ Verb add_draw(CLI::App& program) {
   verb->add_option("--frame", arguments->frame,
                    "The frame of a scene or file whose boxes move, counted from 0 (standard: the first)");
   add_file_options(*verb, arguments->input);
-  return [arguments] { return run(*arguments); };
+  return [arguments, &catalogue] { return run(*arguments, catalogue); };
 }
 
 }  // namespace broadside::cli

@@ -84,10 +84,10 @@ lab::ExperimentResults read(const ExperimentArguments& arguments) {
   return results;
 }
 
-lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<const std::string> command) {
+lab::ExperimentResults measure(const ExperimentArguments& arguments, const lab::Catalogue& catalogue,
+                               std::span<const std::string> command) {
   const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
   ProgressLine progress;
-  const lab::Catalogue catalogue;
   const lab::Laboratory laboratory(
       catalogue, arguments.is_quick,
       {.stop = interrupted, .progress = [&](std::string_view what) { progress.show(what); }});
@@ -102,20 +102,21 @@ lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<c
   return results;
 }
 
-Exit run(const ExperimentArguments& arguments, std::span<const std::string> command) {
+Exit run(const ExperimentArguments& arguments, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   if (arguments.is_list) {
     print_list();
     return Exit::fine;
   }
   check(arguments.files, arguments.from);
   const bool are_measured = arguments.from.empty();
-  const lab::ExperimentResults results = are_measured ? measure(arguments, command) : read(arguments);
+  const lab::ExperimentResults results =
+      are_measured ? measure(arguments, catalogue, command) : read(arguments);
   print(lab::summary_of(results) + (results.processor_share ? lab::busy_hint(*results.processor_share) : ""));
   if (arguments.files.any() && !results.results.empty()) {
     on_signal(OnSignal::note);
     const std::string json = lab::json_of(results);
     write(arguments.files, json, [&] {
-      const lab::Catalogue catalogue;
       const auto find = [](std::string_view scene) { return lab::find_scene(scene); };
       return lab::PageContent{
           .date = results.date,
@@ -135,7 +136,8 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
 
 }  // namespace
 
-Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
+Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
+                    std::span<const std::string> command) {
   const auto arguments = std::make_shared<ExperimentArguments>();
   CLI::App* const verb = program.add_subcommand(
       "experiment",
@@ -150,7 +152,7 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
           "Measure nothing; judge the results in this file, which --json has written; - is standard input")
       ->type_name("FILE");
   add_result_files(*verb, arguments->files);
-  return [arguments, command] { return run(*arguments, command); };
+  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
 }
 
 }  // namespace broadside::cli

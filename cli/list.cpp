@@ -99,8 +99,7 @@ void print_entries(std::string_view title, const std::vector<Entry>& entries) {
   print("\n");
 }
 
-Exit run() {
-  const lab::Catalogue catalogue;
+Exit run(const lab::Catalogue& catalogue) {
   std::vector<Entry> algorithms;
   for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
   for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
@@ -133,10 +132,10 @@ Exit run() {
 
 }  // namespace
 
-Verb add_list(CLI::App& program) {
+Verb add_list(CLI::App& program, const lab::Catalogue& catalogue) {
   program.add_subcommand(
       "list", "Lists the algorithms, the scenes and what can be set in their specs, and the file formats.");
-  return run;
+  return [&catalogue] { return run(catalogue); };
 }
 
 }  // namespace broadside::cli

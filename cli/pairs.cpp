@@ -54,7 +54,8 @@ lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, 
 /// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
 class Join {
  public:
-  explicit Join(const PairsArguments& arguments) : arguments_(arguments), spec_(spec_of(arguments)) {
+  Join(const PairsArguments& arguments, const lab::Catalogue& catalogue)
+      : arguments_(arguments), contender_(contender_of(arguments, catalogue)) {
     const lab::Stopwatch watch;
     if (arguments.is_swept) {
       sweep();
@@ -100,8 +101,8 @@ class Join {
                           lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
     return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
                        lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
-                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3), spec_,
-                       lab::duration(join_ms_ / 1e3));
+                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3),
+                       contender_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
 
  private:
@@ -120,13 +121,13 @@ class Join {
 
   void search(PairSink& pairs) {
     if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, spec_, pairs);
+      lab::join(sets_[0].boxes, sets_[1].boxes, contender_, pairs);
     else
-      lab::join(sets_[0].boxes, spec_, pairs);
+      lab::join(sets_[0].boxes, contender_, pairs);
   }
 
   const PairsArguments& arguments_;
-  std::string spec_;
+  lab::Contender contender_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
   lab::Rounding rounding_;
@@ -134,10 +135,10 @@ class Join {
   double join_ms_ = 0;
 };
 
-Exit run(const PairsArguments& arguments) {
+Exit run(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
-  check(arguments);
-  Join join(arguments);
+  check(arguments, catalogue);
+  Join join(arguments, catalogue);
   if (arguments.counts) {
     PairCounter counter;
     join.find(counter);
@@ -183,7 +184,7 @@ Exit run(const PairsArguments& arguments) {
 
 }  // namespace
 
-Verb add_pairs(CLI::App& program) {
+Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<PairsArguments>();
   CLI::App* const verb = program.add_subcommand(
       "pairs",
@@ -217,7 +218,7 @@ Verb add_pairs(CLI::App& program) {
       ->type_name("PART");
   verb->add_flag("--exclude-shared", arguments->excludes_shared,
                  "With --swept: leave out pairs that have a vertex in common");
-  return [arguments] { return run(*arguments); };
+  return [arguments, &catalogue] { return run(*arguments, catalogue); };
 }
 
 }  // namespace broadside::cli

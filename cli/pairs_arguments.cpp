@@ -44,23 +44,23 @@ void check_swept(const PairsArguments& arguments) {
 
 }  // namespace
 
-std::string spec_of(const PairsArguments& arguments) {
-  const lab::Catalogue catalogue;
-  std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
+lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
+  const std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
   if (selected.size() != 1)
     throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
   const std::size_t threads = read_threads(arguments.threads);
-  if (threads == 1) return selected[0].spec.text();
-  std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
+  if (threads == 1) return selected[0];
+  lab::Contender threaded = lab::with_threads(selected, std::span(&threads, 1))[0];
+  const std::string spec = threaded.spec.text();
   if (spec == selected[0].spec.text())
     throw Unusable(
         fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
                     "does not say how many",
                     threads, spec));
-  return spec;
+  return threaded;
 }
 
-void check(const PairsArguments& arguments) {
+void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (arguments.files.size() > 2)
     throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
                                arguments.files.size()));
@@ -70,7 +70,7 @@ void check(const PairsArguments& arguments) {
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
-  spec_of(arguments);
+  contender_of(arguments, catalogue);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");

@@ -25,7 +25,7 @@ struct VerifyArguments {
   std::string counterexample;
 };
 
-Exit run(const VerifyArguments& arguments) {
+Exit run(const VerifyArguments& arguments, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   lab::VerifyOptions options = arguments.options;
   if (!(options.budget_seconds > 0))
@@ -41,14 +41,13 @@ Exit run(const VerifyArguments& arguments) {
   ProgressLine progress;
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  const lab::Catalogue catalogue;
   lab::BoxFile file = open_input(arguments.input, arguments.file);
   on_signal(OnSignal::note_then_end);
   try {
     const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
     progress.clear();
     if (!verification.warning.empty()) say(verification.warning);
-    print(lab::text_of(verification));
+    print(lab::text_of(verification, program_name()));
     return verification.all_verified() ? Exit::fine : Exit::failed;
   } catch (const lab::Stopped&) {
     throw Interruption();
@@ -57,7 +56,7 @@ Exit run(const VerifyArguments& arguments) {
 
 }  // namespace
 
-Verb add_verify(CLI::App& program) {
+Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* const verb = program.add_subcommand(
       "verify",
@@ -78,7 +77,7 @@ Verb add_verify(CLI::App& program) {
                    "move; numbered where there is one already)")
       ->type_name("FILE");
   add_input_options(*verb, arguments->input);
-  return [arguments] { return run(*arguments); };
+  return [arguments, &catalogue] { return run(*arguments, catalogue); };
 }
 
 }  // namespace broadside::cli

@@ -3,13 +3,13 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "lab/catalogue.hpp"
 #include "lab/readers/format.hpp"
 
 namespace broadside::lab {
@@ -42,11 +42,11 @@ Rounding round_to_float(AnyBoxes& boxes);
 /// one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);
 
-/// Writes every pair of overlapping boxes once, in the order in which the algorithm of `spec` finds them.
-/// Throws as find_pairs does.
-void join(const AnyBoxes& boxes, std::string_view spec, PairSink& pairs);
+/// Writes every pair of overlapping boxes once, in the order in which the contender finds them. Throws as
+/// PairFinder::find() does, and InvalidSpec if the contender cannot search boxes of this dimension.
+void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs);
 
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.
-void join(const AnyBoxes& left, const AnyBoxes& right, std::string_view spec, PairSink& pairs);
+void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs);
 
 }  // namespace broadside::lab

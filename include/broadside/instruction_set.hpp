@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// The name of the instruction set that searches use on this processor, as Highway calls it: such as "AVX3"

@@ -1,7 +1,10 @@
 // The command-line program: reads the verb and its options, runs it, and turns what it throws into an exit
 // status and a message.
+#include "broadside/program.hpp"
+
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <utility>
@@ -16,6 +19,7 @@
 #include "cli/message.hpp"
 #include "cli/unusable.hpp"
 #include "cli/verbs.hpp"
+#include "lab/catalogue.hpp"
 
 namespace {
 
@@ -32,25 +36,25 @@ void check_verb(const std::vector<std::string>& arguments, const CLI::App& progr
     throw broadside::cli::Unusable("unknown verb '" + verb + "'; " + expected);
 }
 
-Exit run(const std::vector<std::string>& arguments) {
+Exit run(const std::vector<std::string>& arguments, const broadside::lab::Catalogue& catalogue) {
   CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
-                   "broadside");
+                   broadside::cli::program_name());
   program.set_version_flag("--version", "broadside " BROADSIDE_VERSION);
   program.require_subcommand(1);
   program.footer(
       "Exit status: 0 fine, 1 a verification failed or nothing was verified, 2 unusable arguments or input, "
       "130 interrupted.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
-      {"compare", broadside::cli::add_compare(program, arguments)},
-      {"advise", broadside::cli::add_advise(program, arguments)},
-      {"experiment", broadside::cli::add_experiment(program, arguments)},
-      {"pairs", broadside::cli::add_pairs(program)},
+      {"compare", broadside::cli::add_compare(program, catalogue, arguments)},
+      {"advise", broadside::cli::add_advise(program, catalogue, arguments)},
+      {"experiment", broadside::cli::add_experiment(program, catalogue, arguments)},
+      {"pairs", broadside::cli::add_pairs(program, catalogue)},
       {"info", broadside::cli::add_info(program)},
-      {"verify", broadside::cli::add_verify(program)},
+      {"verify", broadside::cli::add_verify(program, catalogue)},
       {"convert", broadside::cli::add_convert(program)},
       {"scene", broadside::cli::add_scene(program)},
-      {"draw", broadside::cli::add_draw(program)},
-      {"list", broadside::cli::add_list(program)},
+      {"draw", broadside::cli::add_draw(program, catalogue)},
+      {"list", broadside::cli::add_list(program, catalogue)},
   };
   check_verb(arguments, program);
   try {
@@ -71,21 +75,29 @@ Exit run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-int main(int count, char** values) {
+namespace broadside {
+
+int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms) {
+  using cli::Exit;
   const std::vector<std::string> arguments(values, values + count);
-  broadside::cli::ignore_write_signals();
+  if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename());
+  cli::ignore_write_signals();
   try {
-    const Exit exit = run(arguments);
-    broadside::cli::flush_output();
+    lab::Catalogue catalogue;
+    for (Algorithm& algorithm : algorithms) catalogue.add(std::move(algorithm));
+    const Exit exit = run(arguments, catalogue);
+    cli::flush_output();
     return static_cast<int>(exit);
-  } catch (const broadside::cli::Interruption& interruption) {
-    broadside::cli::say(interruption.what());
+  } catch (const cli::Interruption& interruption) {
+    cli::say(interruption.what());
     return static_cast<int>(Exit::interrupted);
   } catch (const std::bad_alloc&) {
-    broadside::cli::say("out of memory; expected fewer boxes, frames or pairs");
+    cli::say("out of memory; expected fewer boxes, frames or pairs");
     return static_cast<int>(Exit::unusable);
   } catch (const std::exception& error) {
-    broadside::cli::say(error.what());
+    cli::say(error.what());
     return static_cast<int>(Exit::unusable);
   }
 }
+
+}  // namespace broadside
