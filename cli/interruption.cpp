@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/verbs.hpp"
+#include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -22,12 +23,18 @@ void write_message(std::string_view text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
 }
 
+/// Ends the program from a signal's handler.
+[[noreturn]] void end(Exit exit) {
+  lab::remove_unfinished_file();
+  _exit(static_cast<int>(exit));
+}
+
 void handle(int) {
   const bool again = noted.exchange(true);
   const OnSignal what = reaction;
   if (what == OnSignal::end || (what == OnSignal::note_then_end && again)) {
     write_message(is_on_terminal ? "\r\x1b[Kbroadside: interrupted\n" : "broadside: interrupted\n");
-    _exit(static_cast<int>(Exit::interrupted));
+    end(Exit::interrupted);
   }
   if (what == OnSignal::note_then_end)
     write_message("\nbroadside: stopping after the call that is under way; again stops at once\n");
@@ -44,15 +51,11 @@ void on_signal(OnSignal what) {
   if (std::signal(SIGHUP, handle) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
-void ignore_write_signals() {
-  std::signal(SIGPIPE, SIG_IGN);
+void on_failing_write() {
+  std::signal(SIGPIPE, [](int) { end(Exit::closed_pipe); });
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() noexcept { return noted; }
-
-void end_if_interrupted() {
-  if (noted) throw Interruption();
-}
 
 }  // namespace broadside::cli
