@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
+#include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/progress_line.hpp"
@@ -100,7 +102,9 @@ lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<c
   return results;
 }
 
-Exit run(const ExperimentArguments& arguments, std::span<const std::string> command) {
+Exit run(const ExperimentArguments& arguments, const CLI::App& verb, std::span<const std::string> command) {
+  check_alone(verb, "--list", {"names", "--quick", "--from", "--json", "--report"}, "which only lists");
+  check_alone(verb, "--from", {"--quick"}, "which measures nothing");
   if (arguments.is_list) {
     print_list();
     return Exit::fine;
@@ -111,7 +115,7 @@ Exit run(const ExperimentArguments& arguments, std::span<const std::string> comm
   const lab::ExperimentResults results = are_measured ? measure(arguments, command) : read(arguments);
   print(lab::summary_of(results) + (are_measured ? lab::busy_hint(share.value()) : ""));
   if (arguments.files.any() && !results.results.empty()) {
-    on_signal(OnSignal::note);
+    on_signal(OnSignal::end);
     const std::string json = lab::json_of(results);
     write(arguments.files, json, [&] {
       const lab::Catalogue catalogue;
@@ -149,7 +153,10 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
           "Measure nothing; judge the results in this file, which --json has written; - is standard input")
       ->type_name("FILE");
   add_result_files(*verb, arguments->files);
-  return [arguments, command] { return run(*arguments, command); };
+  add_examples(
+      *verb, {{"experiment --quick --report claims.html", "all claims, with fewer boxes, as a page"},
+              {"experiment --from results.json 3", "the verdict on the third, of an earlier run's --json"}});
+  return [arguments, verb, command] { return run(*arguments, *verb, command); };
 }
 
 }  // namespace broadside::cli

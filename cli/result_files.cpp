@@ -41,6 +41,8 @@ void add_result_files(CLI::App& verb, ResultFiles& files) {
 void check(const ResultFiles& files, const std::string& input) {
   check_is_no_output("--json", files.json);
   check_is_no_output("--report", files.report);
+  check_extension("--json", files.json, {".json"});
+  check_extension("--report", files.report, {".html", ".htm"});
   if (!files.json.empty()) check_writable("--json", files.json);
   if (!files.report.empty()) {
     if (const std::string missing = lab::page_missing(); !missing.empty())
