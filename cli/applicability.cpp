@@ -55,7 +55,8 @@ std::optional<std::string> value_of(const CLI::App& verb, std::string_view optio
 /// "scene 'a'", "scenes 'a', 'b' and 'c'", "scenes 'a', 'b', 'c' and 9 others".
 std::string names_of(std::span<const lab::NamedScene> scenes) {
   constexpr std::size_t most = 3;
-  if (scenes.size() == 1) return fmt::format("scene '{}'", scenes[0].spec.name);
+  if (scenes.size() == 1)
+    return fmt::format("{} '{}'", is_file(scenes[0].scene) ? "file" : "scene", scenes[0].spec.name);
   std::string names = "scenes ";
   for (std::size_t i = 0; i < std::min(scenes.size(), most); ++i) {
     const bool is_last = i + 1 == scenes.size();

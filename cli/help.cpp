@@ -54,8 +54,9 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t colu
 HelpFormatter::HelpFormatter() : width_(terminal_width()) {
   column_width(std::min<std::size_t>(26, width_ / 3));
   label("SUBCOMMAND", "VERB");
-  label("Subcommands", "Verbs");
   label("Positionals", "Arguments");
+  label("TEXT", "VALUE");
+  for (const char* const number : {"INT", "UINT", "FLOAT"}) label(number, "NUMBER");
 }
 
 std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
@@ -83,7 +84,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
   const bool is_shown_before = !is_positional && option->get_positional();
   if (is_shown_before) return entry(name, "The same as " + option->get_name(true, false));
   const bool has_value = option->get_type_size() != 0 && !option->get_type_name().empty();
-  if (has_value) name += " " + option->get_type_name();
+  if (has_value) name += " " + get_label(option->get_type_name());
   std::string text = option->get_description();
   if (!option->get_default_str().empty()) text += " (standard: " + option->get_default_str() + ")";
   if (option->get_required()) text += " (required)";

@@ -45,6 +45,7 @@ Exit run(const std::vector<std::string>& given) {
       {"list", broadside::cli::add_list(program)},
   };
   program.add_subcommand("help", "Shows this help, or a verb's: broadside help pairs.");
+  for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
   broadside::cli::check_verb(arguments, program);
   try {
     // CLI11 takes the arguments in reverse and without the program.
