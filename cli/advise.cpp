@@ -2,7 +2,6 @@
 #include "lab/advise/advise.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -14,12 +13,15 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
 #include "cli/contender_options.hpp"
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/motion_options.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -31,7 +33,8 @@ namespace broadside::cli {
 namespace {
 
 struct AdviseArguments {
-  std::string input;
+  std::vector<std::string> inputs;
+  std::string input;  ///< the one that there is
   InputOptions read;
   std::string boxes;
   std::optional<double> moving;
@@ -79,9 +82,6 @@ AnyHistory whole(lab::FrameReader<D, Real>& frames, std::string& warning) {
 }
 
 Boxes read_file(const AdviseArguments& arguments) {
-  if (!arguments.boxes.empty() || arguments.seed)
-    throw Unusable(fmt::format("-n or --seed with the file '{}'; expected none, its boxes are its own",
-                               arguments.input));
   lab::ReadOptions options = read_options(arguments.read, arguments.input);
   // What is set moving is of floats.
   if (is_set_moving(arguments)) {
@@ -107,11 +107,7 @@ Boxes read_file(const AdviseArguments& arguments) {
   return boxes;
 }
 
-Boxes make_scene(const AdviseArguments& arguments) {
-  const lab::NamedScene named = lab::find_scene(arguments.input, read_options(arguments.read));
-  if (!arguments.read.precision.empty())
-    throw Unusable(
-        fmt::format("--precision with the scene '{}', which is of floats; expected a file", arguments.input));
+Boxes make_scene(const AdviseArguments& arguments, const lab::NamedScene& named) {
   lab::SceneRequest request = request_of(arguments);
   const int dimension = arguments.read.dimension != 0  ? arguments.read.dimension
                         : named.scene.has_dimension(2) ? 2
@@ -125,11 +121,6 @@ Boxes make_scene(const AdviseArguments& arguments) {
   return {named.spec.text(), named.scene.warning, lab::make_history<3>(named.scene, named.spec, request)};
 }
 
-bool is_file(const std::string& input) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(input, ignored) || lab::is_path(input);
-}
-
 void check(const AdviseArguments& arguments) {
   if (arguments.moving) check_fraction("--moving", *arguments.moving);
   check(arguments.motion);
@@ -138,14 +129,20 @@ void check(const AdviseArguments& arguments) {
         fmt::format("--budget is {}; expected a number of seconds above 0, at most 3600", *arguments.budget));
   if (arguments.json.empty()) return;
   check_is_no_output("--json", arguments.json);
+  check_extension("--json", arguments.json, {".json"});
   check_writable("--json", arguments.json);
   check_is_other_file("--json", arguments.json, arguments.input);
 }
 
-Exit run(const AdviseArguments& arguments, const lab::Catalogue& catalogue,
+Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
   on_signal(OnSignal::end);
+  arguments.input = only_one_of(arguments.inputs);
   check(arguments);
+  const bool reads = is_file(arguments.input);
+  const lab::NamedScene named = reads ? unread_file(arguments.input) : lab::find_scene(arguments.input);
+  check_options(verb, {&named, 1});
+  check_moves(verb, {&named, 1});
   ProgressLine progress;
   lab::AdviseOptions options;
   options.algorithms = arguments.contenders.algorithms;
@@ -153,6 +150,7 @@ Exit run(const AdviseArguments& arguments, const lab::Catalogue& catalogue,
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
+  check_threads(arguments.contenders, catalogue.select(options.algorithms));
   // Refused before the file is read.
   const auto is_peer = [](const lab::Contender& contender) {
     return contender.algorithm->kind == AlgorithmKind::peer;
@@ -161,7 +159,7 @@ Exit run(const AdviseArguments& arguments, const lab::Catalogue& catalogue,
     throw Unusable(fmt::format(
         "--algorithms is '{}'; expected one of Broadside's own among them: other libraries are never advised",
         options.algorithms));
-  Boxes boxes = is_file(arguments.input) ? read_file(arguments) : make_scene(arguments);
+  Boxes boxes = reads ? read_file(arguments) : make_scene(arguments, named);
 
   on_signal(OnSignal::note_then_end);
   lab::Advice advice;
@@ -180,7 +178,7 @@ Exit run(const AdviseArguments& arguments, const lab::Catalogue& catalogue,
   print(lab::text_of(advice) + lab::busy_hint(advice.processor_share));
   flush_output();
   if (!arguments.json.empty()) {
-    on_signal(OnSignal::note);
+    on_signal(OnSignal::end);
     const std::string text = lab::json_of(advice, command);
     lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
   }
@@ -196,10 +194,9 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
       "Says which algorithm suits your boxes, and why: measures what the boxes are like and the "
       "algorithms on them, every result verified, and prints a ranking, the spec and the lines of C++ for "
       "it.");
-  verb->add_option(
-          "input", arguments->input,
-          "A file of boxes, still or moving (a recording of your engine), - for standard input; or the "
-          "name or spec of a scene")
+  add_scenes(*verb, "scene", arguments->inputs,
+             "A file of boxes, still or moving (a recording of your engine), - for standard input; or the "
+             "name or spec of a scene")
       ->required();
   add_input_options(*verb, arguments->read);
   verb->add_option("-n", arguments->boxes,
@@ -210,7 +207,9 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
   verb->add_option("--frames", arguments->frames, "Frames that they move (standard: 20)");
   add_motion_options(*verb, arguments->motion);
   verb->add_option("--seed", arguments->seed, "Seed of a scene (standard: 1)")->check(is_seed);
-  add_algorithms(*verb, arguments->contenders, ". Peers are shown, but never advised");
+  add_algorithms(*verb, arguments->contenders.algorithms,
+                 "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
+                 "Peers are shown, but never advised");
   add_threads(*verb, arguments->contenders,
               "Threads that a search may use besides one, 0 for as many as there are, or several such as "
               "2,4: tried with the best, and advised where they pay");
@@ -220,7 +219,10 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
   verb->add_option("--json", arguments->json,
                    "Write the advice and all that it is based on to this file as well")
       ->type_name("FILE");
-  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
+  add_examples(*verb, {{"advise boxes.csv", "the algorithm for your boxes, from any file that is read"},
+                       {"advise recording.btrace --threads 1,4 --json advice.json",
+                        "for a recording of your engine, with one thread and with four"}});
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

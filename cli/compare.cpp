@@ -13,13 +13,16 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
 #include "cli/contender_options.hpp"
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/motion_options.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/result_files.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -89,20 +92,21 @@ void check(const CompareArguments& arguments) {
   check(arguments.files);
 }
 
-/// Says which options mean nothing to a scene that was asked for.
-void warn_of_ignored(const CompareArguments& arguments, const lab::FindScene& find) {
-  for (const std::string& name : arguments.scenes) {
-    const lab::Scene scene = find(name).scene;
-    const auto warn = [&name](std::string_view option, std::string_view why) {
-      say(fmt::format("{} is ignored by scene '{}', {}", option, name, why));
-    };
-    if (!arguments.boxes.empty() && scene.fixed_count) warn("-n", "whose number of boxes is its own");
-    if (arguments.seed && scene.fixed_seed) warn("--seed", "which is the same for every seed");
-    if (!scene.history_2d && !scene.history_3d) continue;
-    if (!arguments.moving.empty()) warn("--moving", "which moves by itself");
-    if (arguments.motion.drift) warn("--drift", "which moves by itself");
-    if (arguments.motion.teleport) warn("--teleport", "which moves by itself");
+/// Refuses options that mean nothing to what is compared, and says which scenes ignore one.
+void check_applies(const CLI::App& verb, const CompareArguments& arguments, const lab::FindScene& find,
+                   const lab::Catalogue& catalogue) {
+  std::vector<lab::NamedScene> scenes;
+  for (const std::string& name : arguments.scenes) scenes.push_back(find(name));
+  const bool is_named = !scenes.empty();
+  for (const lab::Scene& scene : lab::scenes()) {
+    if (!is_named && scene.kind == lab::SceneKind::generated) scenes.push_back(find(scene.name));
   }
+  const std::vector<std::string> remarks = check_options(verb, scenes);
+  for (const std::string& remark : remarks) {
+    if (is_named) say(remark);
+  }
+  check_moves(verb, scenes);
+  check_threads(arguments.contenders, catalogue.select(arguments.contenders.algorithms));
 }
 
 /// Where to find what the lines leave out.
@@ -111,16 +115,17 @@ std::string details_hint(const ResultFiles& files) {
   return fmt::format("details: --details prints each case's table; {} every sample\n", written);
 }
 
-Exit run(const CompareArguments& arguments, const lab::Catalogue& catalogue,
+Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
+  arguments.scenes = each_of(arguments.scenes);
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
   options.algorithms = arguments.contenders.algorithms;
   options.threads = threads_of(arguments.contenders);
   options.find = lab::scene_finder(read_options(arguments.input));
+  check_applies(verb, arguments, options.find, catalogue);
   options.plan = plan_of(arguments, options.find);
-  warn_of_ignored(arguments, options.find);
   options.seed = arguments.seed.value_or(options.seed);
   if (arguments.is_long) options.effort = lab::long_effort();
   if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
@@ -143,7 +148,7 @@ Exit run(const CompareArguments& arguments, const lab::Catalogue& catalogue,
   print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
   if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
-    on_signal(OnSignal::note);
+    on_signal(OnSignal::end);
     const std::string json = lab::json_of(comparison, command);
     write(arguments.files, json, [&] {
       return lab::PageContent{
@@ -171,21 +176,26 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
       "compare",
       "Compares algorithms on scenes, every result verified. Without options: the quick comparison, which "
       "takes at most two minutes.");
-  add_algorithms(*verb, arguments->contenders);
-  verb->add_option("--scenes", arguments->scenes,
-                   "Names, specs or files, - for standard input; a comma between (standard: every generated "
-                   "scene)")
-      ->delimiter(',');
+  add_scenes(*verb, "scenes", arguments->scenes,
+             "Names, specs such as power_law:exponent=2, or files, - for standard input (standard: every "
+             "generated scene)");
+  add_algorithms(*verb, arguments->contenders.algorithms);
   add_file_options(*verb, arguments->input);
   verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NUMBERS");
   verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (standard: both)")
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NUMBERS")
       ->check(is_dimension);
   verb->add_option(
           "--moving", arguments->moving,
           "Fractions of the boxes that move, from 0 to 1; moving scenes are tracked, still ones found")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NUMBERS");
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
   add_motion_options(*verb, arguments->motion);
@@ -204,7 +214,11 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   verb->add_flag("--details", arguments->has_details,
                  "Print a table a case, with every algorithm's time, memory and tests, instead of a line");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
-  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
+  add_examples(
+      *verb,
+      {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
+       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, a tenth of which moves"}});
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

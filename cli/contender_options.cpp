@@ -3,19 +3,40 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 
 namespace broadside::cli {
 
-void add_algorithms(CLI::App& verb, ContenderOptions& options, const std::string& more) {
-  verb.add_option(
-          "--algorithms", options.algorithms,
-          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between" + more)
+CLI::Option* add_algorithms(CLI::App& verb, std::string& list, const std::string& help) {
+  return verb.add_option("--algorithms,--algorithm", list, help)
+      ->join(',')
+      ->type_name("LIST")
       ->capture_default_str();
 }
 
 void add_threads(CLI::App& verb, ContenderOptions& options, const std::string& help) {
-  verb.add_option("--threads", options.threads, help)->delimiter(',')->capture_default_str();
+  verb.add_option("--threads", options.threads, help)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NUMBERS")
+      ->default_str("1");
+}
+
+void check_threads(const ContenderOptions& options, std::span<const lab::Contender> contenders) {
+  const std::vector<std::size_t> threads = threads_of(options);
+  const auto can_use = [&threads](const lab::Contender& contender) {
+    const std::vector<lab::Contender> with = lab::with_threads({contender}, threads);
+    return with.size() != 1 || with.front().spec.text() != contender.spec.text();
+  };
+  const bool is_one = threads == std::vector<std::size_t>{1};
+  if (!is_one && std::ranges::none_of(contenders, can_use))
+    throw Unusable(
+        fmt::format("--threads is '{}' with --algorithms {}; expected an algorithm that can use several "
+                    "and does not say how many",
+                    fmt::join(options.threads, ","), options.algorithms));
 }
 
 std::vector<std::size_t> threads_of(const ContenderOptions& options) {

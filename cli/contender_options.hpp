@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
+
+#include "lab/catalogue.hpp"
 
 namespace broadside::cli {
 
@@ -15,11 +18,17 @@ struct ContenderOptions {
   std::vector<std::string> threads = {"1"};
 };
 
-/// Adds --algorithms, whose standard is what `options` holds; `more` is said of it in --help besides.
-void add_algorithms(CLI::App& verb, ContenderOptions& options, const std::string& more = "");
+/// Adds --algorithms, and --algorithm for the same; the standard is what `list` holds.
+CLI::Option* add_algorithms(
+    CLI::App& verb, std::string& list,
+    const std::string& help =
+        "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between");
 
 /// Adds --threads, which takes several numbers; `help` says what for.
 void add_threads(CLI::App& verb, ContenderOptions& options, const std::string& help);
+
+/// Throws Unusable if several threads are asked for and none of the contenders can use them.
+void check_threads(const ContenderOptions& options, std::span<const lab::Contender> contenders);
 
 /// The numbers of threads, each once. Throws Unusable as read_threads() does.
 std::vector<std::size_t> threads_of(const ContenderOptions& options);

@@ -7,10 +7,13 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 
@@ -29,12 +32,13 @@ Exit run(const ConvertArguments& arguments) {
   check_writable("-o", arguments.output);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   lab::ReadOptions options = read_options(arguments.input, arguments.file);
+  if (options.precision == lab::Precision::float64 && !format.has_doubles)
+    throw Unusable(fmt::format("--precision is 'double' for format {}, which holds floats; expected float",
+                               format.name));
   // Rounded on the way out instead, where it is counted.
   const std::optional<lab::Precision> precision = std::exchange(options.precision, std::nullopt);
   lab::BoxFile file = lab::open_file(arguments.file, options);
-  on_signal(OnSignal::note);
-  const lab::Converted converted =
-      lab::convert(std::move(file), arguments.output, format, precision, end_if_interrupted);
+  const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);
   if (!converted.warning.empty()) say(converted.warning);
   if (converted.rounding.rounded > 0) say(converted.rounding.text());
   say(lab::text_of(converted, arguments.output, format));
@@ -56,6 +60,9 @@ Verb add_convert(CLI::App& program) {
   verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
       ->type_name("NAME");
   add_input_options(*verb, arguments->input);
+  add_examples(*verb, {{"convert boxes.csv -o boxes.npy", "a table as a NumPy array"},
+                       {"convert counties.geojson --boxes segments --to csv -o -",
+                        "a box a segment of each outline, to standard output"}});
   return [arguments] { return run(*arguments); };
 }
 

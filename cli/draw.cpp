@@ -1,5 +1,6 @@
 // broadside draw: a scene's boxes and what algorithms lay over them, as a picture.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -9,9 +10,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
+#include "cli/contender_options.hpp"
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -33,7 +38,8 @@ constexpr std::size_t most_boxes = 20'000;
 constexpr std::size_t most_frames = 10'000;
 
 struct DrawArguments {
-  std::string scene;
+  std::vector<std::string> scenes;
+  std::string scene;  ///< the one that there is
   std::string algorithms;
   InputOptions input;
   std::string output;
@@ -63,7 +69,7 @@ std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const st
         continue;
       }
       if (!contender.algorithm->has_dimension(dimension))
-        throw Unusable(fmt::format("--algorithm is '{}', which does not do {}D; expected --dimension {}",
+        throw Unusable(fmt::format("--algorithms is '{}', which does not do {}D; expected --dimension {}",
                                    contender.algorithm->name, dimension, 5 - dimension));
       choose(contender);
     }
@@ -73,7 +79,7 @@ std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const st
     for (const lab::Contender& contender : contenders(catalogue, "all", dimension))
       known.push_back(contender.algorithm->name);
     throw Unusable(fmt::format(
-        "--algorithm is '{}', of which none lays anything over boxes in {}D; expected some of: {}", list,
+        "--algorithms is '{}', but none of them lays anything over boxes in {}D; expected some of: {}", list,
         dimension, fmt::join(known, ", ")));
   }
   return chosen;
@@ -89,16 +95,27 @@ std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
   return frame;
 }
 
-Exit run(const DrawArguments& arguments, const lab::Catalogue& catalogue) {
+/// A picture is SVG whatever its name says.
+void check_is_svg(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension.empty() || CLI::detail::to_lower(extension) == ".svg") return;
+  const std::string converted = extension == ".png" || extension == ".pdf" ? extension.substr(1) : "png";
+  throw Unusable(
+      fmt::format("-o is '{}', but what is written is SVG; expected a file's name with .svg, or -, and then "
+                  "for example `rsvg-convert -f {} -o picture.{} picture.svg`",
+                  path, converted, converted));
+}
+
+Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
+  arguments.scene = only_one_of(arguments.scenes);
+  check_is_svg(arguments.output);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
+  check_options(verb, {&named, 1}, {"-n"});
   if (!named.scene.warning.empty()) say(named.scene.warning);
-  if (arguments.seed && named.scene.fixed_seed)
-    throw Unusable(fmt::format("--seed for scene '{}', which is the same for every seed; expected none",
-                               arguments.scene));
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   const std::size_t boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
@@ -121,12 +138,15 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
       "draw",
       "Draws a scene's boxes and the cells, nodes or sweep that algorithms lay over them, as SVG; 3D from "
       "three sides.");
-  verb->add_option("scene", arguments->scene, "Name, spec such as power_law:exponent=2, or file")->required();
-  verb->add_option("-o,--output", arguments->output, "The file; - is standard output")->required();
-  verb->add_option("--algorithm", arguments->algorithms,
-                   "What to lay over the boxes: a spec such as quadtree:capacity=16, or several with commas, "
-                   "side by side; own, paper or all for those of them that lay something over boxes "
-                   "(standard: only the boxes)");
+  add_scenes(*verb, "scene", arguments->scenes, "Name, spec such as power_law:exponent=2, or file")
+      ->required();
+  verb->add_option("-o,--output", arguments->output, "The .svg file; - is standard output")
+      ->type_name("FILE")
+      ->required();
+  add_algorithms(*verb, arguments->algorithms,
+                 "What to lay over the boxes: a spec such as quadtree:capacity=16, or several with commas, "
+                 "side by side; own, paper or all for those of them that lay something over boxes "
+                 "(standard: only the boxes)");
   verb->add_option(
       "-n", arguments->boxes,
       fmt::format("Number of boxes (standard: {}); of a scene or file of more, so many are taken "
@@ -139,7 +159,11 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
   verb->add_option("--frame", arguments->frame,
                    "The frame of a scene or file whose boxes move, counted from 0 (standard: the first)");
   add_file_options(*verb, arguments->input);
-  return [arguments, &catalogue] { return run(*arguments, catalogue); };
+  add_examples(*verb, {{"draw clustered --algorithms quadtree:capacity=16,bvh -o trees.svg",
+                        "300 boxes of a scene and the nodes of two trees, side by side"},
+                       {"draw rain.csv --frame 50 --algorithms all -o rain.svg",
+                        "a frame of a file, with what each algorithm lays over it"}});
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

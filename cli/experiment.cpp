@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
+#include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/progress_line.hpp"
@@ -102,8 +104,10 @@ lab::ExperimentResults measure(const ExperimentArguments& arguments, const lab::
   return results;
 }
 
-Exit run(const ExperimentArguments& arguments, const lab::Catalogue& catalogue,
+Exit run(const ExperimentArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
+  check_alone(verb, "--list", {"names", "--quick", "--from", "--json", "--report"}, "which only lists");
+  check_alone(verb, "--from", {"--quick"}, "which measures nothing");
   if (arguments.is_list) {
     print_list();
     return Exit::fine;
@@ -114,7 +118,7 @@ Exit run(const ExperimentArguments& arguments, const lab::Catalogue& catalogue,
       are_measured ? measure(arguments, catalogue, command) : read(arguments);
   print(lab::summary_of(results) + (results.processor_share ? lab::busy_hint(*results.processor_share) : ""));
   if (arguments.files.any() && !results.results.empty()) {
-    on_signal(OnSignal::note);
+    on_signal(OnSignal::end);
     const std::string json = lab::json_of(results);
     write(arguments.files, json, [&] {
       const auto find = [](std::string_view scene) { return lab::find_scene(scene); };
@@ -152,7 +156,10 @@ Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
           "Measure nothing; judge the results in this file, which --json has written; - is standard input")
       ->type_name("FILE");
   add_result_files(*verb, arguments->files);
-  return [arguments, &catalogue, command] { return run(*arguments, catalogue, command); };
+  add_examples(
+      *verb, {{"experiment --quick --report claims.html", "all claims, with fewer boxes, as a page"},
+              {"experiment --from results.json 3", "the verdict on the third, of an earlier run's --json"}});
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

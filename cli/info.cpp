@@ -1,26 +1,31 @@
-// broadside info: what a file of boxes holds.
+// broadside info: what a file of boxes, or a scene, holds.
 #include <memory>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
-#include "cli/input_options.hpp"
+#include "cli/applicability.hpp"
+#include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/verbs.hpp"
 #include "lab/file_info.hpp"
 
 namespace broadside::cli {
 namespace {
 
-struct InfoArguments {
-  std::string file;
-  InputOptions input;
-};
+lab::FileInfo info_of(const BoxArguments& arguments, const CLI::App& verb) {
+  const std::string name = only_one_of(arguments.scenes);
+  if (!is_file(name)) return lab::file_info(open_boxes(verb, arguments));
+  const lab::NamedScene file = unread_file(name);
+  check_options(verb, {&file, 1});
+  return lab::file_info(name, read_options(arguments.input, name));
+}
 
-Exit run(const InfoArguments& arguments) {
+Exit run(const BoxArguments& arguments, const CLI::App& verb) {
   on_signal(OnSignal::end);
-  const lab::FileInfo info = lab::file_info(arguments.file, read_options(arguments.input, arguments.file));
+  const lab::FileInfo info = info_of(arguments, verb);
   if (!info.warning.empty()) say(info.warning);
   print(lab::text_of(info));
   return Exit::fine;
@@ -29,14 +34,16 @@ Exit run(const InfoArguments& arguments) {
 }  // namespace
 
 Verb add_info(CLI::App& program) {
-  const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* const verb = program.add_subcommand("info",
-                                                "Tells what a file holds: how many boxes and frames, where, "
-                                                "how large (of the frame that has the most), "
-                                                "and how they move. Reads it frame by frame.");
-  verb->add_option("file", arguments->file, "The file; - is standard input")->required();
-  add_input_options(*verb, arguments->input);
-  return [arguments] { return run(*arguments); };
+  const auto arguments = std::make_shared<BoxArguments>();
+  CLI::App* const verb =
+      program.add_subcommand("info",
+                             "Tells what a file or a scene holds: how many boxes and frames, where, "
+                             "how large (of the frame that has the most), "
+                             "and how they move. Reads it frame by frame.");
+  add_boxes(*verb, *arguments);
+  add_examples(*verb, {{"info boxes.csv", "a file's boxes and how they move"},
+                       {"info mesh.ply --boxes edges", "those of a mesh's edges"}});
+  return [arguments, verb] { return run(*arguments, *verb); };
 }
 
 }  // namespace broadside::cli

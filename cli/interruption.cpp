@@ -9,6 +9,7 @@
 
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
+#include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -23,6 +24,12 @@ void write_message(std::string_view text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
 }
 
+/// Ends the program from a signal's handler.
+[[noreturn]] void end(Exit exit) {
+  lab::remove_unfinished_file();
+  _exit(static_cast<int>(exit));
+}
+
 void handle(int) {
   const bool again = noted.exchange(true);
   const OnSignal what = reaction;
@@ -30,7 +37,7 @@ void handle(int) {
     write_message(is_on_terminal ? "\r\x1b[K" : "");
     write_message(program_name());
     write_message(": interrupted\n");
-    _exit(static_cast<int>(Exit::interrupted));
+    end(Exit::interrupted);
   }
   if (what == OnSignal::note_then_end) {
     write_message("\n");
@@ -50,15 +57,11 @@ void on_signal(OnSignal what) {
   if (std::signal(SIGHUP, handle) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
-void ignore_write_signals() {
-  std::signal(SIGPIPE, SIG_IGN);
+void on_failing_write() {
+  std::signal(SIGPIPE, [](int) { end(Exit::closed_pipe); });
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() noexcept { return noted; }
-
-void end_if_interrupted() {
-  if (noted) throw Interruption();
-}
 
 }  // namespace broadside::cli

@@ -7,29 +7,27 @@ namespace broadside::cli {
 
 /// What a signal does.
 enum class OnSignal {
-  end,  ///< it ends the program at once: for work that never asks and has nothing to leave half done
+  end,            ///< ends the program at once
   note_then_end,  ///< the first is noted for interrupted() to tell, the second ends the program: for work
                   ///< that asks
-  note            ///< it is only noted: while a file is being written, which would be left half-written
 };
 
-/// From here on, signals do this.
+/// From here on, signals do this. A file that is being written when a signal ends the program is removed, and
+/// an old one at its place stays (lab/readers/write_file.hpp).
 void on_signal(OnSignal what);
 
-/// Lets a write to a closed pipe, or beyond the greatest size of a file, fail instead of ending the program,
-/// so that it is reported and nothing half-written is left.
-void ignore_write_signals();
+/// Has a write to a pipe that nothing reads any more end the program, as users of `| head` expect: without a
+/// message, with Exit::closed_pipe. Lets a write beyond the greatest size of a file fail, so that it is
+/// reported.
+void on_failing_write();
 
 /// Whether a signal was noted.
 bool interrupted() noexcept;
 
-/// Thrown where work ends because a signal was noted. What it had begun to write is removed on the way out.
+/// Thrown where work ends because a signal was noted.
 class Interruption : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }
 };
-
-/// Throws Interruption if a signal was noted.
-void end_if_interrupted();
 
 }  // namespace broadside::cli

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/help.hpp"
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
@@ -133,8 +134,9 @@ Exit run(const lab::Catalogue& catalogue) {
 }  // namespace
 
 Verb add_list(CLI::App& program, const lab::Catalogue& catalogue) {
-  program.add_subcommand(
+  CLI::App* const verb = program.add_subcommand(
       "list", "Lists the algorithms, the scenes and what can be set in their specs, and the file formats.");
+  add_examples(*verb, {{"list", "everything that has a name"}, {"list | less", "a page at a time"}});
   return [&catalogue] { return run(catalogue); };
 }
 

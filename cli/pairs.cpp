@@ -14,6 +14,8 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/sinks.hpp"
 
+#include "cli/applicability.hpp"
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
@@ -135,8 +137,9 @@ class Join {
   double join_ms_ = 0;
 };
 
-Exit run(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
+Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
+  check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check(arguments, catalogue);
   Join join(arguments, catalogue);
   if (arguments.counts) {
@@ -155,26 +158,16 @@ Exit run(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
     std::sort(sorted.begin(), sorted.end());
   }
   std::uint64_t count = sorted.size();
-  on_signal(OnSignal::note);
   lab::write_file(arguments.output, [&](std::ostream& stream) {
     lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between());
-    const auto put = [&](std::span<const Pair> pairs) {
-      end_if_interrupted();
-      file.write(pairs);
-    };
     if (streams) {
       PairFunction found([&](std::span<const Pair> pairs) {
         count += pairs.size();
-        put(pairs);
+        file.write(pairs);
       });
       join.find(found);
     } else {
-      constexpr std::size_t pairs_a_piece = std::size_t{1} << 16;
-      for (std::span<const Pair> rest = sorted; !rest.empty();) {
-        const std::size_t size = std::min(rest.size(), pairs_a_piece);
-        put(rest.first(size));
-        rest = rest.subspan(size);
-      }
+      file.write(sorted);
     }
     file.finish();
   });
@@ -192,7 +185,7 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       "the precision of the input. Boxes are counted from 0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
   add_input_options(*verb, arguments->input);
-  verb->add_option("--algorithm", arguments->algorithm,
+  verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads,
@@ -218,7 +211,10 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       ->type_name("PART");
   verb->add_flag("--exclude-shared", arguments->excludes_shared,
                  "With --swept: leave out pairs that have a vertex in common");
-  return [arguments, &catalogue] { return run(*arguments, catalogue); };
+  add_examples(*verb, {{"pairs boxes.csv -o pairs.csv", "which boxes of a file overlap"},
+                       {"pairs buildings.geojson roads.csv --count",
+                        "how many boxes of one file overlap one of the other"}});
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

@@ -47,7 +47,8 @@ void check_swept(const PairsArguments& arguments) {
 lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   const std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
   if (selected.size() != 1)
-    throw Unusable(fmt::format("--algorithm is '{}'; expected one", arguments.algorithm));
+    throw Unusable(fmt::format("--algorithm is '{}', which is {} algorithms; expected one",
+                               arguments.algorithm, selected.size()));
   const std::size_t threads = read_threads(arguments.threads);
   if (threads == 1) return selected[0];
   lab::Contender threaded = lab::with_threads(selected, std::span(&threads, 1))[0];

@@ -2,22 +2,22 @@
 // status and a message.
 #include "broadside/program.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "broadside/version.hpp"
 
+#include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
-#include "cli/unusable.hpp"
+#include "cli/parse_errors.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 
@@ -25,29 +25,21 @@ namespace {
 
 using broadside::cli::Exit;
 
-/// CLI11 says of a verb that it does not know only that one is required.
-void check_verb(const std::vector<std::string>& arguments, const CLI::App& program) {
-  std::vector<std::string> known;
-  for (const CLI::App* const verb : program.get_subcommands({})) known.push_back(verb->get_name());
-  const std::string expected = fmt::format("expected one of: {}; --help tells more", fmt::join(known, ", "));
-  if (arguments.size() < 2) throw broadside::cli::Unusable("no verb; " + expected);
-  const std::string& verb = arguments[1];
-  if (!verb.starts_with('-') && std::ranges::find(known, verb) == known.end())
-    throw broadside::cli::Unusable("unknown verb '" + verb + "'; " + expected);
-}
-
-Exit run(const std::vector<std::string>& arguments, const broadside::lab::Catalogue& catalogue) {
+Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue& catalogue) {
+  const std::vector<std::string> arguments = broadside::cli::without_help_verb(given);
   CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
                    broadside::cli::program_name());
-  program.set_version_flag("--version", "broadside " BROADSIDE_VERSION);
+  program.formatter(std::make_shared<broadside::cli::HelpFormatter>());
+  program.set_help_flag("-h,--help", "Print this help and end");
+  program.set_version_flag("--version", "broadside " BROADSIDE_VERSION, "Print the version and end");
   program.require_subcommand(1);
   program.footer(
       "Exit status: 0 fine, 1 a verification failed or nothing was verified, 2 unusable arguments or input, "
-      "130 interrupted.");
+      "130 interrupted, 141 a pipe was closed by its reader.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
-      {"compare", broadside::cli::add_compare(program, catalogue, arguments)},
-      {"advise", broadside::cli::add_advise(program, catalogue, arguments)},
-      {"experiment", broadside::cli::add_experiment(program, catalogue, arguments)},
+      {"compare", broadside::cli::add_compare(program, catalogue, given)},
+      {"advise", broadside::cli::add_advise(program, catalogue, given)},
+      {"experiment", broadside::cli::add_experiment(program, catalogue, given)},
       {"pairs", broadside::cli::add_pairs(program, catalogue)},
       {"info", broadside::cli::add_info(program)},
       {"verify", broadside::cli::add_verify(program, catalogue)},
@@ -56,14 +48,15 @@ Exit run(const std::vector<std::string>& arguments, const broadside::lab::Catalo
       {"draw", broadside::cli::add_draw(program, catalogue)},
       {"list", broadside::cli::add_list(program, catalogue)},
   };
-  check_verb(arguments, program);
+  program.add_subcommand("help", "Shows this help, or a verb's: broadside help pairs.");
+  for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
+  broadside::cli::check_verb(arguments, program);
   try {
     // CLI11 takes the arguments in reverse and without the program.
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
   } catch (const CLI::ParseError& error) {
     // Help and version end here as well, with status 0.
-    if (error.get_exit_code() != 0)
-      throw broadside::cli::Unusable(error.what() + std::string("; --help tells more"));
+    if (error.get_exit_code() != 0) throw broadside::cli::explained(error, program);
     program.exit(error);
     return Exit::fine;
   }
@@ -81,7 +74,7 @@ int run_program(int count, const char* const* values, std::vector<Algorithm> alg
   using cli::Exit;
   const std::vector<std::string> arguments(values, values + count);
   if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename());
-  cli::ignore_write_signals();
+  cli::on_failing_write();
   try {
     lab::Catalogue catalogue;
     for (Algorithm& algorithm : algorithms) catalogue.add(std::move(algorithm));

@@ -49,9 +49,10 @@ void check(const ResultFiles& files, const std::string& input) {
   }
   if (!files.json.empty() && !files.report.empty() && are_one(files.json, files.report))
     throw Unusable(fmt::format("--report is '{}', and so is --json; expected two files", files.report));
-  if (input.empty()) return;
-  if (!files.json.empty()) check_is_other_file("--json", files.json, input);
-  if (!files.report.empty()) check_is_other_file("--report", files.report, input);
+  if (!input.empty() && !files.json.empty()) check_is_other_file("--json", files.json, input);
+  if (!input.empty() && !files.report.empty()) check_is_other_file("--report", files.report, input);
+  check_extension("--json", files.json, {".json"});
+  check_extension("--report", files.report, {".html", ".htm"});
 }
 
 void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page) {

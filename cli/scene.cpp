@@ -4,16 +4,19 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
+#include "cli/help.hpp"
 #include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/motion_options.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -26,7 +29,8 @@ namespace {
 constexpr std::size_t standard_boxes = 10'000;
 
 struct SceneArguments {
-  std::string scene;
+  std::vector<std::string> scenes;
+  std::string scene;  ///< the one that there is
   InputOptions input;
   std::string output;
   std::string to;
@@ -39,21 +43,13 @@ struct SceneArguments {
 };
 
 /// Refuses options that mean nothing to the scene.
-void check(const SceneArguments& arguments, const lab::Scene& scene) {
-  const auto refuse = [&arguments](std::string_view option, std::string_view why) {
-    throw Unusable(fmt::format("{} for scene '{}', {}; expected none", option, arguments.scene, why));
-  };
-  if (!arguments.boxes.empty() && scene.fixed_count) refuse("-n", "whose number of boxes is its own");
-  if (arguments.seed && scene.fixed_seed) refuse("--seed", "which is the same for every seed");
-  if (!scene.history_2d && !scene.history_3d) {
-    const bool rests = arguments.moving.value_or(0) == 0;
-    if (arguments.motion.drift && rests) refuse("--drift", "of which nothing moves without --moving");
-    if (arguments.motion.teleport && rests) refuse("--teleport", "of which nothing moves without --moving");
-    return;
-  }
-  if (arguments.moving) refuse("--moving", "which moves by itself");
-  if (arguments.motion.drift) refuse("--drift", "which moves by itself");
-  if (arguments.motion.teleport) refuse("--teleport", "which moves by itself");
+void check(const SceneArguments& arguments, const CLI::App& verb, const lab::NamedScene& named) {
+  check_options(verb, {&named, 1});
+  check_moves(verb, {&named, 1});
+  if (arguments.motion.any() && !arguments.moving && arguments.frames.empty())
+    throw Unusable(fmt::format(
+        "--drift or --teleport for scene '{}', where nothing moves; expected --moving or --frames as well",
+        arguments.scene));
 }
 
 template <int D>
@@ -73,14 +69,14 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
   if (!moves && request.frames > 0) request.moving = 0.1;
   auto frames =
       std::make_unique<lab::HistoryReader<D, float>>(lab::make_history<D>(named.scene, named.spec, request));
-  on_signal(OnSignal::note);
-  const lab::Converted written = lab::convert({arguments.scene, &format, std::move(frames)}, arguments.output,
-                                              format, std::nullopt, end_if_interrupted);
+  const lab::Converted written =
+      lab::convert({arguments.scene, &format, std::move(frames)}, arguments.output, format, std::nullopt);
   say(lab::text_of(written, arguments.output, format));
 }
 
-Exit run(const SceneArguments& arguments) {
+Exit run(SceneArguments& arguments, const CLI::App& verb) {
   on_signal(OnSignal::end);
+  arguments.scene = only_one_of(arguments.scenes);
   if (arguments.moving) check_fraction("--moving", *arguments.moving);
   check(arguments.motion);
   check_writable("-o", arguments.output);
@@ -88,8 +84,8 @@ Exit run(const SceneArguments& arguments) {
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
+  check(arguments, verb, named);
   if (!named.scene.warning.empty()) say(named.scene.warning);
-  check(arguments, named.scene);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   dimension == 2 ? write<2>(arguments, named, format) : write<3>(arguments, named, format);
@@ -103,7 +99,8 @@ Verb add_scene(CLI::App& program) {
   CLI::App* const verb = program.add_subcommand(
       "scene",
       "Makes the boxes of a scene and writes them to a file; `broadside list` tells scenes and formats.");
-  verb->add_option("scene", arguments->scene, "Name, spec such as power_law:exponent=2, or file")->required();
+  add_scenes(*verb, "scene", arguments->scenes, "Name, spec such as power_law:exponent=2, or file")
+      ->required();
   verb->add_option("-o,--output", arguments->output,
                    "The file, in the format that its extension says; - is standard output")
       ->required();
@@ -121,7 +118,10 @@ Verb add_scene(CLI::App& program) {
   verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
       ->check(is_seed);
   add_file_options(*verb, arguments->input);
-  return [arguments] { return run(*arguments); };
+  add_examples(*verb, {{"scene clustered -n 100k -o boxes.csv", "100,000 boxes in clusters, as a table"},
+                       {"scene box2d_rain -n 500 --frames 100 -o rain.btrace",
+                        "an engine's boxes over 100 frames, recorded"}});
+  return [arguments, verb] { return run(*arguments, *verb); };
 }
 
 }  // namespace broadside::cli

@@ -1,6 +1,8 @@
 // Values on the command line that CLI11 does not read by itself.
 #include "cli/values.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -96,6 +98,18 @@ void check_writable(const std::string& option, const std::string& path) {
 void check_is_no_output(const std::string& option, const std::string& path) {
   if (path == "-")
     throw Unusable(fmt::format("{} is '-', but the tables go to standard output; expected a file", option));
+}
+
+void check_extension(const std::string& option, const std::string& path,
+                     std::initializer_list<std::string_view> expected) {
+  constexpr std::array<std::string_view, 8> known = {".json", ".html", ".htm", ".csv",
+                                                     ".svg",  ".png",  ".pdf", ".npy"};
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (std::ranges::find(known, extension) == known.end() ||
+      std::ranges::find(expected, extension) != expected.end())
+    return;
+  throw Unusable(
+      fmt::format("{} is '{}'; expected a file's name with {}", option, path, fmt::join(expected, " or ")));
 }
 
 void check_is_other_file(const std::string& option, const std::string& path, const std::string& input) {

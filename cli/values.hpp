@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace broadside::cli {
@@ -37,6 +39,11 @@ void check_writable(const std::string& option, const std::string& path);
 
 /// Throws Unusable if `path` is standard output ("-"), where the verb prints its tables.
 void check_is_no_output(const std::string& option, const std::string& path);
+
+/// Throws Unusable if `path` has an extension that people know as another kind of file than those of
+/// `expected`, such as .html for JSON.
+void check_extension(const std::string& option, const std::string& path,
+                     std::initializer_list<std::string_view> expected);
 
 /// Throws Unusable if what is to be written at `path` is the file at `input`, whatever the paths.
 void check_is_other_file(const std::string& option, const std::string& path, const std::string& input);

@@ -6,10 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/input_options.hpp"
+#include "cli/contender_options.hpp"
+#include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -19,13 +21,12 @@ namespace broadside::cli {
 namespace {
 
 struct VerifyArguments {
-  std::string file;
-  InputOptions input;
+  BoxArguments boxes;
   lab::VerifyOptions options;
   std::string counterexample;
 };
 
-Exit run(const VerifyArguments& arguments, const lab::Catalogue& catalogue) {
+Exit run(const VerifyArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   lab::VerifyOptions options = arguments.options;
   if (!(options.budget_seconds > 0))
@@ -34,14 +35,16 @@ Exit run(const VerifyArguments& arguments, const lab::Catalogue& catalogue) {
   if (!arguments.counterexample.empty()) {
     if (arguments.counterexample == "-") throw Unusable("--counterexample is '-'; expected a file");
     check_writable("--counterexample", arguments.counterexample);
-    check_is_other_file("--counterexample", arguments.counterexample, arguments.file);
+    for (const std::string& file : arguments.boxes.scenes)
+      check_is_other_file("--counterexample", arguments.counterexample, file);
     lab::writable_format(arguments.counterexample);
     options.counterexample = arguments.counterexample;
   }
   ProgressLine progress;
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  lab::BoxFile file = open_input(arguments.input, arguments.file);
+  catalogue.select(options.algorithms);  // refused before the file is read
+  lab::BoxFile file = open_boxes(verb, arguments.boxes);
   on_signal(OnSignal::note_then_end);
   try {
     const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
@@ -60,14 +63,12 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* const verb = program.add_subcommand(
       "verify",
-      "Checks on a file that algorithms find exactly the pairs there are, in every frame, and that they "
+      "Checks on a file or a scene that algorithms find exactly the pairs there are, in every frame, and "
+      "that they "
       "track what changes between frames; in the precision of the input. Where one fails, writes a small "
       "file that shows it, and ends with status 1, as where every one is skipped.");
-  verb->add_option("file", arguments->file, "The file; - is standard input")->required();
-  verb->add_option(
-          "--algorithms", arguments->options.algorithms,
-          "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between")
-      ->capture_default_str();
+  add_boxes(*verb, arguments->boxes);
+  add_algorithms(*verb, arguments->options.algorithms);
   verb->add_option("--budget", arguments->options.budget_seconds,
                    "Seconds that each algorithm may take; one that would need more for a frame is skipped, "
                    "one that needs more for all stops there")
@@ -76,8 +77,10 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Where the small file is written (standard: counterexample.csv, or .btrace where boxes "
                    "move; numbered where there is one already)")
       ->type_name("FILE");
-  add_input_options(*verb, arguments->input);
-  return [arguments, &catalogue] { return run(*arguments, catalogue); };
+  add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the pairs there are?"},
+                       {"verify recording.btrace --algorithms auto,grid:cell=2.5",
+                        "two of them, in every frame of a recording"}});
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

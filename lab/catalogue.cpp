@@ -2,12 +2,16 @@
 #include "lab/catalogue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/suggestion.hpp"
 
 #include "lab/peers/peers.hpp"
 
@@ -27,9 +31,9 @@ bool in_group(const Algorithm& algorithm, std::string_view group) {
          (group == "peers" && algorithm.kind == AlgorithmKind::peer);
 }
 
-bool is_group(std::string_view name) {
-  return name == "all" || name == "own" || name == "paper" || name == "peers";
-}
+constexpr std::array<std::string_view, 4> groups = {"own", "paper", "peers", "all"};
+
+bool is_group(std::string_view name) { return std::ranges::find(groups, name) != groups.end(); }
 
 /// The spec's value of `threads`, or a null pointer.
 const std::string* given_threads(const Spec& spec) {
@@ -106,9 +110,10 @@ std::vector<Contender> Catalogue::select(std::string_view list) const {
       const auto missing = std::ranges::find(peers::missing_peers(), spec.name, &peers::MissingPeer::name);
       if (missing != peers::missing_peers().end())
         throw InvalidSpec("peer '" + spec.name + "' is not in this build: " + missing->reason);
-      std::string known = "own, paper, peers, all";
-      for (const Algorithm& other : algorithms_) known += ", " + other.name;
-      throw InvalidSpec("unknown algorithm '" + spec.name + "'; expected one of: " + known);
+      std::vector<std::string> known(groups.begin(), groups.end());
+      for (const Algorithm& other : algorithms_) known.push_back(other.name);
+      throw InvalidSpec(fmt::format("unknown algorithm '{}'{}; expected one of: {}", spec.name,
+                                    did_you_mean(spec.name, known), fmt::join(known, ", ")));
     }
     const Settings checked(spec, algorithm->tunables);
     select_once(*algorithm, std::move(spec));

@@ -19,19 +19,16 @@ namespace {
 template <int D, typename Real>
 class CountingFrames final : public FrameReader<D, Real> {
  public:
-  CountingFrames(std::unique_ptr<FrameReader<D, Real>> frames, Converted& counts,
-                 const std::function<void()>& each_frame)
-      : frames_(std::move(frames)), counts_(counts), each_frame_(each_frame) {}
+  CountingFrames(std::unique_ptr<FrameReader<D, Real>> frames, Converted& counts)
+      : frames_(std::move(frames)), counts_(counts) {}
 
   std::vector<Box<D, Real>> first() override {
-    each_frame_();
     std::vector<Box<D, Real>> boxes = frames_->first();
     count(boxes, boxes.size());
     return boxes;
   }
 
   bool next(Step<D, Real>& step) override {
-    each_frame_();
     if (!frames_->next(step)) {
       counts_.warning = frames_->warning();
       return false;
@@ -51,20 +48,19 @@ class CountingFrames final : public FrameReader<D, Real> {
 
   std::unique_ptr<FrameReader<D, Real>> frames_;
   Converted& counts_;
-  const std::function<void()>& each_frame_;
 };
 
 }  // namespace
 
 Converted convert(BoxFile from, const std::filesystem::path& path, const Format& format,
-                  std::optional<Precision> precision, const std::function<void()>& each_frame) {
+                  std::optional<Precision> precision) {
   Converted converted;
   converted.dimension = dimension_of(from.frames);
   converted.precision =
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
   AnyFrameReader counted = std::visit(
       [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) -> AnyFrameReader {
-        return std::make_unique<CountingFrames<D, Real>>(std::move(frames), converted, each_frame);
+        return std::make_unique<CountingFrames<D, Real>>(std::move(frames), converted);
       },
       from.frames);
   write_frames(with_precision(std::move(counted), converted.precision), path, format);

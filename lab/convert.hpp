@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,11 +21,10 @@ struct Converted {
 };
 
 /// Writes what is left of `from` to `path`, as write_frames does: in the precision asked for, or that of
-/// `from`; in float where the format holds no doubles. `each_frame` is called before each frame and may throw
-/// to end the conversion, of which nothing is then left. Throws FileError. Memory: that of a frame, where
-/// both formats go frame by frame.
+/// `from`; in float where the format holds no doubles. Throws FileError. Memory: that of a frame, where both
+/// formats go frame by frame.
 Converted convert(BoxFile from, const std::filesystem::path& path, const Format& format,
-                  std::optional<Precision> precision, const std::function<void()>& each_frame);
+                  std::optional<Precision> precision);
 
 /// What was written to `path`, as a line of text: "rain.csv: 101 frames of 500 boxes in 2D, as floats, in
 /// format csv".

@@ -179,18 +179,24 @@ void collect(FrameReader<D, Real>& frames, FileInfo& info) {
 
 }  // namespace
 
+FileInfo file_info(BoxFile file) {
+  FileInfo info{.file = file.name,
+                .format = file.format == nullptr ? "" : file.format->name,
+                .dimension = dimension_of(file.frames),
+                .precision = precision_of_frames(file.frames)};
+  std::visit([&](const auto& frames) { collect(*frames, info); }, file.frames);
+  return info;
+}
+
 FileInfo file_info(const std::filesystem::path& path, const ReadOptions& options) {
   const Stopwatch watch;
   BoxFile file = open_file(path, options);
-  FileInfo info{.file = file.name,
-                .format = file.format->name,
-                .dimension = dimension_of(file.frames),
-                .precision = precision_of_frames(file.frames)};
-  info.seconds = watch.milliseconds() / 1e3;
+  const double opened = watch.milliseconds() / 1e3;
+  FileInfo info = file_info(std::move(file));
+  info.seconds += opened;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && path != "-") info.bytes = size;
-  std::visit([&](const auto& frames) { collect(*frames, info); }, file.frames);
   return info;
 }
 

@@ -31,7 +31,7 @@ struct SizeBin {
 /// What a file holds. The fullest frame is the first of those that have the most boxes.
 struct FileInfo {
   std::string file;
-  std::string format;
+  std::string format;  ///< empty for a scene
   int dimension = 2;
   Precision precision = Precision::float32;
   std::uint64_t frames = 0;
@@ -59,6 +59,9 @@ struct FileInfo {
 /// Reads a file, or standard input where the path is "-", frame by frame. Throws FileError. Memory: that of
 /// two frames, where the format does not need more.
 FileInfo file_info(const std::filesystem::path& path, const ReadOptions& options);
+
+/// The same of a file that is open already, or of a scene's boxes; how many bytes they took is not known.
+FileInfo file_info(BoxFile file);
 
 /// The same as lines of text, with a small histogram of sizes.
 std::string text_of(const FileInfo& info);

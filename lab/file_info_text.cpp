@@ -110,6 +110,7 @@ std::string kinds_text(const FileInfo& info) {
 }
 
 std::string reading_text(const FileInfo& info) {
+  if (info.format.empty()) return "";
   const auto size = static_cast<double>(info.bytes);
   // What takes no time has no speed: what is measured is the opening.
   constexpr std::uint64_t least_bytes = 1'000'000;
@@ -127,9 +128,10 @@ std::string reading_text(const FileInfo& info) {
 
 std::string text_of(const FileInfo& info) {
   const std::string absent = info.absent > 0 ? fmt::format(", {} of them absent,", grouped(info.absent)) : "";
-  std::string text = fmt::format("{}: {}, {}{} in {}D, as {}s, {}\n", info.file, info.format,
-                                 counted(info.present + info.absent, "box", "boxes"), absent, info.dimension,
-                                 name(info.precision), counted(info.frames, "frame", "frames"));
+  std::string text =
+      fmt::format("{}: {}, {}{} in {}D, as {}s, {}\n", info.file, info.format.empty() ? "scene" : info.format,
+                  counted(info.present + info.absent, "box", "boxes"), absent, info.dimension,
+                  name(info.precision), counted(info.frames, "frame", "frames"));
   text += motion_text(info);
   text += coordinates_text(info);
   text += kinds_text(info);

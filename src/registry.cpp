@@ -4,6 +4,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/suggestion.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "core/double_finder.hpp"
@@ -15,8 +16,13 @@ namespace {
 const Algorithm& require_algorithm(std::string_view name) {
   if (const Algorithm* const algorithm = find_algorithm(name)) return *algorithm;
   std::string known;
-  for (const Algorithm& algorithm : algorithms()) known += (known.empty() ? "" : ", ") + algorithm.name;
-  throw InvalidSpec("unknown algorithm '" + std::string(name) + "'; expected one of: " + known);
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : algorithms()) {
+    known += (known.empty() ? "" : ", ") + algorithm.name;
+    names.push_back(algorithm.name);
+  }
+  throw InvalidSpec("unknown algorithm '" + std::string(name) + "'" + did_you_mean(name, names) +
+                    "; expected one of: " + known);
 }
 
 template <int D, typename Made>

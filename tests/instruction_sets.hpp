@@ -8,13 +8,15 @@
 
 #include "broadside/instruction_set.hpp"
 
+#include "kernels/instruction_set_name.hpp"
+
 namespace broadside {
 
 /// Whether there is an instruction set of that name for processors of this kind.
 inline bool is_instruction_set(std::string_view name) {
   for (int bit = 0; bit < 63; ++bit) {
     const std::string_view known = hwy::TargetName(std::int64_t{1} << bit);
-    if (known != "Unknown" && known == name) return true;
+    if (known != "Unknown" && kernels::instruction_set_name(known) == name) return true;
   }
   return false;
 }

@@ -1,6 +1,6 @@
 // Records a game on Box2D for Broadside. Usage: example_record_box2d [FILE]
 //
-// Then: broadside compare --scenes FILE
+// Then: broadside compare FILE
 #include <cstdint>
 #include <cstdio>
 

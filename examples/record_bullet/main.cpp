@@ -1,6 +1,6 @@
 // Records a game on Bullet for Broadside. Usage: example_record_bullet [FILE]
 //
-// Then: broadside compare --scenes FILE
+// Then: broadside compare FILE
 #include <cstdint>
 #include <cstdio>
 

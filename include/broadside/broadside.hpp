@@ -26,6 +26,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/spec.hpp"
 #include "broadside/statistics.hpp"
+#include "broadside/suggestion.hpp"
 #include "broadside/version.hpp"
 #include "broadside/world.hpp"
 #include "broadside/world_options.hpp"

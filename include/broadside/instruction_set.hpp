@@ -9,8 +9,8 @@
 
 namespace broadside {
 
-/// The name of the instruction set that searches use on this processor, as Highway calls it: such as "AVX3"
-/// (AVX-512), "AVX2", "SSE4" or "NEON". Pairs and their order do not depend on it. Thread-safe.
+/// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or
+/// "NEON". Pairs and their order do not depend on it. Thread-safe.
 std::string instruction_set();
 
 /// Those that the library was compiled for and this processor has, the best first; the last one is plain C++.

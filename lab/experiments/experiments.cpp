@@ -1,9 +1,12 @@
 // The one list of experiments.
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "broadside/error.hpp"
+#include "broadside/suggestion.hpp"
 
 #include "lab/experiments/descriptions.hpp"
 
@@ -36,12 +39,14 @@ std::span<const Experiment> experiments() {
 
 const Experiment& find_experiment(std::string_view text) {
   std::vector<std::string> known;
+  std::vector<std::string> names;
   for (const Experiment& experiment : experiments()) {
     if (experiment.name == text || std::to_string(experiment.number) == text) return experiment;
     known.push_back(fmt::format("{} {}", experiment.number, experiment.name));
+    names.push_back(experiment.name);
   }
-  throw InvalidSpec(
-      fmt::format("no experiment '{}'; expected a name or number of: {}", text, fmt::join(known, ", ")));
+  throw InvalidSpec(fmt::format("no experiment '{}'{}; expected a name or number of: {}", text,
+                                did_you_mean(text, names), fmt::join(known, ", ")));
 }
 
 }  // namespace broadside::lab

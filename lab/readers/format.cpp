@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "broadside/suggestion.hpp"
+
 #include "lab/readers/descriptions.hpp"
 #include "lab/readers/write_file.hpp"
 
@@ -49,6 +51,15 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
+/// What is suggested for a format's name that is none.
+std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
+  std::vector<std::string> known;
+  for (const Format& format : formats()) {
+    if (wanted(format)) known.push_back(format.name);
+  }
+  return did_you_mean(name, known);
+}
+
 /// The format that a file's content and extension tell; null if they tell none.
 const Format* format_of(std::string_view begin, const std::string& extension) {
   const auto find = [begin](std::string_view name) -> const Format* {
@@ -80,8 +91,8 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   if (format != nullptr && format->missing.empty()) return *format;
   if (format != nullptr) throw FileError(fmt::format("{}: {}", input.name(), format->missing));
   if (!name.empty())
-    throw FileError(
-        fmt::format("{}: unknown format '{}'; expected one of: {}", input.name(), name, listed(can_be_read)));
+    throw FileError(fmt::format("{}: unknown format '{}'{}; expected one of: {}", input.name(), name,
+                                suggested(name, can_be_read), listed(can_be_read)));
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
   // A table whose own names nobody knows is one by those that the user gives.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
@@ -104,10 +115,12 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;
-  std::string known;
-  for (const Part& part : format.parts) known += (known.empty() ? "one of: " : ", ") + part.name;
-  throw FileError(fmt::format("{}: boxes of '{}' in format {}; expected {}", name, options.boxes, format.name,
-                              known.empty() ? "none to be asked for: it holds boxes" : known));
+  std::vector<std::string> known;
+  for (const Part& part : format.parts) known.push_back(part.name);
+  throw FileError(fmt::format("{}: boxes of '{}'{} in format {}; expected {}", name, options.boxes,
+                              did_you_mean(options.boxes, known), format.name,
+                              known.empty() ? "none to be asked for: it holds boxes"
+                                            : fmt::format("one of: {}", fmt::join(known, ", "))));
 }
 
 template <int D>
@@ -196,8 +209,9 @@ const Format& writable_format(const std::filesystem::path& path, std::string_vie
         fmt::format("standard output has no extension that says its format; expected --to FORMAT, "
                     "one of: {}",
                     listed(can_be_written)));
-  const std::string found = name.empty() ? fmt::format("extension '{}' is of no format", extension)
-                                         : fmt::format("'{}' is no format", name);
+  const std::string found = name.empty()
+                                ? fmt::format("extension '{}' is of no format", extension)
+                                : fmt::format("'{}'{} is no format", name, suggested(name, can_be_written));
   throw FileError(fmt::format("{}: {} that can be written; expected one of: {}", path.string(), found,
                               listed(can_be_written)));
 }

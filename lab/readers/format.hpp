@@ -73,10 +73,10 @@ struct Format {
 /// All formats, in the order in which they are asked whether a file is theirs. Thread-safe.
 std::span<const Format> formats();
 
-/// A file opened for reading.
+/// A file opened for reading, or a scene's boxes in its stead.
 struct BoxFile {
   std::string name;      ///< what to call it
-  const Format* format;  ///< the one it is in
+  const Format* format;  ///< the one it is in; null for a scene
   AnyFrameReader frames;
 };
 

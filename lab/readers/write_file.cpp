@@ -1,8 +1,11 @@
 // Files written whole or not at all: beside their place, and then renamed.
 #include "lab/readers/write_file.hpp"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -98,6 +101,27 @@ bool is_special(const std::filesystem::path& path) {
          (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status));
 }
 
+/// The path of the file that is being written beside its place. It outlives every call of write_file(), since
+/// a signal's handler may look at it at any time.
+std::array<char, PATH_MAX> unfinished_path;
+std::atomic<bool> has_unfinished_path = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler must not wait");
+
+/// Names the file for remove_unfinished_file() as long as this object is there.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::filesystem::path& path) {
+    const std::string& text = path.native();
+    // No file can be made at a longer path.
+    if (text.size() >= unfinished_path.size()) return;
+    unfinished_path[text.copy(unfinished_path.data(), text.size())] = '\0';
+    has_unfinished_path = true;
+  }
+  ~UnfinishedFile() { has_unfinished_path = false; }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+};
+
 void write_directly(const std::filesystem::path& path, const std::filesystem::path& shown,
                     const std::function<void(std::ostream&)>& write) {
   const std::optional<int> open = descriptor_of(path);
@@ -137,6 +161,10 @@ void write_beside(const std::filesystem::path& path, const std::filesystem::path
 
 }  // namespace
 
+void remove_unfinished_file() noexcept {
+  if (has_unfinished_path) ::unlink(unfinished_path.data());
+}
+
 bool is_written_directly(const std::filesystem::path& path) {
   const std::filesystem::path target = followed(path);
   return descriptor_of(target) || is_special(target);
@@ -152,6 +180,7 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
   }
   const std::filesystem::path beside = fmt::format("{}.{}.part", target.string(), getpid());
   std::error_code error;
+  const UnfinishedFile unfinished(beside);
   try {
     write_beside(target, beside, path, write);
     std::filesystem::rename(beside, target, error);

@@ -10,8 +10,12 @@ namespace broadside::lab {
 /// Writes a file by calling `write` with a stream beside it, which takes its place once it is whole, with the
 /// old file's permissions if there was one. What is_written_directly() is instead written as it comes, and
 /// the stream then cannot be moved. Throws FileError, or what `write` throws; the old file, if there was one,
-/// is then untouched and nothing is left beside it.
+/// is then untouched and nothing is left beside it. One call at a time.
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Removes the file that write_file() is writing beside its place, if it is: for a signal's handler that ends
+/// the process. Async-signal-safe.
+void remove_unfinished_file() noexcept;
 
 /// Whether a path is no file that can be replaced: standard output ("-"), a descriptor of this process such
 /// as /dev/stdout or /dev/fd/3, whose file may be somebody else's as well, a device or a pipe.

@@ -10,7 +10,10 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "broadside/error.hpp"
+#include "broadside/suggestion.hpp"
 
 #include "lab/readers/format.hpp"
 #include "lab/recordings/recordings.hpp"
@@ -89,9 +92,10 @@ NamedScene find_scene(std::string_view text, const ReadOptions& files) {
     return {std::move(scene), std::move(spec)};
   }
   if (found == list.end()) {
-    std::string known;
-    for (const Scene& scene : scenes()) known += (known.empty() ? "" : ", ") + scene.name;
-    throw InvalidSpec("unknown scene '" + spec.name + "'; expected a file or one of: " + known);
+    std::vector<std::string> known;
+    for (const Scene& scene : scenes()) known.push_back(scene.name);
+    throw InvalidSpec(fmt::format("unknown scene '{}'{}; expected a file or one of: {}", spec.name,
+                                  did_you_mean(spec.name, known), fmt::join(known, ", ")));
   }
   if (!found->missing.empty())
     throw InvalidSpec("scene '" + spec.name + "' cannot be made: " + found->missing);

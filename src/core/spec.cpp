@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "broadside/error.hpp"
+#include "broadside/suggestion.hpp"
 
 namespace broadside {
 namespace {
@@ -102,10 +103,10 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
   for (const auto& [name, value] : spec.values) {
     const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
     if (tunable == tunables.end()) {
-      std::vector<std::string_view> names;
+      std::vector<std::string> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
-      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'; expected " +
-                        (names.empty() ? "none" : "one of: " + listed(names)));
+      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'" + did_you_mean(name, names) +
+                        "; expected " + (names.empty() ? "none" : "one of: " + listed(names)));
     }
     check(spec.name, *tunable, value);
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;

@@ -5,6 +5,8 @@
 
 #include "broadside/error.hpp"
 
+#include "kernels/instruction_set_name.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/instruction_set.cpp"
 #include <hwy/foreach_target.h>
@@ -44,11 +46,12 @@ const std::vector<std::int64_t>& targets() {
 
 HWY_EXPORT(target_name);
 
-std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
+std::string instruction_set() { return kernels::instruction_set_name(HWY_DYNAMIC_DISPATCH(target_name)()); }
 
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
-  for (const std::int64_t target : targets()) names.emplace_back(hwy::TargetName(target));
+  for (const std::int64_t target : targets())
+    names.push_back(kernels::instruction_set_name(hwy::TargetName(target)));
   return names;
 }
 
@@ -56,8 +59,9 @@ void limit_instruction_set(std::string_view name) {
   if (name.empty()) return choose(0);
   std::string known;
   for (const std::int64_t target : targets()) {
-    if (hwy::TargetName(target) == name) return choose(target);
-    known += (known.empty() ? "" : ", ") + std::string(hwy::TargetName(target));
+    const std::string shown = kernels::instruction_set_name(hwy::TargetName(target));
+    if (shown == name) return choose(target);
+    known += (known.empty() ? "" : ", ") + shown;
   }
   throw InvalidSpec("no instruction set '" + std::string(name) + "' here; expected one of: " + known +
                     ", or nothing for the best");

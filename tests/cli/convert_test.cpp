@@ -162,20 +162,5 @@ TEST(SceneVerb, SaysWhatItWrote) {
   EXPECT_THAT(ended.errors, HasSubstr("a.csv: 3 frames of 50 boxes in 2D, as floats, in format csv\n"));
 }
 
-TEST(SceneVerb, RefusesOptionsThatTheSceneIgnores) {
-  const TemporaryFolder folder;
-  const std::string file = folder.put("boxes.csv", tenths);
-  const std::string out = folder.file("out.csv");
-  for (const std::vector<std::string>& more :
-       {std::vector<std::string>{file, "-n", "100"}, {file, "--seed", "2"}, {"churn", "--moving", "0.5"}}) {
-    std::vector<std::string> arguments = {"scene", "-o", out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr(more[1] + " for scene '"), HasSubstr("expected none")));
-  }
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.csv"});
-}
-
 }  // namespace
 }  // namespace broadside::cli

@@ -208,6 +208,15 @@ TEST(Kernels, AreThereForPlainCppAtLeast) {
   EXPECT_FALSE(is_instruction_set("Unknown"));
 }
 
+TEST(Kernels, NameInstructionSetsAsPeopleDo) {
+  EXPECT_EQ(kernels::instruction_set_name("AVX3"), "AVX-512");
+  EXPECT_EQ(kernels::instruction_set_name("AVX3_DL"), "AVX-512-DL");
+  EXPECT_EQ(kernels::instruction_set_name("AVX2"), "AVX2");
+  EXPECT_FALSE(is_instruction_set("AVX3"));
+  for (const std::string& name : instruction_sets())
+    EXPECT_THAT(name, testing::Not(testing::HasSubstr("AVX3")));
+}
+
 TEST(Kernels, RunOnTheInstructionSetThatTheyAreLimitedTo) {
   const std::vector<std::string> names = instruction_sets();
   for (const std::string& name : names) {

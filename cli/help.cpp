@@ -1,0 +1,127 @@
+// What --help prints, in lines that the terminal holds.
+#include "cli/help.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace broadside::cli {
+namespace {
+
+constexpr std::size_t standard_width = 80;
+constexpr std::size_t least_width = 40;
+constexpr std::size_t most_width = 100;  // longer lines are hard to read
+
+std::size_t terminal_width() {
+  std::size_t width = 0;
+  if (const char* const columns = std::getenv("COLUMNS")) {
+    const std::string_view text = columns;
+    std::from_chars(text.data(), text.data() + text.size(), width);
+  }
+  winsize size{};
+  if (width == 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) width = size.ws_col;
+  return width == 0 ? standard_width : std::clamp(width, least_width, most_width);
+}
+
+/// The words of `text` in lines of at most `width`, the first of which begins in column `column`, the others
+/// in column `indent`.
+std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
+  std::string lines;
+  std::istringstream words(text);
+  bool is_first = true;
+  for (std::string word; words >> word; is_first = false) {
+    if (!is_first && column + 1 + word.size() > width) {
+      lines += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (!is_first) {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
+}  // namespace
+
+HelpFormatter::HelpFormatter() : width_(terminal_width()) {
+  column_width(std::min<std::size_t>(26, width_ / 3));
+  label("SUBCOMMAND", "VERB");
+  label("Positionals", "Arguments");
+  label("TEXT", "VALUE");
+  for (const char* const number : {"INT", "UINT", "FLOAT"}) label(number, "NUMBER");
+}
+
+std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
+  std::string usage = CLI::Formatter::make_usage(app, std::move(name));
+  usage.pop_back();
+  return wrapped(usage, width_, 0, 2) + "\n";
+}
+
+std::string HelpFormatter::make_description(const CLI::App* app) const {
+  return wrapped(app->get_description(), width_, 0, 0) + "\n";
+}
+
+std::string HelpFormatter::make_subcommand(const CLI::App* verb) const {
+  return entry(verb->get_name(), verb->get_description());
+}
+
+std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
+  std::string name;
+  if (is_positional) {
+    name = option->get_name(true, false);
+  } else {
+    for (const std::string& letter : option->get_snames()) name += (name.empty() ? "-" : ", -") + letter;
+    if (!option->get_lnames().empty()) name += (name.empty() ? "--" : ", --") + option->get_lnames().front();
+  }
+  const bool is_shown_before = !is_positional && option->get_positional();
+  if (is_shown_before) return entry(name, "The same as " + option->get_name(true, false));
+  const bool has_value = option->get_type_size() != 0 && !option->get_type_name().empty();
+  if (has_value) name += " " + get_label(option->get_type_name());
+  std::string text = option->get_description();
+  if (!option->get_default_str().empty()) text += " (standard: " + option->get_default_str() + ")";
+  if (option->get_required()) text += " (required)";
+  return entry(name, text);
+}
+
+std::string HelpFormatter::make_footer(const CLI::App* app) const {
+  // Lines that are indented stand as they are: commands are there to be copied.
+  std::string footer;
+  std::istringstream lines(app->get_footer());
+  for (std::string line; std::getline(lines, line);)
+    footer += (line.starts_with(' ') ? line : wrapped(line, width_, 0, 0)) + "\n";
+  return footer;
+}
+
+std::string HelpFormatter::entry(const std::string& name, const std::string& text) const {
+  const std::string begin = "  " + name + "  ";
+  const std::size_t indent = get_column_width();
+  const bool fits = begin.size() <= indent;
+  const std::string space = fits ? std::string(indent - begin.size(), ' ') : "\n" + std::string(indent, ' ');
+  return begin + space + wrapped(text, width_, indent, indent) + "\n";
+}
+
+void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
+  std::string footer = "Examples:";
+  for (const Example& example : examples)
+    footer += fmt::format("\n  broadside {}\n      {}", example.command, example.what);
+  // What the program says of all its verbs comes last.
+  verb.footer(footer + "\n\n" + verb.get_footer());
+}
+
+std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments) {
+  if (arguments.size() < 2 || arguments[1] != "help") return arguments;
+  std::vector<std::string> asked = {arguments[0]};
+  asked.insert(asked.end(), arguments.begin() + 2, arguments.end());
+  asked.emplace_back("--help");
+  return asked;
+}
+
+}  // namespace broadside::cli
