@@ -32,10 +32,12 @@
 namespace broadside::cli {
 namespace {
 
-lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, lab::Rounding& rounding) {
+lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
+  const std::string& path = arguments.files[file];
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
+  if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
   // Rounded once the frame is there instead, where it is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
@@ -59,13 +61,20 @@ class Join {
     if (arguments.is_swept) {
       sweep();
     } else {
-      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path, rounding_));
+      for (std::size_t file = 0; file < arguments.files.size(); ++file)
+        sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
     }
     read_ms_ = watch.milliseconds();
   }
 
   bool is_between() const { return sets_.size() == 2; }
+
+  /// The ids to write instead of numbers, if that is asked for.
+  lab::PairIds ids() const {
+    if (arguments_.ids.empty()) return {};
+    return {&sets_.front().labels->ids, &sets_.back().labels->ids};
+  }
 
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
@@ -156,7 +165,8 @@ Exit run(const PairsArguments& arguments) {
   std::uint64_t count = sorted.size();
   on_signal(OnSignal::note);
   lab::write_file(arguments.output, [&](std::ostream& stream) {
-    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between());
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between(),
+                       join.ids());
     const auto put = [&](std::span<const Pair> pairs) {
       end_if_interrupted();
       file.write(pairs);
@@ -191,6 +201,13 @@ Verb add_pairs(CLI::App& program) {
       "the precision of the input. Boxes are counted from 0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
   add_input_options(*verb, arguments->input);
+  verb->add_option(
+          "--ids", arguments->ids,
+          "Write the boxes' ids instead of their numbers: a table's column, or a map's property (id is "
+          "a feature's own); given twice, for the one file and the other")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--algorithm", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
       ->capture_default_str();

@@ -36,10 +36,25 @@ void check_swept(const PairsArguments& arguments) {
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
   if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty())
+      input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty())
     throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
-        "them");
+        "--boxes, --layer, --columns, --precision, --dimension, --frame or --ids with --swept; expected none "
+        "of them");
+}
+
+void check_ids(const PairsArguments& arguments) {
+  if (arguments.ids.empty()) return;
+  if (std::ranges::any_of(arguments.ids, &std::string::empty))
+    throw Unusable("--ids is ''; expected a column or a property");
+  if (arguments.ids.size() > arguments.files.size())
+    throw Unusable(fmt::format("--ids {} times with {}; expected it once, or once a file",
+                               arguments.ids.size(), lab::counted(arguments.files.size(), "file", "files")));
+  if (arguments.counts)
+    throw Unusable("--ids with --count, which writes no pairs; expected one or the other");
+  if (lab::pair_format_of(arguments.output, arguments.to) == lab::PairFormat::npy)
+    throw Unusable(
+        fmt::format("--ids with an array of pairs, '{}', which holds numbers and no ids; expected CSV",
+                    arguments.output));
 }
 
 }  // namespace
@@ -71,6 +86,7 @@ void check(const PairsArguments& arguments) {
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
   spec_of(arguments);
+  check_ids(arguments);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");

@@ -14,6 +14,7 @@ namespace broadside::cli {
 struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
+  std::vector<std::string> ids;  // of both files, or of each
   std::string algorithm{default_algorithm};
   std::string threads = "1";
   std::string frame;

@@ -60,6 +60,35 @@ CsvColumns columns_of_user(const std::string& list, std::size_t count, const Csv
   return columns;
 }
 
+/// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing is
+/// read from.
+std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLines& lines,
+                                       CsvColumns& columns) {
+  auto labels = std::make_shared<BoxLabels>();
+  const std::vector<std::string>& names = columns.names;
+  const std::string_view wanted = options.ids.empty() && options.finds_ids ? "id" : options.ids;
+  if (!wanted.empty()) {
+    auto column = std::ranges::find(names, wanted);
+    if (column == names.end())
+      column = std::ranges::find(names, plain(wanted), [](const std::string& name) { return plain(name); });
+    if (column == names.end() && !options.ids.empty())
+      lines.refuse(fmt::format("no column {} of ids", shown(wanted)),
+                   fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
+    if (column != names.end()) {
+      int& place = columns.places[static_cast<std::size_t>(column - names.begin())];
+      if (place != CsvColumns::ignored)
+        lines.refuse(fmt::format("column {} is read already, and --ids names it", shown(*column)),
+                     "a column of its own for the ids");
+      place = CsvColumns::id;
+      labels->has_ids = true;
+    }
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (columns.places[i] == CsvColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
+  }
+  return labels;
+}
+
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   CsvLines lines(*input);
   CsvLines rows = lines;
@@ -99,7 +128,9 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
                    fmt::format("{}; --columns can name them", expected_columns));
     }
   }
-  return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns)},
+  std::shared_ptr<BoxLabels> labels = find_labels(options, lines, columns);
+  return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns),
+                   std::move(labels), !options.ids.empty()},
                   options.precision.value_or(Precision::float64));
 }
 
@@ -129,9 +160,11 @@ Format csv() {
       .summary = "boxes as a table of text",
       .extensions = {".csv"},
       .has_columns = true,
+      .has_ids = true,
       .recognises = recognises,
       .open = open,
       .create = write_csv,
+      .keeps_ids = true,
   };
 }
 

@@ -17,6 +17,8 @@ struct CsvTable {
   CsvLines lines;  ///< from the first line that holds numbers
   Separator separator;
   CsvColumns columns;
+  std::shared_ptr<BoxLabels> labels;
+  bool needs_ids;  ///< a present box without an id is refused
 };
 
 /// The table's boxes: rounded to the nearest float or double, once, where the table has their bounds; where

@@ -88,16 +88,6 @@ constexpr auto wholes = std::to_array<Whole>({
     {"halfdepth", {Role::half_size, 2}},
 });
 
-/// A name without what people spell differently.
-std::string plain(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (std::string_view("_-. ").find(c) == std::string_view::npos)
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return text;
-}
-
 std::optional<Meaning> meaning_of(std::string_view name) {
   const std::string text = plain(name);
   for (const Whole& whole : wholes) {
@@ -181,6 +171,15 @@ std::optional<Choice> choose(const Found& found) {
 }
 
 }  // namespace
+
+std::string plain(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (std::string_view("_-. ").find(c) == std::string_view::npos)
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return text;
+}
 
 bool CsvColumns::is_computed() const noexcept {
   return std::any_of(forms.begin(), forms.begin() + dimension,

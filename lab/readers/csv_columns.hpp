@@ -24,6 +24,7 @@ struct CsvColumns {
   static constexpr int first = 2;
   static constexpr int second = 5;
   static constexpr std::size_t places_of_a_row = 8;
+  static constexpr int id = 8;  ///< a text, which is no value
 
   std::vector<std::string> names{};  ///< of each column, from left to right
   std::vector<int> places{};         ///< of each column's value in a row, or `ignored`
@@ -41,6 +42,9 @@ struct CsvColumns {
 /// Finds the columns that are known by their names, in whatever order; docs/formats.md has the list. Returns
 /// what is wrong with them; nothing if they are fine.
 std::string resolve(std::span<const std::string_view> names, CsvColumns& columns);
+
+/// A name without what people spell differently: capitals, blanks, `_`, `-` and `.`.
+std::string plain(std::string_view name);
 
 /// Whether a name, or one of its other spellings, is that of a known column.
 bool is_column_name(std::string_view name);

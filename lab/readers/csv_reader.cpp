@@ -32,6 +32,16 @@ class CsvRows {
 
   const CsvLines& lines() const noexcept { return table_.lines; }
 
+  std::shared_ptr<const BoxLabels> labels() const { return table_.labels; }
+
+  /// Keeps the row's id, if it has one, as that of the box at `place`.
+  void keep_id(std::size_t place) {
+    if (!table_.labels->has_ids) return;
+    std::vector<std::string>& ids = table_.labels->ids;
+    if (ids.size() <= place) ids.resize(place + 1);
+    if (!id_.empty()) ids[place] = id_;
+  }
+
   /// Whether there is more in the row than the number of a frame.
   bool has_box() const noexcept { return (filled_ & ~(1U << CsvColumns::frame)) != 0; }
 
@@ -52,6 +62,7 @@ class CsvRows {
       box.max[axis] = static_cast<Real>(max);
     }
     if (!is_present(box) && !is_absent(box)) refuse_inverted(box);
+    if (table_.needs_ids && id_.empty() && !is_absent(box)) refuse(CsvColumns::id, "an id");
     return box;
   }
 
@@ -87,6 +98,7 @@ class CsvRows {
     const char* const end = at + line.size();
     bool more = true;
     filled_ = 0;
+    id_.clear();
     for (std::size_t column = 0; column < places.size(); ++column) {
       if (!more) refuse_count();
       const int place = places[column];
@@ -147,6 +159,10 @@ class CsvRows {
     more = fields.more();
     const int place = table_.columns.places[column];
     if (place == CsvColumns::ignored || field.empty()) return;
+    if (place == CsvColumns::id) {
+      fields.read_text(field, id_);
+      return;
+    }
     const auto where = static_cast<std::size_t>(place);
     if (place < CsvColumns::first) {
       if (!parse_number(field, whole_[where])) refuse_number(place);
@@ -204,6 +220,7 @@ class CsvRows {
   unsigned filled_ = 0;  // bit p: the row has a value at place p
   std::array<std::uint32_t, 2> whole_{};
   std::array<double, CsvColumns::places_of_a_row> values_{};
+  std::string id_;
 };
 
 /// The one frame of a table without columns frame and box.
@@ -218,6 +235,7 @@ class PlainCsv final : public FrameReader<D, Real> {
     const std::size_t before = rows_.lines().bytes_left();
     while (rows_.next()) {
       boxes.push_back(rows_.box());
+      rows_.keep_id(boxes.size() - 1);
       if (boxes.size() != sample) continue;
       // Lines that go on as they began; no more than there can be in the bytes that are there.
       const std::size_t left = rows_.lines().bytes_left();
@@ -228,6 +246,8 @@ class PlainCsv final : public FrameReader<D, Real> {
   }
 
   bool next(Step<D, Real>&) override { return false; }
+
+  std::shared_ptr<const BoxLabels> labels() const override { return rows_.labels(); }
 
  private:
   CsvRows<D, Real> rows_;
@@ -257,6 +277,8 @@ class FramedCsv final : public FrameReader<D, Real> {
     return true;
   }
 
+  std::shared_ptr<const BoxLabels> labels() const override { return rows_.labels(); }
+
  private:
   /// Whether this frame has another row with a box, whose number is then `place`.
   bool next_change(std::size_t& place) {
@@ -284,6 +306,7 @@ class FramedCsv final : public FrameReader<D, Real> {
     else if (last_change_[place] == frame_)
       rows_.refuse(CsvColumns::box, "each box once in a frame");
     last_change_[place] = frame_;
+    rows_.keep_id(place);
     return true;
   }
 

@@ -11,7 +11,7 @@ namespace {
 
 class GeoJson {
  public:
-  GeoJson(MapText& text, MapBoxes& boxes) : text_(text), boxes_(boxes) {}
+  GeoJson(MapText& text, const MapIds& ids, MapBoxes& boxes) : text_(text), ids_(ids), boxes_(boxes) {}
 
   void read(std::string_view type) {
     json::object root = text_.root();
@@ -24,12 +24,14 @@ class GeoJson {
       text_.begin_feature();
       read_feature(root);
     } else if (type == "GeometryCollection") {
+      ids_.refuse(text_, "geometries");
       for (auto result : text_.array(text_.field(root, "geometries"), "an array of geometries")) {
         text_.begin_feature();
         read_geometry(text_.object(text_.element(result), "a geometry"), 1);
         boxes_.end_feature();
       }
     } else {
+      ids_.refuse(text_, "a geometry");
       text_.begin_feature();
       read_geometry(root, 0);
       boxes_.end_feature();
@@ -39,6 +41,7 @@ class GeoJson {
 
  private:
   void read_feature(json::object feature) {
+    boxes_.begin_feature(ids_.of(text_, feature));
     json::value geometry = text_.field(feature, "geometry");
     if (!text_.is_null(geometry)) read_geometry(text_.object(geometry, "a geometry, or null"), 0);
     boxes_.end_feature();
@@ -90,11 +93,14 @@ class GeoJson {
   }
 
   MapText& text_;
+  const MapIds& ids_;
   MapBoxes& boxes_;
 };
 
 }  // namespace
 
-void read_geojson(MapText& text, std::string_view type, MapBoxes& boxes) { GeoJson(text, boxes).read(type); }
+void read_geojson(MapText& text, std::string_view type, const MapIds& ids, MapBoxes& boxes) {
+  GeoJson(text, ids, boxes).read(type);
+}
 
 }  // namespace broadside::lab

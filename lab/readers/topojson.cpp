@@ -19,9 +19,10 @@ using Point = std::array<double, 2>;
 
 class TopoJson {
  public:
-  TopoJson(MapText& text, MapBoxes& boxes) : text_(text), boxes_(boxes) {}
+  TopoJson(MapText& text, const MapIds& ids, MapBoxes& boxes) : text_(text), ids_(ids), boxes_(boxes) {}
 
   void read(std::string_view layer) {
+    if (boxes_.part() == MapPart::segments) ids_.refuse(text_, "segments of TopoJSON, which features share");
     read_transform();
     read_arcs();
     read_layers(layer);
@@ -92,6 +93,7 @@ class TopoJson {
     const std::string type = type_of(layer);
     if (type != "GeometryCollection") {
       text_.begin_feature();
+      boxes_.begin_feature(ids_.of(text_, layer));
       read_geometry(layer, type, 0);
       boxes_.end_feature();
       return;
@@ -99,6 +101,7 @@ class TopoJson {
     for (auto result : text_.array(text_.field(layer, "geometries"), "an array of geometries")) {
       text_.begin_feature();
       json::object geometry = text_.object(text_.element(result), "a geometry");
+      boxes_.begin_feature(ids_.of(text_, geometry));
       read_geometry(geometry, type_of(geometry), 1);
       boxes_.end_feature();
     }
@@ -182,6 +185,7 @@ class TopoJson {
   }
 
   MapText& text_;
+  const MapIds& ids_;
   MapBoxes& boxes_;
   bool has_transform_ = false;
   Point scale_ = {1, 1};
@@ -192,8 +196,8 @@ class TopoJson {
 
 }  // namespace
 
-void read_topojson(MapText& text, std::string_view layer, MapBoxes& boxes) {
-  TopoJson(text, boxes).read(layer);
+void read_topojson(MapText& text, std::string_view layer, const MapIds& ids, MapBoxes& boxes) {
+  TopoJson(text, ids, boxes).read(layer);
 }
 
 }  // namespace broadside::lab

@@ -93,6 +93,46 @@ TEST(PairsVerb, JoinsTwoFilesAndFindsOnlyWhatIsBetweenThem) {
   EXPECT_THAT(ended.errors, AllOf(HasSubstr("left.csv (4 boxes) with "), HasSubstr("right.csv (2 boxes)")));
 }
 
+TEST(PairsVerb, WritesTheUsersIds) {
+  const TemporaryFolder folder;
+  const std::string left = folder.put("left.csv",
+                                      "name,min_x,min_y,max_x,max_y\n"
+                                      "\"a, \"\"b\"\"\",0,0,2,2\n"
+                                      "far off,9,9,9,9\n"
+                                      "\" c\",1,1,3,3\n"
+                                      ",,,,\n");
+  const std::string right = folder.put("right.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "id": 2.50, "properties": {"name": "line\nbreak"},
+       "geometry": {"type": "Point", "coordinates": [2, 2]}},
+      {"type": "Feature", "geometry": {"type": "Point", "coordinates": [9, 9]},
+       "properties": {"other": 1, "name": "far"}, "id": "x"}]})");
+  for (const std::string order : {"sorted", "found"}) {
+    EXPECT_EQ(run({"pairs", left, "--ids", "name", "--order", order}).output,
+              "first,second\n\"a, \"\"b\"\"\",\" c\"\n");
+  }
+  EXPECT_EQ(run({"pairs", "--ids", "Name", left, right}).output,
+            "left,right\n\"a, \"\"b\"\"\",\"line\nbreak\"\nfar off,far\n\" c\",\"line\nbreak\"\n");
+  EXPECT_EQ(run({"pairs", "--ids", "name", "--ids", "id", left, right}).output,
+            "left,right\n\"a, \"\"b\"\"\",2.50\nfar off,x\n\" c\",2.50\n");
+  EXPECT_EQ(run({"convert", right, "--ids", "id", "--to", "csv", "-o", "-"}).output,
+            "id,min_x,min_y,max_x,max_y\n2.50,2,2,2,2\nx,9,9,9,9\n");
+  const std::string array = folder.file("left.npy");
+  ASSERT_EQ(run({"convert", left, "-o", array}).status, 0);
+  const std::string no_ids = folder.put("no.csv", "id,min_x,min_y,max_x,max_y\n,0,0,1,1\n");
+  expect_refused(
+      "pairs",
+      {
+          {{left, "--ids", "nam"}, {"left.csv:1: no column 'nam'", "expected one of: name, min_x"}},
+          {{left, "--ids", "min_x"}, {"column 'min_x' is read already"}},
+          {{no_ids, "--ids", "id"}, {"no.csv:2: column id is ''", "expected an id"}},
+          {{right, "--ids", "other"}, {"feature 0: a feature without a property 'other'"}},
+          {{left, "--ids", "name", "--ids", "name"}, {"--ids 2 times with 1 file"}},
+          {{left, "--ids", "name", "--count"}, {"--ids with --count"}},
+          {{left, "--ids", "name", "-o", folder.file("a.npy")}, {"--ids with an array", "expected CSV"}},
+          {{array, "--ids", "name"}, {"format npy, which has no ids"}},
+      });
+}
+
 TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   const TemporaryFolder folder;
   // A gap that a float does not see at this distance.
