@@ -159,8 +159,8 @@ void CsvLines::take() {
   passed_ += size + 1;
 }
 
-void CsvLines::refuse(const std::string& found, const std::string& expected) const {
-  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), number_, found, expected));
+void CsvLines::refuse(std::uint64_t line, const std::string& found, const std::string& expected) const {
+  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), line, found, expected));
 }
 
 }  // namespace broadside::lab::readers

@@ -91,7 +91,12 @@ class CsvLines {
   /// How many bytes there are behind the line, without empty lines at the end.
   std::size_t bytes_left() const noexcept { return rest_.size(); }
 
-  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;
+  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+    refuse(number_, found, expected);
+  }
+
+  /// Refuses an earlier line.
+  [[noreturn]] void refuse(std::uint64_t line, const std::string& found, const std::string& expected) const;
 
  private:
   void take();

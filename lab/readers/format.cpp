@@ -105,6 +105,11 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
     throw FileError(
         fmt::format("{}: is in format {}, which has no ids such as '{}'; expected a table or a map", name,
                     format.name, options.ids));
+  if (options.say_invalid && !format.can_skip)
+    throw FileError(
+        fmt::format("{}: is in format {}, of which --skip-invalid can leave nothing out; expected "
+                    "a table or a map",
+                    name, format.name));
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;

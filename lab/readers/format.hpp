@@ -34,6 +34,9 @@ struct ReadOptions {
   bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
   int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};
+  /// Where it is there, invalid boxes are left out, as absent ones where the format can hold those, and the
+  /// first are told one by one; otherwise a file with one is refused.
+  std::function<void(std::string_view why)> say_invalid{};
   Progress progress{};
 };
 
@@ -51,6 +54,7 @@ struct Format {
   std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
   bool has_columns = false;             ///< whether ReadOptions::columns means something
   bool has_layers = false;              ///< whether ReadOptions::layer means something
+  bool can_skip = false;                ///< whether ReadOptions::say_invalid means something
   bool has_ids = false;                 ///< whether ReadOptions::ids means something
   bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
 

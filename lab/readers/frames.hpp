@@ -117,8 +117,9 @@ Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
 template <int D, typename Real>
 class HistoryReader final : public FrameReader<D, Real> {
  public:
-  explicit HistoryReader(History<D, Real> history, std::shared_ptr<const BoxLabels> labels = nullptr)
-      : history_(std::move(history)), labels_(std::move(labels)) {}
+  explicit HistoryReader(History<D, Real> history, std::shared_ptr<const BoxLabels> labels = nullptr,
+                         std::string warning = {})
+      : history_(std::move(history)), labels_(std::move(labels)), warning_(std::move(warning)) {}
 
   std::vector<Box<D, Real>> first() override { return std::move(history_.boxes); }
 
@@ -128,11 +129,14 @@ class HistoryReader final : public FrameReader<D, Real> {
     return true;
   }
 
+  std::string warning() const override { return warning_; }
+
   std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
 
  private:
   History<D, Real> history_;
   std::shared_ptr<const BoxLabels> labels_;
+  std::string warning_;
   std::size_t next_ = 0;
 };
 

@@ -25,7 +25,12 @@ class MapBoxes {
 
   MapPart part() const noexcept { return part_; }
 
-  void begin_feature(std::string id) { id_ = std::move(id); }
+  void begin_feature() {
+    feature_begin_ = boxes_.size();
+    id_.clear();
+  }
+
+  void set_id(std::string id) { id_ = std::move(id); }
 
   /// The next line begins; lone points need none.
   void begin_line() { is_in_line_ = false; }
@@ -56,6 +61,14 @@ class MapBoxes {
     feature_ = absent_box<2, double>();
   }
 
+  /// Leaves out what there is of the feature begun; its box is absent.
+  void drop_feature() {
+    boxes_.resize(feature_begin_);
+    if (has_ids_) ids_.resize(feature_begin_);
+    piece_ = feature_ = absent_box<2, double>();
+    end_feature();
+  }
+
   std::vector<DoubleBox2> take() { return std::move(boxes_); }
   std::vector<std::string> take_ids() { return std::move(ids_); }
 
@@ -83,6 +96,7 @@ class MapBoxes {
   std::vector<DoubleBox2> boxes_;
   std::vector<std::string> ids_;
   std::string id_;
+  std::size_t feature_begin_ = 0;  // in boxes_
   DoubleBox2 feature_ = absent_box<2, double>();
   DoubleBox2 piece_ = absent_box<2, double>();
   DoubleBox2 last_{};
