@@ -23,6 +23,7 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/join.hpp"
+#include "lab/join_within.hpp"
 #include "lab/measure/contest.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
@@ -107,8 +108,9 @@ class Join {
             ? ""
             : fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
                           lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
-    return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
+    return fmt::format("{} in {}D: {}{}, exact in {}{}; read in {}, joined by {} in {}", sets,
                        lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
+                       arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
                        name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3), spec_,
                        lab::duration(join_ms_ / 1e3));
   }
@@ -128,6 +130,14 @@ class Join {
   }
 
   void search(PairSink& pairs) {
+    if (!arguments_.within.empty()) {
+      const double distance = read_distance(arguments_.within);
+      if (is_between())
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, spec_, pairs);
+      else
+        lab::join_within(sets_[0].boxes, distance, spec_, pairs);
+      return;
+    }
     if (is_between())
       lab::join(sets_[0].boxes, sets_[1].boxes, spec_, pairs);
     else
@@ -208,6 +218,11 @@ Verb add_pairs(CLI::App& program) {
       ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option(
+          "--within", arguments->within,
+          "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
+          "a few past corners")
+      ->type_name("DISTANCE");
   verb->add_option("--algorithm", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "lab/catalogue.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
+#include "lab/readers/csv_text.hpp"
 
 namespace broadside::cli {
 
@@ -36,10 +38,11 @@ void check_swept(const PairsArguments& arguments) {
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
   if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty())
+      input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
     throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension, --frame or --ids with --swept; expected none "
-        "of them");
+        "--boxes, --layer, --columns, --precision, --dimension, --frame, --ids or --skip-invalid with "
+        "--swept; "
+        "expected none of them");
 }
 
 void check_ids(const PairsArguments& arguments) {
@@ -58,6 +61,13 @@ void check_ids(const PairsArguments& arguments) {
 }
 
 }  // namespace
+
+double read_distance(const std::string& text) {
+  double distance = 0;
+  if (!lab::readers::parse_number(text, distance) || !std::isfinite(distance) || distance < 0)
+    throw Unusable(fmt::format("--within is '{}'; expected a distance: a number of 0 or more", text));
+  return distance;
+}
 
 std::string spec_of(const PairsArguments& arguments) {
   const lab::Catalogue catalogue;
@@ -82,6 +92,7 @@ void check(const PairsArguments& arguments) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   check_swept(arguments);
+  if (!arguments.within.empty()) read_distance(arguments.within);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.

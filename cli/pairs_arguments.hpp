@@ -15,6 +15,7 @@ struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
   std::vector<std::string> ids;  // of both files, or of each
+  std::string within;
   std::string algorithm{default_algorithm};
   std::string threads = "1";
   std::string frame;
@@ -30,6 +31,9 @@ struct PairsArguments {
 
 /// The part of a mesh that `text` is. Throws Unusable, naming `option`, if it is none.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
+
+/// The distance that --within gives. Throws Unusable if it is none.
+double read_distance(const std::string& text);
 
 /// The algorithm's spec with its number of threads. Throws Unusable if it is not one, or cannot use several.
 std::string spec_of(const PairsArguments& arguments);

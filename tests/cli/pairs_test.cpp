@@ -133,6 +133,46 @@ TEST(PairsVerb, WritesTheUsersIds) {
       });
 }
 
+TEST(PairsVerb, FindsWhatIsWithinADistance) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("points.csv", "name,lon,lat\na,0,0\nb,1,1\nc,0,2.5\n");
+  const Ended ended = run({"pairs", file, "--within", "1", "--ids", "name"});
+  EXPECT_EQ(ended.output, "first,second\na,b\n");
+  EXPECT_THAT(ended.errors, HasSubstr("points.csv (3 boxes) in 2D: 1 pair within 1, exact in double"));
+  EXPECT_EQ(run({"pairs", file, file, "--within", "1.5", "--count"}).output, "7\n");
+  expect_refused("pairs", {
+                              {{file, "--within", "-1"}, {"--within is '-1'", "a number of 0 or more"}},
+                              {{file, "--within", "inf"}, {"--within is 'inf'"}},
+                              {{file, "--within", "nan"}, {"--within is 'nan'"}},
+                          });
+}
+
+TEST(PairsVerb, LeavesOutWhatIsInvalidAndSaysWhich) {
+  const TemporaryFolder folder;
+  const std::string table = folder.put("boxes.csv", four_boxes + "1,1,x,1\n0,0,9,9\n");
+  const Ended ended = run({"pairs", table, "--skip-invalid"});
+  EXPECT_EQ(ended.output, "first,second\n0,3\n0,5\n1,3\n1,5\n3,5\n");
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("boxes.csv:6: column max_x is 'x', text; expected a number"),
+                                  HasSubstr("boxes.csv: left out 1 invalid box\n"),
+                                  HasSubstr("(6 boxes, 1 of them absent)")));
+  const std::string map = folder.put("map.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "id": 1, "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, "x"]]}},
+      {"type": "Feature", "id": 2, "geometry": {"type": "Point", "coordinates": [1, 1]}},
+      {"type": "Feature", "geometry": {"type": "Point", "coordinates": [1, 1]}},
+      5,
+      {"type": "Feature", "id": 3, "geometry": {"type": "Point", "coordinates": [1, 1]}}]})");
+  const Ended mapped = run({"pairs", map, "--skip-invalid", "--ids", "id"});
+  EXPECT_EQ(mapped.output, "first,second\n2,3\n");
+  EXPECT_THAT(mapped.errors,
+              AllOf(HasSubstr("feature 0: '\"x\"'"), HasSubstr("feature 2: a feature without a member"),
+                    HasSubstr("left out 3 invalid boxes")));
+  EXPECT_EQ(run({"pairs", map, "--skip-invalid"}).output, "first,second\n1,2\n1,4\n2,4\n");
+  const std::string array = folder.file("boxes.npy");
+  ASSERT_EQ(run({"scene", "uniform", "-n", "5", "-o", array}).status, 0);
+  expect_refused("pairs",
+                 {{{array, "--skip-invalid"}, {"format npy", "--skip-invalid can leave nothing out"}}});
+}
+
 TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   const TemporaryFolder folder;
   // A gap that a float does not see at this distance.
