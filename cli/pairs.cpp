@@ -25,6 +25,7 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/join.hpp"
+#include "lab/join_within.hpp"
 #include "lab/measure/benchmark.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
@@ -34,10 +35,12 @@
 namespace broadside::cli {
 namespace {
 
-lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, lab::Rounding& rounding) {
+lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
+  const std::string& path = arguments.files[file];
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
+  if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
   // Rounded once the frame is there instead, where it is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
@@ -62,13 +65,20 @@ class Join {
     if (arguments.is_swept) {
       sweep();
     } else {
-      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path, rounding_));
+      for (std::size_t file = 0; file < arguments.files.size(); ++file)
+        sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
     }
     read_ms_ = watch.milliseconds();
   }
 
   bool is_between() const { return sets_.size() == 2; }
+
+  /// The ids to write instead of numbers, if that is asked for.
+  lab::PairIds ids() const {
+    if (arguments_.ids.empty()) return {};
+    return {&sets_.front().labels->ids, &sets_.back().labels->ids};
+  }
 
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
@@ -101,8 +111,9 @@ class Join {
             ? ""
             : fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
                           lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
-    return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
+    return fmt::format("{} in {}D: {}{}, exact in {}{}; read in {}, joined by {} in {}", sets,
                        lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
+                       arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
                        name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3),
                        contender_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
@@ -122,6 +133,14 @@ class Join {
   }
 
   void search(PairSink& pairs) {
+    if (!arguments_.within.empty()) {
+      const double distance = read_distance(arguments_.within);
+      if (is_between())
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, contender_, pairs);
+      else
+        lab::join_within(sets_[0].boxes, distance, contender_, pairs);
+      return;
+    }
     if (is_between())
       lab::join(sets_[0].boxes, sets_[1].boxes, contender_, pairs);
     else
@@ -159,7 +178,8 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
   }
   std::uint64_t count = sorted.size();
   lab::write_file(arguments.output, [&](std::ostream& stream) {
-    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between());
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between(),
+                       join.ids());
     if (streams) {
       PairFunction found([&](std::span<const Pair> pairs) {
         count += pairs.size();
@@ -185,6 +205,18 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       "the precision of the input. Boxes are counted from 0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
   add_input_options(*verb, arguments->input);
+  verb->add_option(
+          "--ids", arguments->ids,
+          "Write the boxes' ids instead of their numbers: a table's column, or a map's property (id is "
+          "a feature's own); given twice, for the one file and the other")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option(
+          "--within", arguments->within,
+          "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
+          "a few past corners")
+      ->type_name("DISTANCE");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "lab/catalogue.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
+#include "lab/readers/csv_text.hpp"
 
 namespace broadside::cli {
 
@@ -36,13 +38,36 @@ void check_swept(const PairsArguments& arguments) {
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
   if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty())
+      input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
     throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
-        "them");
+        "--boxes, --layer, --columns, --precision, --dimension, --frame, --ids or --skip-invalid with "
+        "--swept; "
+        "expected none of them");
+}
+
+void check_ids(const PairsArguments& arguments) {
+  if (arguments.ids.empty()) return;
+  if (std::ranges::any_of(arguments.ids, &std::string::empty))
+    throw Unusable("--ids is ''; expected a column or a property");
+  if (arguments.ids.size() > arguments.files.size())
+    throw Unusable(fmt::format("--ids {} times with {}; expected it once, or once a file",
+                               arguments.ids.size(), lab::counted(arguments.files.size(), "file", "files")));
+  if (arguments.counts)
+    throw Unusable("--ids with --count, which writes no pairs; expected one or the other");
+  if (lab::pair_format_of(arguments.output, arguments.to) == lab::PairFormat::npy)
+    throw Unusable(
+        fmt::format("--ids with an array of pairs, '{}', which holds numbers and no ids; expected CSV",
+                    arguments.output));
 }
 
 }  // namespace
+
+double read_distance(const std::string& text) {
+  double distance = 0;
+  if (!lab::readers::parse_number(text, distance) || !std::isfinite(distance) || distance < 0)
+    throw Unusable(fmt::format("--within is '{}'; expected a distance: a number of 0 or more", text));
+  return distance;
+}
 
 lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   const std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
@@ -68,10 +93,12 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   check_swept(arguments);
+  if (!arguments.within.empty()) read_distance(arguments.within);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
   contender_of(arguments, catalogue);
+  check_ids(arguments);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");

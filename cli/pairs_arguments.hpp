@@ -15,6 +15,8 @@ namespace broadside::cli {
 struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
+  std::vector<std::string> ids;  // of both files, or of each
+  std::string within;
   std::string algorithm{default_algorithm};
   std::string threads = "1";
   std::string frame;
@@ -30,6 +32,9 @@ struct PairsArguments {
 
 /// The part of a mesh that `text` is. Throws Unusable, naming `option`, if it is none.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
+
+/// The distance that --within gives. Throws Unusable if it is none.
+double read_distance(const std::string& text);
 
 /// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.
 lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);

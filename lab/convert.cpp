@@ -39,6 +39,8 @@ class CountingFrames final : public FrameReader<D, Real> {
 
   std::string warning() const override { return frames_->warning(); }
 
+  std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
+
  private:
   void count(const std::vector<Box<D, Real>>& boxes, std::size_t size) {
     ++counts_.frames;
@@ -60,6 +62,7 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
   AnyFrameReader counted = std::visit(
       [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) -> AnyFrameReader {
+        if (const auto labels = frames->labels()) converted.left_out = labels->unread;
         return std::make_unique<CountingFrames<D, Real>>(std::move(frames), converted);
       },
       from.frames);
@@ -72,6 +75,19 @@ std::string text_of(const Converted& converted, const std::filesystem::path& pat
                      path == "-" ? "standard output" : path.string(),
                      counted(converted.frames, "frame", "frames"), counted(converted.boxes, "box", "boxes"),
                      converted.dimension, name(converted.precision), format.name);
+}
+
+std::string text_of_left_out(const Converted& converted, const Format& format) {
+  constexpr std::size_t most = 20;
+  const std::vector<std::string>& names = converted.left_out;
+  if (names.empty()) return {};
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
+  return fmt::format("left out {} {}: format {} holds bounds{}",
+                     names.size() == 1 ? "the column" : "the columns", list, format.name,
+                     format.keeps_ids ? " and ids (--ids)" : " alone");
 }
 
 }  // namespace broadside::lab

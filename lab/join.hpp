@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,8 +28,9 @@ Precision precision(const AnyBoxes& boxes) noexcept;
 struct FrameOfFile {
   std::string name;  ///< the file's
   AnyBoxes boxes;
-  bool is_moving = false;  ///< whether the file has other frames
-  std::string warning{};   ///< what had to be left out of a damaged file; empty otherwise
+  bool is_moving = false;                     ///< whether the file has other frames
+  std::shared_ptr<const BoxLabels> labels{};  ///< null where the file has none
+  std::string warning{};                      ///< what had to be left out of a damaged file; empty otherwise
 };
 
 /// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,

@@ -112,6 +112,15 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
   if (!options.layer.empty() && !format.has_layers)
     throw FileError(fmt::format("{}: is in format {}, which has no layer '{}'; expected a map", name,
                                 format.name, options.layer));
+  if (!options.ids.empty() && !format.has_ids)
+    throw FileError(
+        fmt::format("{}: is in format {}, which has no ids such as '{}'; expected a table or a map", name,
+                    format.name, options.ids));
+  if (options.say_invalid && !format.can_skip)
+    throw FileError(
+        fmt::format("{}: is in format {}, of which --skip-invalid can leave nothing out; expected "
+                    "a table or a map",
+                    name, format.name));
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;
@@ -232,6 +241,8 @@ void write_frames(AnyFrameReader frames, const std::filesystem::path& path, cons
     written([&] {
       writer = std::get<std::unique_ptr<FrameWriter<D, Real>>>(format.create(stream, dimension, precision));
     });
+    const std::shared_ptr<const BoxLabels> labels = reader.labels();
+    if (labels && labels->has_ids && format.keeps_ids) writer->use_ids(labels->ids);
     const std::vector<Box<D, Real>> boxes = reader.first();
     written([&] { writer->first(boxes); });
     for (Step<D, Real> step; reader.next(step);) written([&] { writer->next(step); });

@@ -38,6 +38,8 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
   std::string warning() const override { return frames_->warning(); }
 
+  std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
+
  private:
   static std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
     std::vector<Box<D, Real>> result;

@@ -48,6 +48,13 @@ struct Rounding {
   std::string text() const;
 };
 
+/// What a file says of its boxes besides their bounds.
+struct BoxLabels {
+  bool has_ids = false;
+  std::vector<std::string> ids{};     ///< the user's, by place, as far as frames have been read; any text
+  std::vector<std::string> unread{};  ///< the names of a table's columns that nothing is read from
+};
+
 /// Gives the frames of a file, one after the other. Throws FileError (lab/readers/format.hpp) where the file
 /// is wrong, which may be in a later frame. One thread at a time.
 template <int D, typename Real>
@@ -63,6 +70,9 @@ class FrameReader {
 
   /// After the last frame: what had to be left out of a damaged file, and where; empty otherwise.
   virtual std::string warning() const { return {}; }
+
+  /// Filled as frames are read; null where the file has none.
+  virtual std::shared_ptr<const BoxLabels> labels() const { return nullptr; }
 };
 
 /// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.
@@ -70,6 +80,10 @@ template <int D, typename Real>
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
+
+  /// Called before first() where the boxes have ids and the format keeps them (Format::keeps_ids): the ids by
+  /// place. The list outlives the writer, and grows before each call that brings new boxes.
+  virtual void use_ids(const std::vector<std::string>& ids) { static_cast<void>(ids); }
 
   /// The boxes of the first frame. Called once, before next().
   virtual void first(std::span<const Box<D, Real>> boxes) = 0;
@@ -103,7 +117,9 @@ Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
 template <int D, typename Real>
 class HistoryReader final : public FrameReader<D, Real> {
  public:
-  explicit HistoryReader(History<D, Real> history) : history_(std::move(history)) {}
+  explicit HistoryReader(History<D, Real> history, std::shared_ptr<const BoxLabels> labels = nullptr,
+                         std::string warning = {})
+      : history_(std::move(history)), labels_(std::move(labels)), warning_(std::move(warning)) {}
 
   std::vector<Box<D, Real>> first() override { return std::move(history_.boxes); }
 
@@ -113,8 +129,14 @@ class HistoryReader final : public FrameReader<D, Real> {
     return true;
   }
 
+  std::string warning() const override { return warning_; }
+
+  std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
+
  private:
   History<D, Real> history_;
+  std::shared_ptr<const BoxLabels> labels_;
+  std::string warning_;
   std::size_t next_ = 0;
 };
 

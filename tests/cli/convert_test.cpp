@@ -99,11 +99,44 @@ TEST(ConvertVerb, AddsToWhatAnOpenDescriptorAppendsTo) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"boxes.csv", "log.csv"}));
 }
 
-TEST(ConvertVerb, ReplacesItsOwnInputOnceTheOutputIsWhole) {
+TEST(ConvertVerb, RefusesToReplaceItsOwnInput) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", tenths);
-  EXPECT_EQ(run({"convert", file, "-o", file}).status, 0);
-  EXPECT_THAT(text_of(file), HasSubstr("0.1,0,1,1\n"));
+  expect_refused("convert", {{{file, "-o", file}, {"-o is '" + file, "the input", "expected another file"}}});
+  EXPECT_EQ(text_of(file), tenths);
+}
+
+TEST(ConvertVerb, KeepsIdsAndNamesTheColumnsItLeavesOut) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("named.csv",
+                                      "ID,name,min_x,min_y,max_x,max_y,area\n"
+                                      "7,\"a, \"\"b\"\"\",0,0,1,1,1\n"
+                                      "7,c,2,2,3,3,1\n");
+  const Ended kept = run({"convert", file, "--to", "csv", "-o", "-"});
+  EXPECT_EQ(kept.output, "id,min_x,min_y,max_x,max_y\n7,0,0,1,1\n7,2,2,3,3\n");
+  EXPECT_THAT(kept.errors,
+              HasSubstr("left out the columns 'name', 'area': format csv holds bounds and ids (--ids)\n"));
+  EXPECT_EQ(run({"convert", file, "--ids", "name", "--to", "csv", "-o", "-"}).output,
+            "id,min_x,min_y,max_x,max_y\n\"a, \"\"b\"\"\",0,0,1,1\nc,2,2,3,3\n");
+  const Ended dropped = run({"convert", file, "-o", folder.file("boxes.npy")});
+  EXPECT_EQ(dropped.status, 0);
+  EXPECT_THAT(dropped.errors,
+              HasSubstr("left out the columns 'ID', 'name', 'area': format npy holds bounds"));
+  EXPECT_THAT(run({"convert", folder.put("plain.csv", tenths), "-o", folder.file("a.csv")}).errors,
+              Not(HasSubstr("left out")));
+  expect_refused("convert", {{{file, "--ids", "id", "-o", folder.file("b.npy")},
+                              {"--ids with format npy", "expected csv"}}});
+}
+
+TEST(ConvertVerb, KeepsTheIdsOfBoxesThatMove) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "frame,box,id,min_x,min_y,max_x,max_y\n"
+      "0,0,red,0,0,1,1\n"
+      "1,0,red,1,0,2,1\n"
+      "1,1,blue,5,5,6,6\n"
+      "2,,,,,,\n";
+  EXPECT_EQ(run({"convert", folder.put("moving.csv", text), "--to", "csv", "-o", "-"}).output, text);
 }
 
 TEST(ConvertVerb, LeavesNothingWhereAFileGrowsTooLarge) {
