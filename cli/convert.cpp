@@ -36,7 +36,6 @@ Exit run(const ConvertArguments& arguments) {
   const lab::Converted converted =
       lab::convert(std::move(file), arguments.output, format, precision, end_if_interrupted);
   if (!converted.warning.empty()) say(converted.warning);
-  if (converted.rounding.rounded > 0) say(converted.rounding.text());
   say(lab::text_of(converted, arguments.output, format));
   return Exit::fine;
 }

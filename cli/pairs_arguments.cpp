@@ -35,11 +35,9 @@ void check_swept(const PairsArguments& arguments) {
                                lab::counted(arguments.files.size(), "file", "files")));
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
-  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty())
-    throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
-        "them");
+  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || input.dimension != 0 ||
+      !arguments.frame.empty())
+    throw Unusable("--boxes, --layer, --columns, --dimension or --frame with --swept; expected none of them");
 }
 
 }  // namespace

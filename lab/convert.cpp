@@ -41,6 +41,7 @@ class CountingFrames final : public FrameReader<D, Real> {
   }
 
   std::string warning() const override { return frames_->warning(); }
+  std::string_view importer() const override { return frames_->importer(); }
 
  private:
   void count(const std::vector<Box<D, Real>>& boxes, std::size_t size) {
@@ -60,6 +61,7 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
                   std::optional<Precision> precision, const std::function<void()>& each_frame) {
   Converted converted;
   converted.dimension = dimension_of(from.frames);
+  converted.importer = importer_of(from.frames);
   converted.precision =
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
   AnyFrameReader counted = std::visit(
@@ -72,10 +74,11 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
 }
 
 std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format) {
-  return fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
+  return fmt::format("{}: {} of {} in {}D, {}, in format {}{}",
                      path == "-" ? "standard output" : path.string(),
                      counted(converted.frames, "frame", "frames"), counted(converted.boxes, "box", "boxes"),
-                     converted.dimension, name(converted.precision), format.name);
+                     converted.dimension, precision_text(converted.precision, converted.importer),
+                     format.name, converted.rounding.rounded > 0 ? "; " + converted.rounding.text() : "");
 }
 
 }  // namespace broadside::lab

@@ -185,7 +185,8 @@ FileInfo file_info(const std::filesystem::path& path, const ReadOptions& options
   FileInfo info{.file = file.name,
                 .format = file.format->name,
                 .dimension = dimension_of(file.frames),
-                .precision = precision_of_frames(file.frames)};
+                .precision = precision_of_frames(file.frames),
+                .importer = std::string(importer_of(file.frames))};
   info.seconds = watch.milliseconds() / 1e3;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);

@@ -142,7 +142,7 @@ BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options)
   if (options.dimension == 3 && dimension_of(frames) == 2)
     throw FileError(fmt::format("{}: holds boxes in 2D; expected boxes in 3D", name));
   if (options.dimension == 2) frames = flattened(std::move(frames));
-  if (options.precision) frames = with_precision(std::move(frames), *options.precision);
+  if (options.precision) frames = with_precision(std::move(frames), *options.precision, name);
   return {std::move(name), &format, std::move(frames)};
 }
 
