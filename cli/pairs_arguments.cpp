@@ -74,8 +74,8 @@ void check(const PairsArguments& arguments) {
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
     return;
   }
-  lab::pair_format_of(arguments.output, arguments.to);
   check_writable("-o", arguments.output);
+  lab::pair_format_of(arguments.output, arguments.to);
   for (const std::string& file : arguments.files) check_is_other_file("-o", arguments.output, file);
 }
 

@@ -17,13 +17,6 @@
 namespace broadside::lab {
 namespace {
 
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 bool has_extension(const Format& format, const std::string& extension) {
   return std::ranges::find(format.extensions, extension) != format.extensions.end();
 }
@@ -186,7 +179,9 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
 }
 
 const Format& writable_format(const std::filesystem::path& path, std::string_view name) {
-  const std::string extension = extension_of(path);
+  // Nothing is compressed as it is written.
+  const std::string compression = compression_extension_of(path);
+  const std::string extension = compression.empty() ? extension_of(path) : compression;
   for (const Format& format : formats()) {
     if (!can_be_written(format)) continue;
     if (name.empty() ? has_extension(format, extension) : is_called(format, name)) return format;

@@ -58,13 +58,6 @@ struct BadFile {
 
 void PrintTo(const BadFile& file, std::ostream* stream) { *stream << file.format << ' ' << file.fault; }
 
-/// A file of a fuzzer's corpus.
-std::string corpus(const std::string& name) {
-  std::ifstream file(BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/" + name, std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<BadFile> bad_tables() {
   const std::string columns = "min_x,min_y,max_x,max_y\n0,0,1,1\n";
   return {
