@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/unread_formats.hpp"
 #include "lab/readers/write_file.hpp"
 
 namespace broadside::lab {
@@ -60,6 +61,14 @@ bool is_text(std::string_view bytes) {
       bytes, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r' && c != '\n'; });
 }
 
+/// Throws FileError naming the converter if an input is in a format that is known and not read: by its
+/// extension, or, where that is empty, by its first bytes.
+void refuse_unread(Input& input, std::string_view extension) {
+  const std::string_view file = input.path().empty() ? "FILE" : std::string_view(input.name());
+  const std::string found = unread_format(input.beginning(), extension, file);
+  if (!found.empty()) throw FileError(fmt::format("{}: {}", input.name(), found));
+}
+
 const Format& readable_format(Input& input, const ReadOptions& options) {
   const std::string_view name = options.format;
   const std::string_view begin = input.beginning();
@@ -67,6 +76,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
     throw FileError(fmt::format("{}: begins as text in UTF-16; expected UTF-8", input.name()));
   const auto wanted =
       std::ranges::find_if(formats(), [&](const Format& format) { return is_called(format, name); });
+  if (name.empty()) refuse_unread(input, "");
   const Format* const format = name.empty()                ? format_of(begin, input.extension())
                                : wanted == formats().end() ? nullptr
                                                            : &*wanted;
@@ -76,6 +86,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
     throw FileError(
         fmt::format("{}: unknown format '{}'; expected one of: {}", input.name(), name, listed(can_be_read)));
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
+  if (!input.extension().empty()) refuse_unread(input, input.extension());
   // A table whose own names nobody knows is one by those that the user gives.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
   if (!options.columns.empty() && table != formats().end()) return *table;
