@@ -7,12 +7,28 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace broadside::lab::readers {
 
 /// Of what two columns the bounds on an axis are made.
 enum class BoundsForm : std::uint8_t { min_max, min_size, centre_size, centre_half_size };
+
+/// The bounds that two values of a form are, computed in double.
+inline std::pair<double, double> bounds_of(BoundsForm form, double first, double second) noexcept {
+  switch (form) {
+    case BoundsForm::min_max:
+      return {first, second};
+    case BoundsForm::min_size:
+      return {first, first + second};
+    case BoundsForm::centre_size:
+      return {first - second / 2, first + second / 2};
+    case BoundsForm::centre_half_size:
+      return {first - second, first + second};
+  }
+  return {first, second};
+}
 
 /// The columns of a table.
 struct CsvColumns {

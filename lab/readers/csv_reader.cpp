@@ -65,20 +65,6 @@ class CsvRows {
   static constexpr unsigned bounds = ((1U << D) - 1) << CsvColumns::first | ((1U << D) - 1)
                                                                                 << CsvColumns::second;
 
-  static std::pair<double, double> bounds_of(BoundsForm form, double first, double second) {
-    switch (form) {
-      case BoundsForm::min_max:
-        return {first, second};
-      case BoundsForm::min_size:
-        return {first, first + second};
-      case BoundsForm::centre_size:
-        return {first - second / 2, first + second / 2};
-      case BoundsForm::centre_half_size:
-        return {first - second, first + second};
-    }
-    return {first, second};
-  }
-
   void take() {
     const std::vector<int>& places = table_.columns.places;
     const std::string_view line = table_.lines.line();

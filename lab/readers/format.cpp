@@ -103,8 +103,10 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
     throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
                                 format.name));
   if (!options.layer.empty() && !format.has_layers)
-    throw FileError(fmt::format("{}: is in format {}, which has no layer '{}'; expected a map", name,
-                                format.name, options.layer));
+    throw FileError(
+        fmt::format("{}: is in format {}, which has no layer or array '{}'; expected a map or an "
+                    ".npz file",
+                    name, format.name, options.layer));
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;
@@ -132,7 +134,8 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
-      readers::trace(), readers::csv(), readers::npy(), readers::broadmark(), readers::map(), readers::mesh(),
+      readers::trace(),     readers::csv(), readers::npy(),  readers::npz(),
+      readers::broadmark(), readers::map(), readers::mesh(),
   };
   return list;
 }

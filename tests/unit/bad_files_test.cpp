@@ -113,6 +113,22 @@ std::vector<BadFile> bad_arrays() {
   };
 }
 
+std::vector<BadFile> bad_archives() {
+  return {
+      {"npz", "truncated", corpus("npz/cut_off.npz"), {"expected a zip archive"}},
+      {"npz", "wrong_magic", "PKZ and more, but no archive behind it", {"expected a zip archive"}},
+      {"npz",
+       "absurd_count",
+       corpus("npz/claims_2_to_the_31.npz"),
+       {"array 'boxes': has 16 bytes behind its header and claims 2147483648 rows"}},
+      {"npz", "nan", corpus("npz/nan.npz"), {"array 'boxes': row 0 has min (0, nan)", "min <= max"}},
+      {"npz", "inverted", corpus("npz/inverted.npz"), {"array 'boxes': row 0 has min (0, 2)"}},
+      {"npz", "text_for_numbers", corpus("npz/text.npz"), {"numbers of type '<U1'", "floats"}},
+      {"npz", "missing_columns", corpus("npz/three_columns.npz"), {"shape (1, 3)", "(n, 4)"}},
+      {"npz", "empty", "", {"is empty", "an .npz file"}},
+  };
+}
+
 std::vector<BadFile> bad_broadmark() {
   const std::string text(400, 'x');
   return {
@@ -205,7 +221,7 @@ std::vector<BadFile> bad_meshes() {
 std::vector<BadFile> bad_files() {
   std::vector<BadFile> all;
   for (const auto& some :
-       {bad_tables(), bad_arrays(), bad_broadmark(), bad_traces(), bad_maps(), bad_meshes()})
+       {bad_tables(), bad_arrays(), bad_archives(), bad_broadmark(), bad_traces(), bad_maps(), bad_meshes()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

@@ -284,7 +284,7 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   EXPECT_THAT(refusal(path("")), HasSubstr("cannot be read"));
   EXPECT_THAT(
       refusal(put("a.xyzzy", "hello")),
-      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), broadmark (.aabbs)")));
+      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), broadmark (.aabbs)")));
   try {
     write_scene(History<2>{}, path("a.obj"));
     FAIL() << "wrote a format that is only read";
