@@ -46,7 +46,6 @@ Exit run(const ConvertArguments& arguments) {
   lab::BoxFile file = lab::open_file(arguments.file, options);
   const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);
   if (!converted.warning.empty()) say(converted.warning);
-  if (converted.rounding.rounded > 0) say(converted.rounding.text());
   if (!converted.left_out.empty()) say(lab::text_of_left_out(converted, format));
   say(lab::text_of(converted, arguments.output, format));
   return Exit::fine;

@@ -37,8 +37,9 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
-  verb.add_option("--layer", options.layer,
-                  "The layer of a map in TopoJSON, such as counties (standard: all)")
+  verb.add_option("--layer,--array", options.layer,
+                  "The layer of a map in TopoJSON, such as counties (standard: all), or the array of an .npz "
+                  "file (standard: the only one)")
       ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")

@@ -48,11 +48,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   if (!read.warning.empty()) say(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
-  if (is_rounded) {
-    const lab::Rounding more = lab::round_to_float(read.boxes);
-    rounding.coordinates += more.coordinates;
-    rounding.rounded += more.rounded;
-  }
+  if (is_rounded) rounding += lab::round_to_float(read.boxes);
   return read;
 }
 
@@ -105,31 +101,42 @@ class Join {
                       absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
-    const lab::AnyBoxes& boxes = sets_[0].boxes;
-    const std::string rounded =
-        rounding_.rounded == 0
-            ? ""
-            : fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
-                          lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
-    return fmt::format("{} in {}D: {}{}, exact in {}{}; read in {}, joined by {} in {}", sets,
-                       lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
+    return fmt::format("{} in {}D: {}{}, {}; read in {}, joined by {} in {}", sets,
+                       lab::dimension(sets_[0].boxes), lab::counted(pairs, "pair", "pairs"),
                        arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
-                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3),
-                       contender_.spec.text(), lab::duration(join_ms_ / 1e3));
+                       precision_text(), lab::duration(read_ms_ / 1e3), contender_.spec.text(),
+                       lab::duration(join_ms_ / 1e3));
   }
 
  private:
   void sweep() {
     const std::vector<std::string>& files = arguments_.files;
-    const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], read_options(arguments_.input));
-    for (const std::string& warning : mesh.warnings()) say(warning);
+    const lab::ReadOptions options = read_options(arguments_.input);
+    const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], options);
+    const bool is_float = options.precision.value_or(mesh.precision()) == lab::Precision::float32;
     const auto add = [&](const std::string& part) {
       lab::SweptElements swept = mesh.swept(read_part("", part));
-      sets_.push_back({part, std::move(swept.boxes)});
+      sets_.push_back({part, std::move(swept.boxes), false, "", std::string(mesh.importer())});
+      if (is_float) rounding_ += lab::round_to_float(sets_.back().boxes);
       if (arguments_.excludes_shared) elements_.push_back(std::move(swept.elements));
     };
     add(arguments_.left);
     if (arguments_.right != arguments_.left) add(arguments_.right);
+  }
+
+  /// What the pairs are exact in, or what was rounded before they were found.
+  std::string precision_text() const {
+    const std::string_view precision = name(lab::precision(sets_[0].boxes));
+    const auto imported =
+        std::ranges::find_if(sets_, [](const lab::FrameOfFile& set) { return !set.importer.empty(); });
+    if (imported == sets_.end() && rounding_.rounded == 0) return fmt::format("exact in {}", precision);
+    std::string text = fmt::format("in {}", precision);
+    if (rounding_.rounded > 0)
+      text += fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
+                          lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
+    if (imported != sets_.end())
+      text += fmt::format(", of coordinates that {} reads as floats", imported->importer);
+    return text;
   }
 
   void search(PairSink& pairs) {
@@ -202,7 +209,8 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   CLI::App* const verb = program.add_subcommand(
       "pairs",
       "Finds the pairs of overlapping boxes of a file, or those between the boxes of two files, exactly in "
-      "the precision of the input. Boxes are counted from 0.");
+      "the precision of the input; where coordinates had to be rounded, it says so. Boxes are counted from "
+      "0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
   add_input_options(*verb, arguments->input);
   verb->add_option(

@@ -37,12 +37,10 @@ void check_swept(const PairsArguments& arguments) {
                                lab::counted(arguments.files.size(), "file", "files")));
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
-  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
+  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
     throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension, --frame, --ids or --skip-invalid with "
-        "--swept; "
-        "expected none of them");
+        "--boxes, --layer, --columns, --dimension, --frame, --ids or --skip-invalid with --swept; expected none "
+        "of them");
 }
 
 void check_ids(const PairsArguments& arguments) {
@@ -104,8 +102,8 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
     return;
   }
-  lab::pair_format_of(arguments.output, arguments.to);
   check_writable("-o", arguments.output);
+  lab::pair_format_of(arguments.output, arguments.to);
   for (const std::string& file : arguments.files) check_is_other_file("-o", arguments.output, file);
 }
 

@@ -38,6 +38,7 @@ class CountingFrames final : public FrameReader<D, Real> {
   }
 
   std::string warning() const override { return frames_->warning(); }
+  std::string_view importer() const override { return frames_->importer(); }
 
   std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
@@ -58,6 +59,7 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
                   std::optional<Precision> precision) {
   Converted converted;
   converted.dimension = dimension_of(from.frames);
+  converted.importer = importer_of(from.frames);
   converted.precision =
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
   AnyFrameReader counted = std::visit(
@@ -71,10 +73,11 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
 }
 
 std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format) {
-  return fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
+  return fmt::format("{}: {} of {} in {}D, {}, in format {}{}",
                      path == "-" ? "standard output" : path.string(),
                      counted(converted.frames, "frame", "frames"), counted(converted.boxes, "box", "boxes"),
-                     converted.dimension, name(converted.precision), format.name);
+                     converted.dimension, precision_text(converted.precision, converted.importer),
+                     format.name, converted.rounding.rounded > 0 ? "; " + converted.rounding.text() : "");
 }
 
 std::string text_of_left_out(const Converted& converted, const Format& format) {

@@ -98,15 +98,17 @@ Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyO
   catalogue.select(options.algorithms);  // what is wrong there is known before anything is read
   Verification verification{.file = file.name,
                             .dimension = dimension_of(file.frames),
-                            .precision = precision_of_frames(file.frames)};
+                            .precision = precision_of_frames(file.frames),
+                            .importer = std::string(importer_of(file.frames))};
   std::visit([&](const auto& frames) { verify(verification, *frames, catalogue, options); }, file.frames);
   return verification;
 }
 
 std::string text_of(const Verification& verification, std::string_view program) {
-  std::string text = fmt::format(
-      "{}: {} in {}D, as {}s, {}", verification.file, counted(verification.boxes, "box", "boxes"),
-      verification.dimension, name(verification.precision), counted(verification.frames, "frame", "frames"));
+  std::string text =
+      fmt::format("{}: {} in {}D, {}, {}", verification.file, counted(verification.boxes, "box", "boxes"),
+                  verification.dimension, precision_text(verification.precision, verification.importer),
+                  counted(verification.frames, "frame", "frames"));
   if (verification.pairs)
     text += fmt::format(", {}{}", counted(*verification.pairs, "pair", "pairs"),
                         verification.frames > 1 ? " in the last" : "");

@@ -53,6 +53,7 @@ struct Verification {
   std::string file;
   int dimension;
   Precision precision;
+  std::string importer;   ///< the library that may have rounded its numbers to float; empty if none did
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
   std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there

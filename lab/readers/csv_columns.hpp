@@ -22,6 +22,24 @@ enum class BoundsForm : std::uint8_t {
   point           ///< the first alone
 };
 
+/// The bounds that two values of a form are, computed in double.
+inline std::pair<double, double> bounds_of(BoundsForm form, double first, double second) noexcept {
+  switch (form) {
+    case BoundsForm::min_max:
+      return {first, second};
+    case BoundsForm::min_size:
+      return {first, first + second};
+    case BoundsForm::centre_size:
+      return {first - second / 2, first + second / 2};
+    case BoundsForm::centre_half_size:
+    case BoundsForm::centre_radius:
+      return {first - second, first + second};
+    case BoundsForm::point:
+      return {first, first};
+  }
+  return {first, second};
+}
+
 /// The columns of a table.
 struct CsvColumns {
   /// Places of values in a row; on axis a, the first and second value of its form are at first + a and
@@ -53,23 +71,9 @@ struct CsvColumns {
   /// The bounds on an axis that the values of a row make.
   std::pair<double, double> bounds(std::span<const double, places_of_a_row> values,
                                    std::size_t axis) const noexcept {
-    const double a = values[static_cast<std::size_t>(first) + axis];
-    const double b = values[static_cast<std::size_t>(second) + axis];
-    switch (forms[axis]) {
-      case BoundsForm::min_max:
-        return {a, b};
-      case BoundsForm::min_size:
-        return {a, a + b};
-      case BoundsForm::centre_size:
-        return {a - b / 2, a + b / 2};
-      case BoundsForm::centre_half_size:
-        return {a - b, a + b};
-      case BoundsForm::centre_radius:
-        return {a - values[radius], a + values[radius]};
-      case BoundsForm::point:
-        return {a, a};
-    }
-    return {a, b};
+    const bool has_radius = forms[axis] == BoundsForm::centre_radius;
+    return bounds_of(forms[axis], values[static_cast<std::size_t>(first) + axis],
+                     values[has_radius ? std::size_t{radius} : static_cast<std::size_t>(second) + axis]);
   }
 
   /// The values that a box is made of, as bits: bit p for place p.

@@ -184,7 +184,51 @@ TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   const Ended rounded = run({"pairs", "--count", file, "--precision", "float"});
   EXPECT_EQ(rounded.output, "1\n");
   EXPECT_THAT(rounded.errors,
-              HasSubstr("1 pair, exact in float, to which 2 of 8 coordinates were rounded; "));
+              HasSubstr("1 pair, in float, to which 2 of 8 coordinates were rounded; read in "));
+}
+
+TEST(PairsVerb, IsExactInThePrecisionOfAMesh) {
+  const TemporaryFolder folder;
+  // Two triangles with a gap between them that a float does not see at this distance.
+  const std::vector<std::string> vertices = {"5000000 0 0",     "5000000.001 0 0", "5000000 1 0",
+                                             "5000000.002 0 0", "5000001 0 0",     "5000001 1 0"};
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string obj;
+  for (const std::string& vertex : vertices) {
+    ply += vertex + '\n';
+    obj += "v " + vertex + '\n';
+  }
+  const std::string off =
+      folder.put("a.off", "OFF\n6 2 0\n" + ply.substr(ply.find("5000000")) + "3 0 1 2\n3 3 4 5\n");
+  for (const std::string& file :
+       {folder.put("a.ply", ply + "3 0 1 2\n3 3 4 5\n"), folder.put("a.obj", obj + "f 1 2 3\nf 4 5 6\n")}) {
+    for (const bool is_swept : {false, true}) {
+      const auto count = [&](const std::string& mesh, const std::string& precision) {
+        std::vector<std::string> arguments = {"pairs", "--count", mesh};
+        if (is_swept)
+          arguments.insert(arguments.end(), {mesh, "--swept", "--left", "faces", "--right", "faces"});
+        if (!precision.empty()) arguments.insert(arguments.end(), {"--precision", precision});
+        return run(arguments);
+      };
+      for (const std::string precision : {"", "double"}) {
+        const Ended exact = count(file, precision);
+        EXPECT_EQ(exact.output, "0\n") << file;
+        EXPECT_THAT(exact.errors, HasSubstr("0 pairs, exact in double; "));
+      }
+      const Ended rounded = count(file, "float");
+      EXPECT_EQ(rounded.output, "1\n");
+      EXPECT_THAT(rounded.errors,
+                  HasSubstr("1 pair, in float, to which 2 of 12 coordinates were rounded; read in "));
+      const Ended imported = count(off, "double");
+      if (imported.status == 0) {  // with assimp
+        EXPECT_EQ(imported.output, "1\n");
+        EXPECT_THAT(imported.errors,
+                    HasSubstr("1 pair, in double, of coordinates that assimp reads as floats; "));
+      }
+    }
+  }
 }
 
 TEST(PairsVerb, JoinsFloatsWithDoublesAsDoubles) {

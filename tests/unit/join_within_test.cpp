@@ -17,6 +17,11 @@
 namespace broadside::lab {
 namespace {
 
+Contender only(std::string_view spec) {
+  static const Catalogue catalogue;
+  return catalogue.select(spec).at(0);
+}
+
 template <typename Real>
 std::vector<Box<2, Real>> tenths(std::size_t count, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -59,11 +64,11 @@ void expect_exact(double distance) {
   }
   std::vector<Pair> found;
   PairCollector collector(found);
-  join_within(left, distance, "grid", collector);
+  join_within(left, distance, only("grid"), collector);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, within) << distance;
   found.clear();
-  join_within(left, right, distance, "sweep_and_prune", collector);
+  join_within(left, right, distance, only("sweep_and_prune"), collector);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, between) << distance;
 }
@@ -83,7 +88,7 @@ TEST(JoinWithin, TakesInfiniteBoxesAsTheyAre) {
                                          {{-infinity, 0}, {0.5, 1}}};
   std::vector<Pair> found;
   PairCollector collector(found);
-  join_within(boxes, 1.7e308, "brute_force", collector);
+  join_within(boxes, 1.7e308, only("brute_force"), collector);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, (std::vector<Pair>{{BoxId(0), BoxId(2)}, {BoxId(0), BoxId(3)}, {BoxId(2), BoxId(3)}}));
 }
