@@ -116,7 +116,8 @@ class Join {
     const bool is_float = options.precision.value_or(mesh.precision()) == lab::Precision::float32;
     const auto add = [&](const std::string& part) {
       lab::SweptElements swept = mesh.swept(read_part("", part));
-      sets_.push_back({part, std::move(swept.boxes), false, "", std::string(mesh.importer())});
+      sets_.push_back(
+          {.name = part, .boxes = std::move(swept.boxes), .importer = std::string(mesh.importer())});
       if (is_float) rounding_ += lab::round_to_float(sets_.back().boxes);
       if (arguments_.excludes_shared) elements_.push_back(std::move(swept.elements));
     };
