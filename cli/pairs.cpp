@@ -219,8 +219,7 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Write the boxes' ids instead of their numbers: a table's column, or a map's property (id is "
           "a feature's own); given twice, for the one file and the other")
       ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   verb->add_option(
           "--within", arguments->within,
           "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "

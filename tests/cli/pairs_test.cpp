@@ -110,7 +110,7 @@ TEST(PairsVerb, WritesTheUsersIds) {
     EXPECT_EQ(run({"pairs", left, "--ids", "name", "--order", order}).output,
               "first,second\n\"a, \"\"b\"\"\",\" c\"\n");
   }
-  EXPECT_EQ(run({"pairs", "--ids", "Name", left, right}).output,
+  EXPECT_EQ(run({"pairs", "--ids", "name", left, right}).output,
             "left,right\n\"a, \"\"b\"\"\",\"line\nbreak\"\nfar off,far\n\" c\",\"line\nbreak\"\n");
   EXPECT_EQ(run({"pairs", "--ids", "name", "--ids", "id", left, right}).output,
             "left,right\n\"a, \"\"b\"\"\",2.50\nfar off,x\n\" c\",2.50\n");
