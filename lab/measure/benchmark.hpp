@@ -2,11 +2,13 @@
 // rounds, and who follows it.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,6 +84,23 @@ class Participation {
   bool is_slow_ = false;
   bool has_ended_ = false;
 };
+
+/// Lets those entries take part in few rounds that took too long to warm up: longer than `slow_seconds`, or
+/// than effort.slow_ratio times the fastest other library. Readers need the ratio of what is close, and the
+/// rounds are for that. An Entry has `measurement`, `warm_up_ms` and `participation`.
+template <typename Entry>
+void leave_slow_ones_behind(std::vector<Entry>& entries, const Effort& effort, double slow_seconds) {
+  double fastest_peer_ms = std::numeric_limits<double>::infinity();
+  for (const Entry& entry : entries) {
+    if (entry.measurement->kind == AlgorithmKind::peer && entry.measurement->outcome == Outcome::verified)
+      fastest_peer_ms = std::min(fastest_peer_ms, entry.warm_up_ms);
+  }
+  for (Entry& entry : entries) {
+    const bool is_far =
+        entry.warm_up_ms > slow_from_seconds * 1e3 && entry.warm_up_ms > effort.slow_ratio * fastest_peer_ms;
+    if (is_far || entry.warm_up_ms > slow_seconds * 1e3) entry.participation.set_slow();
+  }
+}
 
 /// Whether a round is still to be played: the first two, and others while the case has time.
 bool has_time(const Effort& effort, std::size_t round, const Stopwatch& of_case);

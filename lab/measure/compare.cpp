@@ -20,12 +20,12 @@ namespace broadside::lab {
 namespace {
 
 /// On how many seeds a case is run in rotation: a small input that is repeated teaches the branch predictor
-/// what no user's boxes would.
+/// what no user's boxes would, and seeds differ. Each seed is measured several times.
 std::size_t seeds_for(std::size_t boxes, Mode mode) {
-  if (mode == Mode::find && boxes <= 2'000) return 100;
-  const std::size_t seeds = boxes <= 2'000 ? 16 : boxes <= 20'000 ? 8 : boxes < 500'000 ? 5 : 1;
+  if (mode == Mode::find && boxes <= 2'000) return 25;
+  const std::size_t seeds = boxes < 500'000 ? 4 : 1;
   // Frames differ among themselves.
-  return mode == Mode::find ? seeds : std::max<std::size_t>(seeds / 4, 1);
+  return mode == Mode::find || boxes <= 2'000 ? seeds : std::max<std::size_t>(seeds / 2, 1);
 }
 
 template <int D>

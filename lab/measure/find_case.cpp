@@ -44,6 +44,7 @@ struct Entry {
   Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
+  double warm_up_ms = 0;
   Participation participation{};
 };
 
@@ -65,6 +66,7 @@ class FindCase {
         entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
     for (Entry<D, Real>& entry : entries_) warm_up(entry);
+    leave_slow_ones_behind<Entry<D, Real>>(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
@@ -117,13 +119,12 @@ class FindCase {
     settle(entry, fault_of(measurement, [&] {
              const AllocationMeter meter;
              entry.finder = make_finder<D, Real>(*entry.contender->algorithm, entry.contender->spec);
-             const double milliseconds = call(*entry.finder, boxes_of(0));
+             entry.warm_up_ms = call(*entry.finder, boxes_of(0));
              count_memory(measurement, *entry.contender->algorithm, meter.read());
              measurement.pairs = pairs_.size();
              measurement.pair_hash = hash_of(pairs_);
              measurement.statistics = entry.finder->statistics();
              measurement.explanation = entry.finder->explanation();
-             if (milliseconds > benchmark_.effort.slow_seconds * 1e3) entry.participation.set_slow();
              return check(entry, 0);
            }));
   }

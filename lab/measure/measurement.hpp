@@ -45,10 +45,10 @@ struct Interval {
   bool includes(double number) const noexcept { return low <= number && number <= high; }
 };
 
-/// The time of one algorithm over that of another, in the rounds that both took part in.
+/// The time of one algorithm over that of another, in the rounds that both took part in (paired_ratio.hpp).
 struct PairedRatio {
   std::string of;                    ///< the spec of the other one
-  double median;                     ///< over the seeds, of each seed's median ratio
+  double median;                     ///< over the seeds, of each seed's median ratio of its rounds
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
 
@@ -69,7 +69,7 @@ struct Measurement {
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
   std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
-  std::size_t samples_a_round = 1;   ///< frames of a history; round r of all entries is on the same boxes
+  std::size_t samples_a_round = 1;   ///< the frames of a history; round r of all is on the same boxes
   std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
@@ -92,16 +92,21 @@ struct CaseResult {
 
 /// How much time an algorithm may take in a case.
 struct Effort {
-  double budget_seconds = 0.25;        ///< for one search; a slower algorithm is skipped
-  double history_seconds = 0.6;        ///< likewise for a whole history, from its first frame to its last
-  double share_seconds = 0.03;         ///< an algorithm takes part in rounds until it was timed this long ...
-  std::size_t least_rounds = 5;        ///< ... and in at least so many rounds ...
-  std::size_t most_rounds = 100;       ///< ... and at most so many ...
-  double slow_seconds = 0.1;           ///< ... but if one search takes longer than this,
-  double slow_history_seconds = 0.35;  ///< or one history longer than this,
-  std::size_t slow_rounds = 2;         ///< it takes part in the first few only
+  double budget_seconds = 0.25;       ///< for one search; a slower algorithm is skipped
+  double history_seconds = 0.6;       ///< likewise for a whole history, from its first frame to its last
+  double share_seconds = 0.1;         ///< an algorithm takes part in rounds until it was timed this long ...
+  std::size_t least_rounds = 8;       ///< ... and in at least so many rounds ...
+  std::size_t most_rounds = 100;      ///< ... and at most so many ...
+  double slow_seconds = 0.1;          ///< ... but if one search takes longer than this,
+  double slow_history_seconds = 0.5;  ///< or one history longer than this,
+  double slow_ratio = 1.5;      ///< or either longer than this many times the fastest other library's (and
+                                ///< than slow_from_seconds),
+  std::size_t slow_rounds = 1;  ///< it takes part in the first few only
   double case_seconds = std::numeric_limits<double>::infinity();  ///< for all algorithms and checks together:
                                                                   ///< once over, no round follows the second
 };
+
+/// Below this nothing is slow: rounds cost next to nothing.
+inline constexpr double slow_from_seconds = 0.002;
 
 }  // namespace broadside::lab

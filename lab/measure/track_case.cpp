@@ -38,6 +38,7 @@ struct Entry {
   std::uint64_t references = 0;
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
+  double warm_up_ms = 0;
   Participation participation{};
   bool plays = false;  // in the pass that is going on
 };
@@ -164,9 +165,11 @@ class TrackCase {
       measurement.pairs = static_cast<std::uint64_t>(entry.pairs);
       measurement.pair_hash = entry.hasher.hash();
       measurement.explanation = entry.tracker->explanation();
-      if (entry.pass_ms > benchmark_.effort.slow_history_seconds * 1e3) entry.participation.set_slow();
+      entry.warm_up_ms = entry.pass_ms;
       entry.builds_ms.clear();
     }
+    leave_slow_ones_behind<Entry<D, Real>>(entries_, benchmark_.effort,
+                                           benchmark_.effort.slow_history_seconds);
   }
 
   /// Lets every entry that takes part in this round follow the same input; false where none does.
