@@ -48,7 +48,7 @@ TEST(ClosedPipe, EndsTheProgramWithoutAMessage) {
   const std::string status = folder.file("status");
   for (const std::string& arguments :
        {"pairs " + boxes, "convert " + boxes + " --to csv -o -",
-        "scene uniform -n 100k --to csv -o /dev/stdout", "draw " + boxes + " -n 20000 -o -"}) {
+        std::string("scene uniform -n 100k --to csv -o /dev/stdout"), "draw " + boxes + " -n 20000 -o -"}) {
     const Ended ended = shell("{ $BROADSIDE " + arguments + "; echo $? > " + status + "; } | head -c 1");
     EXPECT_EQ(text_of(status), "141\n") << arguments;
     EXPECT_EQ(ended.errors, "") << arguments;
