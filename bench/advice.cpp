@@ -17,7 +17,7 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/measure/ranking.hpp"
 
 namespace broadside::bench {
 namespace {
@@ -57,9 +57,11 @@ double measure(const lab::Catalogue& catalogue, const lab::CaseRequest& request,
   options.effort = {.budget_seconds = 10,
                     .history_seconds = 20,
                     .share_seconds = budget / static_cast<double>(specs.size()),
-                    .least_samples = 9,
-                    .most_samples = 400,
-                    .single_sample_seconds = 5};
+                    .least_rounds = 9,
+                    .most_rounds = 400,
+                    .slow_seconds = 5,
+                    .slow_history_seconds = 5,
+                    .slow_rounds = 1};
   const lab::Comparison comparison = lab::compare(catalogue, options);
   if (!comparison.all_verified())
     throw std::runtime_error(request.scene + ": not verified; expected everything to be");

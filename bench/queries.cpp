@@ -19,7 +19,7 @@
 
 #include "broadside/broadside.hpp"
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"

@@ -14,7 +14,7 @@
 
 #include "lab/catalogue.hpp"
 #include "lab/measure/allocation.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/scenes/scene.hpp"

@@ -25,6 +25,7 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/readers/write_file.hpp"
 #include "lab/scenes/motion.hpp"
 
@@ -133,7 +134,8 @@ void check(const AdviseArguments& arguments) {
   check_is_other_file("--json", arguments.json, arguments.input);
 }
 
-Exit run(AdviseArguments& arguments, const CLI::App& verb, std::span<const std::string> command) {
+Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   on_signal(OnSignal::end);
   arguments.input = only_one_of(arguments.inputs);
   check(arguments);
@@ -148,7 +150,6 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, std::span<const std::
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  const lab::Catalogue catalogue;
   check_threads(arguments.contenders, catalogue.select(options.algorithms));
   // Refused before the file is read.
   const auto is_peer = [](const lab::Contender& contender) {
@@ -162,6 +163,7 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, std::span<const std::
 
   on_signal(OnSignal::note_then_end);
   lab::Advice advice;
+  const lab::ProcessorShare share;
   try {
     advice =
         std::visit([&](const auto& history) { return lab::advise(catalogue, boxes.name, history, options); },
@@ -169,10 +171,11 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, std::span<const std::
   } catch (const lab::Stopped&) {
     throw Interruption();
   }
+  advice.processor_share = share.value();
   progress.clear();
   advice.warning = boxes.warning;
   if (!advice.warning.empty()) say(advice.warning);
-  print(lab::text_of(advice));
+  print(lab::text_of(advice) + lab::busy_hint(advice.processor_share));
   flush_output();
   if (!arguments.json.empty()) {
     on_signal(OnSignal::end);
@@ -184,7 +187,7 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, std::span<const std::
 
 }  // namespace
 
-Verb add_advise(CLI::App& program, std::span<const std::string> command) {
+Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> command) {
   const auto arguments = std::make_shared<AdviseArguments>();
   CLI::App* const verb = program.add_subcommand(
       "advise",
@@ -219,7 +222,7 @@ Verb add_advise(CLI::App& program, std::span<const std::string> command) {
   add_examples(*verb, {{"advise boxes.csv", "the algorithm for your boxes, from any file that is read"},
                        {"advise recording.btrace --threads 1,4 --json advice.json",
                         "for a recording of your engine, with one thread and with four"}});
-  return [arguments, verb, command] { return run(*arguments, *verb, command); };
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

@@ -1,4 +1,4 @@
-// broadside compare: the comparison, as a table and as JSON.
+// broadside compare: the comparison, as lines or tables, as JSON and as a page.
 #include "lab/measure/compare.hpp"
 
 #include <algorithm>
@@ -26,8 +26,8 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
-#include "lab/measure/processor_share.hpp"
 #include "lab/numbers.hpp"
+#include "lab/report/case_line.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/report/scene_drawings.hpp"
@@ -49,6 +49,7 @@ struct CompareArguments {
   std::optional<double> budget;
   ResultFiles files;
   bool is_long = false;
+  bool has_details = false;
 };
 
 std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
@@ -108,7 +109,14 @@ void check_applies(const CLI::App& verb, const CompareArguments& arguments, cons
   check_threads(arguments.contenders, catalogue.select(arguments.contenders.algorithms));
 }
 
-Exit run(CompareArguments& arguments, const CLI::App& verb, std::span<const std::string> command) {
+/// Where to find what the lines leave out.
+std::string details_hint(const ResultFiles& files) {
+  const std::string written = files.any() ? files.names() + " holds" : "--json or --report FILE keeps";
+  return fmt::format("details: --details prints each case's table; {} every sample\n", written);
+}
+
+Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   arguments.scenes = each_of(arguments.scenes);
   check(arguments);
   ProgressLine progress;
@@ -116,7 +124,6 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, std::span<const std:
   options.algorithms = arguments.contenders.algorithms;
   options.threads = threads_of(arguments.contenders);
   options.find = lab::scene_finder(read_options(arguments.input));
-  const lab::Catalogue catalogue;
   check_applies(verb, arguments, options.find, catalogue);
   options.plan = plan_of(arguments, options.find);
   options.seed = arguments.seed.value_or(options.seed);
@@ -124,19 +131,22 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, std::span<const std:
   if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  options.finished = [&](const lab::CaseResult& result) {
+  options.finished = [&, is_first = true](const lab::CaseResult& result) mutable {
     progress.clear();
-    print(lab::table_of(result) + '\n');
+    if (arguments.has_details)
+      print(lab::table_of(result) + '\n');
+    else
+      print((is_first ? lab::case_line_heading() : "") + lab::case_line(result));
+    is_first = false;
     flush_output();
   };
 
   on_signal(OnSignal::note_then_end);
-  const lab::ProcessorShare share;
   const lab::Comparison comparison = lab::compare(catalogue, options);
-  const std::string busy = lab::busy_hint(share.value());
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
-  print(lab::summary_of(comparison) + busy);
+  print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
+  if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::end);
     const std::string json = lab::json_of(comparison, command);
@@ -160,7 +170,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, std::span<const std:
 
 }  // namespace
 
-Verb add_compare(CLI::App& program, std::span<const std::string> command) {
+Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> command) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* const verb = program.add_subcommand(
       "compare",
@@ -201,12 +211,14 @@ Verb add_compare(CLI::App& program, std::span<const std::string> command) {
                                lab::Effort{}.budget_seconds, lab::Effort{}.history_seconds,
                                lab::long_effort().budget_seconds));
   add_result_files(*verb, arguments->files);
+  verb->add_flag("--details", arguments->has_details,
+                 "Print a table a case, with every algorithm's time, memory and tests, instead of a line");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   add_examples(
       *verb,
       {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
        {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, a tenth of which moves"}});
-  return [arguments, verb, command] { return run(*arguments, *verb, command); };
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

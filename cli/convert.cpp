@@ -23,6 +23,7 @@ namespace {
 struct ConvertArguments {
   std::string file;
   InputOptions input;
+  std::string ids;
   std::string output;
   std::string to;
 };
@@ -30,17 +31,22 @@ struct ConvertArguments {
 Exit run(const ConvertArguments& arguments) {
   on_signal(OnSignal::end);
   check_writable("-o", arguments.output);
+  check_is_other_file("-o", arguments.output, arguments.file);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   lab::ReadOptions options = read_options(arguments.input, arguments.file);
   if (options.precision == lab::Precision::float64 && !format.has_doubles)
     throw Unusable(fmt::format("--precision is 'double' for format {}, which holds floats; expected float",
                                format.name));
+  if (!arguments.ids.empty() && !format.keeps_ids)
+    throw Unusable(fmt::format("--ids with format {}, which holds no ids; expected csv", format.name));
+  options.ids = arguments.ids;
+  options.finds_ids = format.keeps_ids;
   // Rounded on the way out instead, where it is counted.
   const std::optional<lab::Precision> precision = std::exchange(options.precision, std::nullopt);
   lab::BoxFile file = lab::open_file(arguments.file, options);
   const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);
   if (!converted.warning.empty()) say(converted.warning);
-  if (converted.rounding.rounded > 0) say(converted.rounding.text());
+  if (!converted.left_out.empty()) say(lab::text_of_left_out(converted, format));
   say(lab::text_of(converted, arguments.output, format));
   return Exit::fine;
 }
@@ -51,13 +57,18 @@ Verb add_convert(CLI::App& program) {
   const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* const verb = program.add_subcommand(
       "convert",
-      "Writes the boxes of a file in another format, frame by frame; `broadside list` tells which. The "
-      "output may be the input: it is replaced once the new file is whole.");
+      "Writes the boxes of a file in another format, frame by frame; `broadside list` tells which. Of a "
+      "table's other columns, the ids stay where the format holds ids, and it is said which are left out.");
   verb->add_option("file", arguments->file, "The file to read; - is standard input")->required();
   verb->add_option("-o,--output", arguments->output,
                    "The file to write, in the format that its extension says; - is standard output")
       ->required();
   verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
+      ->type_name("NAME");
+  verb->add_option(
+          "--ids", arguments->ids,
+          "Keep these ids: a table's column (standard: id, if there is one), or a map's property (id "
+          "is a feature's own)")
       ->type_name("NAME");
   add_input_options(*verb, arguments->input);
   add_examples(*verb, {{"convert boxes.csv -o boxes.npy", "a table as a NumPy array"},

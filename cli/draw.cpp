@@ -106,13 +106,14 @@ void check_is_svg(const std::string& path) {
                   path, converted, converted));
 }
 
-Exit run(DrawArguments& arguments, const CLI::App& verb) {
+Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   arguments.scene = only_one_of(arguments.scenes);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);
+  check_writable("-o", arguments.output);
+  check_is_other_file("-o", arguments.output, arguments.scene);
   check_is_svg(arguments.output);
-  const lab::Catalogue catalogue;
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
   check_options(verb, {&named, 1}, {"-n"});
@@ -133,7 +134,7 @@ Exit run(DrawArguments& arguments, const CLI::App& verb) {
 
 }  // namespace
 
-Verb add_draw(CLI::App& program) {
+Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<DrawArguments>();
   CLI::App* const verb = program.add_subcommand(
       "draw",
@@ -164,7 +165,7 @@ Verb add_draw(CLI::App& program) {
                         "300 boxes of a scene and the nodes of two trees, side by side"},
                        {"draw rain.csv --frame 50 --algorithms all -o rain.svg",
                         "a frame of a file, with what each algorithm lays over it"}});
-  return [arguments, verb] { return run(*arguments, *verb); };
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

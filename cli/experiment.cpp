@@ -86,23 +86,26 @@ lab::ExperimentResults read(const ExperimentArguments& arguments) {
   return results;
 }
 
-lab::ExperimentResults measure(const ExperimentArguments& arguments, std::span<const std::string> command) {
+lab::ExperimentResults measure(const ExperimentArguments& arguments, const lab::Catalogue& catalogue,
+                               std::span<const std::string> command) {
   const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
   ProgressLine progress;
-  const lab::Catalogue catalogue;
   const lab::Laboratory laboratory(
       catalogue, arguments.is_quick,
       {.stop = interrupted, .progress = [&](std::string_view what) { progress.show(what); }});
   lab::ExperimentResults results = lab::begin_results(command, arguments.is_quick);
   on_signal(OnSignal::note_then_end);
+  const lab::ProcessorShare share;
   lab::do_experiments(wanted, laboratory, results, [&](const lab::ExperimentResult& result) {
     progress.clear();
     print_result(result);
   });
+  results.processor_share = share.value();
   return results;
 }
 
-Exit run(const ExperimentArguments& arguments, const CLI::App& verb, std::span<const std::string> command) {
+Exit run(const ExperimentArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
+         std::span<const std::string> command) {
   check_alone(verb, "--list", {"names", "--quick", "--from", "--json", "--report"}, "which only lists");
   check_alone(verb, "--from", {"--quick"}, "which measures nothing");
   if (arguments.is_list) {
@@ -111,14 +114,13 @@ Exit run(const ExperimentArguments& arguments, const CLI::App& verb, std::span<c
   }
   check(arguments.files, arguments.from);
   const bool are_measured = arguments.from.empty();
-  const lab::ProcessorShare share;
-  const lab::ExperimentResults results = are_measured ? measure(arguments, command) : read(arguments);
-  print(lab::summary_of(results) + (are_measured ? lab::busy_hint(share.value()) : ""));
+  const lab::ExperimentResults results =
+      are_measured ? measure(arguments, catalogue, command) : read(arguments);
+  print(lab::summary_of(results) + (results.processor_share ? lab::busy_hint(*results.processor_share) : ""));
   if (arguments.files.any() && !results.results.empty()) {
     on_signal(OnSignal::end);
     const std::string json = lab::json_of(results);
     write(arguments.files, json, [&] {
-      const lab::Catalogue catalogue;
       const auto find = [](std::string_view scene) { return lab::find_scene(scene); };
       return lab::PageContent{
           .date = results.date,
@@ -138,7 +140,8 @@ Exit run(const ExperimentArguments& arguments, const CLI::App& verb, std::span<c
 
 }  // namespace
 
-Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
+Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
+                    std::span<const std::string> command) {
   const auto arguments = std::make_shared<ExperimentArguments>();
   CLI::App* const verb = program.add_subcommand(
       "experiment",
@@ -156,7 +159,7 @@ Verb add_experiment(CLI::App& program, std::span<const std::string> command) {
   add_examples(
       *verb, {{"experiment --quick --report claims.html", "all claims, with fewer boxes, as a page"},
               {"experiment --from results.json 3", "the verdict on the third, of an earlier run's --json"}});
-  return [arguments, verb, command] { return run(*arguments, *verb, command); };
+  return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 
 }  // namespace broadside::cli

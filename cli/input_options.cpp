@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/message.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
@@ -36,12 +37,17 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
-  verb.add_option("--layer", options.layer,
-                  "The layer of a map in TopoJSON, such as counties (standard: all)")
+  verb.add_option("--layer,--array", options.layer,
+                  "The layer of a map in TopoJSON, such as counties (standard: all), or the array of an .npz "
+                  "file (standard: the only one)")
       ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")
       ->type_name("LIST");
+  verb.add_flag(
+      "--skip-invalid", options.skips_invalid,
+      "Leave out boxes that are invalid, such as those with a NaN or min > max, and say which and why; "
+      "they keep their numbers as absent boxes");
 }
 
 void add_input_options(CLI::App& verb, InputOptions& options) {
@@ -66,6 +72,7 @@ lab::ReadOptions read_options(const InputOptions& options, const std::string& pa
     read.precision = lab::Precision::float64;
   else if (!options.precision.empty())
     throw Unusable(fmt::format("--precision is '{}'; expected float or double", options.precision));
+  if (options.skips_invalid) read.say_invalid = say;
   read.progress = progress_of(path);
   return read;
 }

@@ -17,9 +17,11 @@ struct InputOptions {
   std::string columns;
   std::string precision;
   int dimension = 0;
+  bool skips_invalid = false;
 };
 
-/// Adds --format, --boxes, --layer and --columns, for a verb that has other uses for the rest.
+/// Adds --format, --boxes, --layer, --columns and --skip-invalid, for a verb that has other uses for the
+/// rest.
 void add_file_options(CLI::App& verb, InputOptions& options);
 
 /// Adds those, --precision and --dimension.

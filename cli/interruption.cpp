@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/readers/write_file.hpp"
 
@@ -33,11 +34,16 @@ void handle(int) {
   const bool again = noted.exchange(true);
   const OnSignal what = reaction;
   if (what == OnSignal::end || (what == OnSignal::note_then_end && again)) {
-    write_message(is_on_terminal ? "\r\x1b[Kbroadside: interrupted\n" : "broadside: interrupted\n");
+    write_message(is_on_terminal ? "\r\x1b[K" : "");
+    write_message(program_name());
+    write_message(": interrupted\n");
     end(Exit::interrupted);
   }
-  if (what == OnSignal::note_then_end)
-    write_message("\nbroadside: stopping after the call that is under way; again stops at once\n");
+  if (what == OnSignal::note_then_end) {
+    write_message("\n");
+    write_message(program_name());
+    write_message(": stopping after the call that is under way; again stops at once\n");
+  }
 }
 
 }  // namespace

@@ -100,8 +100,7 @@ void print_entries(std::string_view title, const std::vector<Entry>& entries) {
   print("\n");
 }
 
-Exit run() {
-  const lab::Catalogue catalogue;
+Exit run(const lab::Catalogue& catalogue) {
   std::vector<Entry> algorithms;
   for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
   for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
@@ -134,11 +133,11 @@ Exit run() {
 
 }  // namespace
 
-Verb add_list(CLI::App& program) {
+Verb add_list(CLI::App& program, const lab::Catalogue& catalogue) {
   CLI::App* const verb = program.add_subcommand(
       "list", "Lists the algorithms, the scenes and what can be set in their specs, and the file formats.");
   add_examples(*verb, {{"list", "everything that has a name"}, {"list | less", "a page at a time"}});
-  return run;
+  return [&catalogue] { return run(catalogue); };
 }
 
 }  // namespace broadside::cli

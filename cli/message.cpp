@@ -12,6 +12,8 @@
 namespace broadside::cli {
 namespace {
 
+std::string program = "broadside";
+
 [[noreturn]] void refuse_output() {
   throw Unusable(fmt::format("standard output: cannot be written: {}",
                              errno != 0 ? std::strerror(errno) : "the stream failed"));
@@ -35,8 +37,12 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+void set_program_name(const std::string& name) { program = name; }
+
+const char* program_name() noexcept { return program.c_str(); }
+
 void say(std::string_view text) {
-  const std::string line = fmt::format("broadside: {}\n", printable(text));
+  const std::string line = fmt::format("{}: {}\n", program, printable(text));
   // Nothing can be done about a message that is not taken.
   std::fputs(line.c_str(), stderr);
 }

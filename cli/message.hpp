@@ -10,7 +10,12 @@ namespace broadside::cli {
 /// a file holds is not to steer a terminal.
 std::string printable(std::string_view text);
 
-/// Writes "broadside: TEXT" and a line's end to stderr, the text made printable.
+/// The name by which this program was called, without its folder; "broadside" until it is set. A
+/// null-terminated string, so that a signal handler can write it.
+void set_program_name(const std::string& name);
+const char* program_name() noexcept;
+
+/// Writes "PROGRAM: TEXT" and a line's end to stderr, the text made printable.
 void say(std::string_view text);
 
 /// Prints text to standard output. Throws Unusable where it is not taken.

@@ -25,7 +25,8 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/join.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/join_within.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
 #include "lab/readers/swept_mesh.hpp"
@@ -34,10 +35,12 @@
 namespace broadside::cli {
 namespace {
 
-lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, lab::Rounding& rounding) {
+lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
+  const std::string& path = arguments.files[file];
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
+  if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
   // Rounded once the frame is there instead, where it is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
@@ -45,29 +48,33 @@ lab::FrameOfFile read(const PairsArguments& arguments, const std::string& path, 
   if (!read.warning.empty()) say(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
-  if (is_rounded) {
-    const lab::Rounding more = lab::round_to_float(read.boxes);
-    rounding.coordinates += more.coordinates;
-    rounding.rounded += more.rounded;
-  }
+  if (is_rounded) rounding += lab::round_to_float(read.boxes);
   return read;
 }
 
 /// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
 class Join {
  public:
-  explicit Join(const PairsArguments& arguments) : arguments_(arguments), spec_(spec_of(arguments)) {
+  Join(const PairsArguments& arguments, const lab::Catalogue& catalogue)
+      : arguments_(arguments), contender_(contender_of(arguments, catalogue)) {
     const lab::Stopwatch watch;
     if (arguments.is_swept) {
       sweep();
     } else {
-      for (const std::string& path : arguments.files) sets_.push_back(read(arguments, path, rounding_));
+      for (std::size_t file = 0; file < arguments.files.size(); ++file)
+        sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
     }
     read_ms_ = watch.milliseconds();
   }
 
   bool is_between() const { return sets_.size() == 2; }
+
+  /// The ids to write instead of numbers, if that is asked for.
+  lab::PairIds ids() const {
+    if (arguments_.ids.empty()) return {};
+    return {&sets_.front().labels->ids, &sets_.back().labels->ids};
+  }
 
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
@@ -94,41 +101,62 @@ class Join {
                       absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
-    const lab::AnyBoxes& boxes = sets_[0].boxes;
-    const std::string rounded =
-        rounding_.rounded == 0
-            ? ""
-            : fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
-                          lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
-    return fmt::format("{} in {}D: {}, exact in {}{}; read in {}, joined by {} in {}", sets,
-                       lab::dimension(boxes), lab::counted(pairs, "pair", "pairs"),
-                       name(lab::precision(boxes)), rounded, lab::duration(read_ms_ / 1e3), spec_,
+    return fmt::format("{} in {}D: {}{}, {}; read in {}, joined by {} in {}", sets,
+                       lab::dimension(sets_[0].boxes), lab::counted(pairs, "pair", "pairs"),
+                       arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
+                       precision_text(), lab::duration(read_ms_ / 1e3), contender_.spec.text(),
                        lab::duration(join_ms_ / 1e3));
   }
 
  private:
   void sweep() {
     const std::vector<std::string>& files = arguments_.files;
-    const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], read_options(arguments_.input));
-    for (const std::string& warning : mesh.warnings()) say(warning);
+    const lab::ReadOptions options = read_options(arguments_.input);
+    const lab::SweptMesh mesh = lab::read_swept_mesh(files[0], files[1], options);
+    const bool is_float = options.precision.value_or(mesh.precision()) == lab::Precision::float32;
     const auto add = [&](const std::string& part) {
       lab::SweptElements swept = mesh.swept(read_part("", part));
-      sets_.push_back({part, std::move(swept.boxes)});
+      sets_.push_back(
+          {.name = part, .boxes = std::move(swept.boxes), .importer = std::string(mesh.importer())});
+      if (is_float) rounding_ += lab::round_to_float(sets_.back().boxes);
       if (arguments_.excludes_shared) elements_.push_back(std::move(swept.elements));
     };
     add(arguments_.left);
     if (arguments_.right != arguments_.left) add(arguments_.right);
   }
 
+  /// What the pairs are exact in, or what was rounded before they were found.
+  std::string precision_text() const {
+    const std::string_view precision = name(lab::precision(sets_[0].boxes));
+    const auto imported =
+        std::ranges::find_if(sets_, [](const lab::FrameOfFile& set) { return !set.importer.empty(); });
+    if (imported == sets_.end() && rounding_.rounded == 0) return fmt::format("exact in {}", precision);
+    std::string text = fmt::format("in {}", precision);
+    if (rounding_.rounded > 0)
+      text += fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
+                          lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
+    if (imported != sets_.end())
+      text += fmt::format(", of coordinates that {} reads as floats", imported->importer);
+    return text;
+  }
+
   void search(PairSink& pairs) {
+    if (!arguments_.within.empty()) {
+      const double distance = read_distance(arguments_.within);
+      if (is_between())
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, contender_, pairs);
+      else
+        lab::join_within(sets_[0].boxes, distance, contender_, pairs);
+      return;
+    }
     if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, spec_, pairs);
+      lab::join(sets_[0].boxes, sets_[1].boxes, contender_, pairs);
     else
-      lab::join(sets_[0].boxes, spec_, pairs);
+      lab::join(sets_[0].boxes, contender_, pairs);
   }
 
   const PairsArguments& arguments_;
-  std::string spec_;
+  lab::Contender contender_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
   lab::Rounding rounding_;
@@ -136,11 +164,11 @@ class Join {
   double join_ms_ = 0;
 };
 
-Exit run(const PairsArguments& arguments, const CLI::App& verb) {
+Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
-  check(arguments);
-  Join join(arguments);
+  check(arguments, catalogue);
+  Join join(arguments, catalogue);
   if (arguments.counts) {
     PairCounter counter;
     join.find(counter);
@@ -158,7 +186,8 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb) {
   }
   std::uint64_t count = sorted.size();
   lab::write_file(arguments.output, [&](std::ostream& stream) {
-    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between());
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), join.is_between(),
+                       join.ids());
     if (streams) {
       PairFunction found([&](std::span<const Pair> pairs) {
         count += pairs.size();
@@ -176,14 +205,26 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb) {
 
 }  // namespace
 
-Verb add_pairs(CLI::App& program) {
+Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<PairsArguments>();
   CLI::App* const verb = program.add_subcommand(
       "pairs",
       "Finds the pairs of overlapping boxes of a file, or those between the boxes of two files, exactly in "
-      "the precision of the input. Boxes are counted from 0.");
+      "the precision of the input; where coordinates had to be rounded, it says so. Boxes are counted from "
+      "0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
   add_input_options(*verb, arguments->input);
+  verb->add_option(
+          "--ids", arguments->ids,
+          "Write the boxes' ids instead of their numbers: a table's column, or a map's property (id is "
+          "a feature's own); given twice, for the one file and the other")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--within", arguments->within,
+          "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
+          "a few past corners")
+      ->type_name("DISTANCE");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
       ->capture_default_str();
@@ -213,7 +254,7 @@ Verb add_pairs(CLI::App& program) {
   add_examples(*verb, {{"pairs boxes.csv -o pairs.csv", "which boxes of a file overlap"},
                        {"pairs buildings.geojson roads.csv --count",
                         "how many boxes of one file overlap one of the other"}});
-  return [arguments, verb] { return run(*arguments, *verb); };
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

@@ -2,6 +2,7 @@
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "lab/catalogue.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
+#include "lab/readers/csv_text.hpp"
 
 namespace broadside::cli {
 
@@ -35,50 +37,73 @@ void check_swept(const PairsArguments& arguments) {
                                lab::counted(arguments.files.size(), "file", "files")));
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
-  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || !input.precision.empty() ||
-      input.dimension != 0 || !arguments.frame.empty())
+  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || input.dimension != 0 || !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
     throw Unusable(
-        "--boxes, --layer, --columns, --precision, --dimension or --frame with --swept; expected none of "
-        "them");
+        "--boxes, --layer, --columns, --dimension, --frame, --ids or --skip-invalid with --swept; expected none "
+        "of them");
+}
+
+void check_ids(const PairsArguments& arguments) {
+  if (arguments.ids.empty()) return;
+  if (std::ranges::any_of(arguments.ids, &std::string::empty))
+    throw Unusable("--ids is ''; expected a column or a property");
+  if (arguments.ids.size() > arguments.files.size())
+    throw Unusable(fmt::format("--ids {} times with {}; expected it once, or once a file",
+                               arguments.ids.size(), lab::counted(arguments.files.size(), "file", "files")));
+  if (arguments.counts)
+    throw Unusable("--ids with --count, which writes no pairs; expected one or the other");
+  if (lab::pair_format_of(arguments.output, arguments.to) == lab::PairFormat::npy)
+    throw Unusable(
+        fmt::format("--ids with an array of pairs, '{}', which holds numbers and no ids; expected CSV",
+                    arguments.output));
 }
 
 }  // namespace
 
-std::string spec_of(const PairsArguments& arguments) {
-  const lab::Catalogue catalogue;
-  std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
+double read_distance(const std::string& text) {
+  double distance = 0;
+  if (!lab::readers::parse_number(text, distance) || !std::isfinite(distance) || distance < 0)
+    throw Unusable(fmt::format("--within is '{}'; expected a distance: a number of 0 or more", text));
+  return distance;
+}
+
+lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
+  const std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
   if (selected.size() != 1)
     throw Unusable(fmt::format("--algorithm is '{}', which is {} algorithms; expected one",
                                arguments.algorithm, selected.size()));
   const std::size_t threads = read_threads(arguments.threads);
-  if (threads == 1) return selected[0].spec.text();
-  std::string spec = lab::with_threads(selected, std::span(&threads, 1))[0].spec.text();
+  if (threads == 1) return selected[0];
+  lab::Contender threaded = lab::with_threads(selected, std::span(&threads, 1))[0];
+  const std::string spec = threaded.spec.text();
   if (spec == selected[0].spec.text())
     throw Unusable(
         fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
                     "does not say how many",
                     threads, spec));
-  return spec;
+  return threaded;
 }
 
-void check(const PairsArguments& arguments) {
+void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (arguments.files.size() > 2)
     throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
                                arguments.files.size()));
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   check_swept(arguments);
+  if (!arguments.within.empty()) read_distance(arguments.within);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
-  spec_of(arguments);
+  contender_of(arguments, catalogue);
+  check_ids(arguments);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())
       throw Unusable("-o or --to with --count, which writes no pairs; expected one or the other");
     return;
   }
-  lab::pair_format_of(arguments.output, arguments.to);
   check_writable("-o", arguments.output);
+  lab::pair_format_of(arguments.output, arguments.to);
   for (const std::string& file : arguments.files) check_is_other_file("-o", arguments.output, file);
 }
 

@@ -7,6 +7,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "cli/input_options.hpp"
+#include "lab/catalogue.hpp"
 #include "lab/readers/swept_mesh.hpp"
 
 namespace broadside::cli {
@@ -14,6 +15,8 @@ namespace broadside::cli {
 struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
+  std::vector<std::string> ids;  // of both files, or of each
+  std::string within;
   std::string algorithm{default_algorithm};
   std::string threads = "1";
   std::string frame;
@@ -30,10 +33,13 @@ struct PairsArguments {
 /// The part of a mesh that `text` is. Throws Unusable, naming `option`, if it is none.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
 
-/// The algorithm's spec with its number of threads. Throws Unusable if it is not one, or cannot use several.
-std::string spec_of(const PairsArguments& arguments);
+/// The distance that --within gives. Throws Unusable if it is none.
+double read_distance(const std::string& text);
+
+/// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.
+lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 /// Throws Unusable if the arguments contradict each other, as far as that is known before a file is read.
-void check(const PairsArguments& arguments);
+void check(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 }  // namespace broadside::cli

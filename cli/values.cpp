@@ -13,6 +13,7 @@
 #include "broadside/executor.hpp"
 
 #include "cli/unusable.hpp"
+#include "lab/readers/input.hpp"
 
 namespace broadside::cli {
 
@@ -82,6 +83,11 @@ std::string is_seed(const std::string& text) {
 
 void check_writable(const std::string& option, const std::string& path) {
   if (path == "-") return;  // standard output
+  if (const std::string extension = lab::compression_extension_of(path); !extension.empty())
+    throw Unusable(fmt::format(
+        "{} is '{}', but nothing is compressed as it is written; expected a name without '{}', to be "
+        "compressed afterwards",
+        option, path, extension));
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
   if (path.empty() || path.back() == '/' || std::filesystem::is_directory(path, ignored))

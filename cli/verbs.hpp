@@ -7,6 +7,8 @@
 
 #include <CLI/App.hpp>
 
+#include "lab/catalogue.hpp"
+
 namespace broadside::cli {
 
 /// The program's exit status. Success is 0, Ctrl-C 130 and a closed pipe 141, as shells have it.
@@ -16,16 +18,18 @@ enum class Exit { fine = 0, failed = 1, unusable = 2, interrupted = 130, closed_
 /// where arguments or input cannot be used.
 using Verb = std::function<Exit()>;
 
-/// `arguments` are the program's, itself first, for what reports say of it; they outlive the verb.
-Verb add_advise(CLI::App& program, std::span<const std::string> arguments);
-Verb add_compare(CLI::App& program, std::span<const std::string> arguments);
-Verb add_experiment(CLI::App& program, std::span<const std::string> arguments);
+/// `catalogue` holds the algorithms that can be named. `arguments` are the program's, itself first, which
+/// reports quote. Both outlive the verb.
+Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
+Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
+Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
+                    std::span<const std::string> arguments);
+Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue);
+Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue);
+Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue);
+Verb add_list(CLI::App& program, const lab::Catalogue& catalogue);
 Verb add_scene(CLI::App& program);
-Verb add_pairs(CLI::App& program);
 Verb add_info(CLI::App& program);
-Verb add_verify(CLI::App& program);
 Verb add_convert(CLI::App& program);
-Verb add_draw(CLI::App& program);
-Verb add_list(CLI::App& program);
 
 }  // namespace broadside::cli

@@ -26,7 +26,7 @@ struct VerifyArguments {
   std::string counterexample;
 };
 
-Exit run(const VerifyArguments& arguments, const CLI::App& verb) {
+Exit run(const VerifyArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   lab::VerifyOptions options = arguments.options;
   if (!(options.budget_seconds > 0))
@@ -43,7 +43,6 @@ Exit run(const VerifyArguments& arguments, const CLI::App& verb) {
   ProgressLine progress;
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  const lab::Catalogue catalogue;
   catalogue.select(options.algorithms);  // refused before the file is read
   lab::BoxFile file = open_boxes(verb, arguments.boxes);
   on_signal(OnSignal::note_then_end);
@@ -51,7 +50,7 @@ Exit run(const VerifyArguments& arguments, const CLI::App& verb) {
     const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
     progress.clear();
     if (!verification.warning.empty()) say(verification.warning);
-    print(lab::text_of(verification));
+    print(lab::text_of(verification, program_name()));
     return verification.all_verified() ? Exit::fine : Exit::failed;
   } catch (const lab::Stopped&) {
     throw Interruption();
@@ -60,7 +59,7 @@ Exit run(const VerifyArguments& arguments, const CLI::App& verb) {
 
 }  // namespace
 
-Verb add_verify(CLI::App& program) {
+Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* const verb = program.add_subcommand(
       "verify",
@@ -81,7 +80,7 @@ Verb add_verify(CLI::App& program) {
   add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the pairs there are?"},
                        {"verify recording.btrace --algorithms auto,grid:cell=2.5",
                         "two of them, in every frame of a recording"}});
-  return [arguments, verb] { return run(*arguments, *verb); };
+  return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 
 }  // namespace broadside::cli

@@ -1,4 +1,5 @@
-# Installs the library: headers, archive or shared object, and the CMake package that find_package(Broadside) reads.
+# Installs headers, library, CMake package and pkg-config file, so that find_package(Broadside) and `pkg-config broadside`
+# find the library; and the program, where it is built, with the component `program`, which holds its verbs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -9,19 +10,66 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
-# A static library needs Highway where it is linked, and oneTBB if it has threads. Below 1.0 a minor version may break
-# what the one before promised.
-set(find_threads "")
+# A static library needs Highway where it is linked, and oneTBB if it has threads.
+set(library_packages hwy)
+set(pkg_config_packages libhwy)
 if(BROADSIDE_HAS_THREADS)
-  set(find_threads "find_dependency(TBB)\n")
+  list(APPEND library_packages TBB)
+  list(APPEND pkg_config_packages tbb)
 endif()
-file(WRITE ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake
-     "include(CMakeFindDependencyMacro)\n"
-     "find_dependency(hwy)\n"
-     "${find_threads}"
-     "include(\${CMAKE_CURRENT_LIST_DIR}/BroadsideTargets.cmake)\n")
+
+set(program_packages "")
+if(BROADSIDE_BUILD_PROGRAM)
+  set_target_properties(broadside_lab PROPERTIES EXPORT_NAME lab)
+  set_target_properties(broadside_cli PROPERTIES EXPORT_NAME program)
+  install(TARGETS broadside_lab broadside_cli EXPORT BroadsideProgramTargets
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
+
+  # A shared library is found beside the program, wherever the two are.
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
+             OUTPUT_VARIABLE library_folder)
+  if(BUILD_SHARED_LIBS)
+    set_target_properties(broadside_program PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
+  endif()
+  install(TARGETS broadside_program)
+
+  # Whoever links the lab links what it links. A target is called after its package: fmt::fmt, embree. What stands there
+  # as a file needs no package, and :: and @ bracket what another folder has added.
+  get_target_property(linked broadside_lab LINK_LIBRARIES)
+  foreach(target IN LISTS linked)
+    if(target MATCHES "^([A-Za-z0-9_]+)(::[A-Za-z0-9_]+)?$" AND NOT CMAKE_MATCH_1 STREQUAL "Broadside")
+      list(APPEND program_packages ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES program_packages)
+endif()
+
+configure_file(${PROJECT_SOURCE_DIR}/cmake/BroadsideConfig.cmake.in ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake @ONLY)
+# Below 1.0 a minor version may break what the one before promised.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake ${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
         DESTINATION ${package_folder})
+
+# The prefix is known only when it is installed, so it is told relative to the file.
+if(IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
+  set(pkg_config_prefix ${CMAKE_INSTALL_PREFIX})
+else()
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+             OUTPUT_VARIABLE prefix_folder)
+  set(pkg_config_prefix "\${pcfiledir}/${prefix_folder}")
+endif()
+cmake_path(APPEND pkg_config_libdir "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
+cmake_path(APPEND pkg_config_includedir "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})
+string(JOIN " " pkg_config_packages ${pkg_config_packages})
+if(BUILD_SHARED_LIBS)
+  set(pkg_config_requires Requires.private)
+else()
+  set(pkg_config_requires Requires)
+endif()
+configure_file(${PROJECT_SOURCE_DIR}/cmake/broadside.pc.in ${PROJECT_BINARY_DIR}/broadside.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/broadside.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -38,6 +38,9 @@ class CountingFrames final : public FrameReader<D, Real> {
   }
 
   std::string warning() const override { return frames_->warning(); }
+  std::string_view importer() const override { return frames_->importer(); }
+
+  std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
  private:
   void count(const std::vector<Box<D, Real>>& boxes, std::size_t size) {
@@ -56,10 +59,12 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
                   std::optional<Precision> precision) {
   Converted converted;
   converted.dimension = dimension_of(from.frames);
+  converted.importer = importer_of(from.frames);
   converted.precision =
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
   AnyFrameReader counted = std::visit(
       [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) -> AnyFrameReader {
+        if (const auto labels = frames->labels()) converted.left_out = labels->unread;
         return std::make_unique<CountingFrames<D, Real>>(std::move(frames), converted);
       },
       from.frames);
@@ -68,10 +73,24 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
 }
 
 std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format) {
-  return fmt::format("{}: {} of {} in {}D, as {}s, in format {}",
+  return fmt::format("{}: {} of {} in {}D, {}, in format {}{}",
                      path == "-" ? "standard output" : path.string(),
                      counted(converted.frames, "frame", "frames"), counted(converted.boxes, "box", "boxes"),
-                     converted.dimension, name(converted.precision), format.name);
+                     converted.dimension, precision_text(converted.precision, converted.importer),
+                     format.name, converted.rounding.rounded > 0 ? "; " + converted.rounding.text() : "");
+}
+
+std::string text_of_left_out(const Converted& converted, const Format& format) {
+  constexpr std::size_t most = 20;
+  const std::vector<std::string>& names = converted.left_out;
+  if (names.empty()) return {};
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
+  return fmt::format("left out {} {}: format {} holds bounds{}",
+                     names.size() == 1 ? "the column" : "the columns", list, format.name,
+                     format.keeps_ids ? " and ids (--ids)" : " alone");
 }
 
 }  // namespace broadside::lab

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lab/readers/format.hpp"
 
@@ -15,9 +16,11 @@ struct Converted {
   int dimension = 2;
   Precision precision = Precision::float32;
   std::uint64_t frames = 0;
-  std::size_t boxes = 0;  ///< the most places there are in a frame
-  Rounding rounding{};    ///< of all boxes written as floats, in all frames
-  std::string warning{};  ///< what had to be left out of a damaged input; empty otherwise
+  std::size_t boxes = 0;                ///< the most places there are in a frame
+  Rounding rounding{};                  ///< of all boxes written as floats, in all frames
+  std::vector<std::string> left_out{};  ///< the names of a table's columns that were not written
+  std::string warning{};                ///< what had to be left out of a damaged input; empty otherwise
+  std::string importer{};               ///< the library that may have rounded its numbers to float; empty if none did
 };
 
 /// Writes what is left of `from` to `path`, as write_frames does: in the precision asked for, or that of
@@ -27,7 +30,10 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
                   std::optional<Precision> precision);
 
 /// What was written to `path`, as a line of text: "rain.csv: 101 frames of 500 boxes in 2D, as floats, in
-/// format csv".
+/// format csv; 3 of 4,000 coordinates were rounded to float".
 std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format);
+
+/// Which columns of a table were not written, as a line of text; empty where all were.
+std::string text_of_left_out(const Converted& converted, const Format& format);
 
 }  // namespace broadside::lab

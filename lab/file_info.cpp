@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -183,7 +183,8 @@ FileInfo file_info(BoxFile file) {
   FileInfo info{.file = file.name,
                 .format = file.format == nullptr ? "" : file.format->name,
                 .dimension = dimension_of(file.frames),
-                .precision = precision_of_frames(file.frames)};
+                .precision = precision_of_frames(file.frames),
+                .importer = std::string(importer_of(file.frames))};
   std::visit([&](const auto& frames) { collect(*frames, info); }, file.frames);
   return info;
 }

@@ -34,6 +34,7 @@ struct FileInfo {
   std::string format;  ///< empty for a scene
   int dimension = 2;
   Precision precision = Precision::float32;
+  std::string importer{};  ///< the library that may have rounded its numbers to float; empty if none did
   std::uint64_t frames = 0;
 
   std::uint64_t present = 0;  ///< boxes in the fullest frame

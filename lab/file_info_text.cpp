@@ -129,9 +129,9 @@ std::string reading_text(const FileInfo& info) {
 std::string text_of(const FileInfo& info) {
   const std::string absent = info.absent > 0 ? fmt::format(", {} of them absent,", grouped(info.absent)) : "";
   std::string text =
-      fmt::format("{}: {}, {}{} in {}D, as {}s, {}\n", info.file, info.format.empty() ? "scene" : info.format,
+      fmt::format("{}: {}, {}{} in {}D, {}, {}\n", info.file, info.format.empty() ? "scene" : info.format,
                   counted(info.present + info.absent, "box", "boxes"), absent, info.dimension,
-                  name(info.precision), counted(info.frames, "frame", "frames"));
+                  precision_text(info.precision, info.importer), counted(info.frames, "frame", "frames"));
   text += motion_text(info);
   text += coordinates_text(info);
   text += kinds_text(info);

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "broadside/find_pairs.hpp"
+#include "broadside/algorithm.hpp"
 
 #include "lab/numbers.hpp"
 
@@ -28,7 +28,8 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
     throw FileError(fmt::format("{}: --frame is {}; expected 0{}, as the file has {}", name, frame,
                                 at == 0 ? "" : fmt::format(" to {}", at),
                                 counted(at + 1, "frame", "frames")));
-  return {std::move(name), std::move(boxes), has_more || frame > 0, frames.warning()};
+  return {std::move(name),  std::move(boxes), has_more || frame > 0,
+          frames.labels(), frames.warning(), std::string(frames.importer())};
 }
 
 template <typename Real, int D, typename OldReal>
@@ -96,13 +97,20 @@ void match(FrameOfFile& left, FrameOfFile& right) {
   narrow = widened(narrow);
 }
 
-void join(const AnyBoxes& boxes, std::string_view spec, PairSink& pairs) {
-  std::visit([&](const auto& list) { find_pairs(list, pairs, spec); }, boxes);
+void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs) {
+  std::visit(
+      [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
+        make_finder<D, Real>(*contender.algorithm, contender.spec)->find(list, pairs);
+      },
+      boxes);
 }
 
-void join(const AnyBoxes& left, const AnyBoxes& right, std::string_view spec, PairSink& pairs) {
+void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs) {
   std::visit(
-      [&](const auto& list) { find_pairs(list, std::get<std::decay_t<decltype(list)>>(right), pairs, spec); },
+      [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
+        const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+        finder->find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs);
+      },
       left);
 }
 

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "lab/catalogue.hpp"
 #include "lab/readers/format.hpp"
 
 namespace broadside::lab {
@@ -27,8 +28,10 @@ Precision precision(const AnyBoxes& boxes) noexcept;
 struct FrameOfFile {
   std::string name;  ///< the file's
   AnyBoxes boxes;
-  bool is_moving = false;  ///< whether the file has other frames
-  std::string warning{};   ///< what had to be left out of a damaged file; empty otherwise
+  bool is_moving = false;                     ///< whether the file has other frames
+  std::shared_ptr<const BoxLabels> labels{};  ///< null where the file has none
+  std::string warning{};                      ///< what had to be left out of a damaged file; empty otherwise
+  std::string importer{};  ///< the library that may have rounded its numbers to float; empty if none did
 };
 
 /// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,
@@ -42,11 +45,11 @@ Rounding round_to_float(AnyBoxes& boxes);
 /// one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);
 
-/// Writes every pair of overlapping boxes once, in the order in which the algorithm of `spec` finds them.
-/// Throws as find_pairs does.
-void join(const AnyBoxes& boxes, std::string_view spec, PairSink& pairs);
+/// Writes every pair of overlapping boxes once, in the order in which the contender finds them. Throws as
+/// PairFinder::find() does, and InvalidSpec if the contender cannot search boxes of this dimension.
+void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs);
 
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.
-void join(const AnyBoxes& left, const AnyBoxes& right, std::string_view spec, PairSink& pairs);
+void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs);
 
 }  // namespace broadside::lab

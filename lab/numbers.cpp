@@ -33,6 +33,13 @@ std::string rounded(double number) {
   return fmt::format("{:.{}f}", number, std::clamp(2 - power, 0, 6));
 }
 
+std::string ratio_text(double ratio) {
+  if (!std::isfinite(ratio) || ratio <= 0) return whole(ratio);
+  const std::string scientific = fmt::format("{:.1e}", ratio);
+  const int power = std::stoi(scientific.substr(scientific.find('e') + 1));
+  return power > 0 ? whole(std::stod(scientific)) : fmt::format("{:.{}f}", ratio, 1 - power);
+}
+
 std::string duration(double seconds) {
   if (seconds >= 0.9995) return rounded(seconds) + " s";
   if (seconds >= 0.9995e-3) return rounded(seconds * 1e3) + " ms";

@@ -21,6 +21,9 @@ std::string counted(std::uint64_t number, std::string_view one, std::string_view
 /// About three significant digits and no exponent: "0.0712", "4.21", "41.2", "41,200".
 std::string rounded(double number);
 
+/// A ratio to two significant digits: "0.83", "1.0", "19", "1,300".
+std::string ratio_text(double ratio);
+
 /// A duration with the unit that suits it: "71.2 us", "4.21 ms", "41.2 s".
 std::string duration(double seconds);
 

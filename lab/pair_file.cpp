@@ -6,13 +6,19 @@
 
 #include <fmt/format.h>
 
+#include "lab/readers/csv_text.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/readers/write_file.hpp"
 
 namespace broadside::lab {
 namespace {
 
-void append(std::string& text, BoxId id, char end) {
+void append(std::string& text, BoxId id, const std::vector<std::string>* ids, char end) {
+  if (ids != nullptr) {
+    readers::append_csv_field(text, (*ids)[index(id)]);
+    text += end;
+    return;
+  }
   std::array<char, 11> digits;
   char* const after = std::to_chars(digits.data(), digits.data() + 10, index(id)).ptr;
   *after = end;
@@ -33,7 +39,8 @@ PairFormat pair_format_of(const std::filesystem::path& path, std::string_view na
                               path.string(), extension));
 }
 
-PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between) : stream_(stream) {
+PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids)
+    : stream_(stream), ids_(ids) {
   if (format == PairFormat::npy)
     array_.emplace(stream, 2);
   else
@@ -47,8 +54,8 @@ void PairFile::write(std::span<const Pair> pairs) {
       array_->write(std::array{index(pair.first), index(pair.second)});
       continue;
     }
-    append(text_, pair.first, ',');
-    append(text_, pair.second, '\n');
+    append(text_, pair.first, ids_.left, ',');
+    append(text_, pair.second, ids_.right, '\n');
     if (text_.size() >= bytes_a_piece) write_text();
   }
 }

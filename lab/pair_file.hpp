@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "broadside/pair.hpp"
 
@@ -21,13 +22,21 @@ enum class PairFormat : std::uint8_t { csv, npy };
 /// for what is_written_directly() and has none. Throws FileError.
 PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name = {});
 
+/// The users' ids of the boxes of a pair's left and right side, by the boxes' numbers; null: the numbers
+/// themselves are written.
+struct PairIds {
+  const std::vector<std::string>* left = nullptr;
+  const std::vector<std::string>* right = nullptr;
+};
+
 /// Writes pairs to a stream, as they come, and keeps none; but for NumPy's format where the stream cannot be
 /// moved back to the array's header, as in a pipe.
 class PairFile {
  public:
   /// Begins the file. The stream outlives this object; what is wrong with it, the caller sees. `is_between`
-  /// says that pairs are of a left and a right set, which the columns are then called.
-  PairFile(std::ostream& stream, PairFormat format, bool is_between);
+  /// says that pairs are of a left and a right set, which the columns are then called. Ids, which outlive
+  /// this object, are for CSV alone.
+  PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {});
 
   void write(std::span<const Pair> pairs);
 
@@ -38,6 +47,7 @@ class PairFile {
   void write_text();
 
   std::ostream& stream_;
+  PairIds ids_;
   std::string text_;  // CSV that is not yet written
   std::optional<NpyArrayWriter<std::uint32_t>> array_;
 };

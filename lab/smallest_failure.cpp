@@ -10,7 +10,7 @@
 
 #include "broadside/minimise.hpp"
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/verify.hpp"
 

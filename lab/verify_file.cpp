@@ -74,7 +74,7 @@ void verify(Verification& verification, FrameReader<D, Real>& frames, const Cata
     verification.counterexample = write<D, Real>(*smallest, contender, catalogue, options.counterexample);
 }
 
-std::string text_of(const Counterexample& counterexample) {
+std::string text_of(const Counterexample& counterexample, std::string_view program) {
   std::string text =
       fmt::format("{}: {}", counterexample.path.string(), counted(counterexample.boxes, "box", "boxes"));
   if (counterexample.frames > 1) text += fmt::format(", {} frames", counterexample.frames);
@@ -82,8 +82,8 @@ std::string text_of(const Counterexample& counterexample) {
   if (counterexample.fault.empty())
     text += "  but not once they are read back from the file: it fails on something no file holds\n";
   else
-    text +=
-        fmt::format("  {}\n  to see it again: broadside {}\n", counterexample.fault, counterexample.command);
+    text += fmt::format("  {}\n  to see it again: {} {}\n", counterexample.fault, program,
+                        counterexample.command);
   return text;
 }
 
@@ -98,15 +98,17 @@ Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyO
   catalogue.select(options.algorithms);  // what is wrong there is known before anything is read
   Verification verification{.file = file.name,
                             .dimension = dimension_of(file.frames),
-                            .precision = precision_of_frames(file.frames)};
+                            .precision = precision_of_frames(file.frames),
+                            .importer = std::string(importer_of(file.frames))};
   std::visit([&](const auto& frames) { verify(verification, *frames, catalogue, options); }, file.frames);
   return verification;
 }
 
-std::string text_of(const Verification& verification) {
-  std::string text = fmt::format(
-      "{}: {} in {}D, as {}s, {}", verification.file, counted(verification.boxes, "box", "boxes"),
-      verification.dimension, name(verification.precision), counted(verification.frames, "frame", "frames"));
+std::string text_of(const Verification& verification, std::string_view program) {
+  std::string text =
+      fmt::format("{}: {} in {}D, {}, {}", verification.file, counted(verification.boxes, "box", "boxes"),
+                  verification.dimension, precision_text(verification.precision, verification.importer),
+                  counted(verification.frames, "frame", "frames"));
   if (verification.pairs)
     text += fmt::format(", {}{}", counted(*verification.pairs, "pair", "pairs"),
                         verification.frames > 1 ? " in the last" : "");
@@ -134,7 +136,7 @@ std::string text_of(const Verification& verification) {
   if (std::ranges::all_of(verification.verdicts, is_skipped))
     text += "\nnothing was verified: every algorithm was skipped\n";
   if (!faults.empty()) text += '\n' + faults;
-  if (verification.counterexample) text += '\n' + text_of(*verification.counterexample);
+  if (verification.counterexample) text += '\n' + text_of(*verification.counterexample, program);
   return text;
 }
 

@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lab/catalogue.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/readers/format.hpp"
 
@@ -44,7 +45,7 @@ struct Counterexample {
   std::size_t boxes;
   std::size_t frames;
   std::string fault;    ///< what is wrong there; empty if the file, read again, shows nothing
-  std::string command;  ///< the arguments of `broadside` that show it again
+  std::string command;  ///< the arguments of the program that show it again
 };
 
 /// All that came of a file.
@@ -52,6 +53,7 @@ struct Verification {
   std::string file;
   int dimension;
   Precision precision;
+  std::string importer;   ///< the library that may have rounded its numbers to float; empty if none did
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
   std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
@@ -74,7 +76,8 @@ struct Verification {
 /// so. Memory: the file's boxes and the pairs of two frames.
 Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options);
 
-/// The verification as lines of text.
-std::string text_of(const Verification& verification);
+/// The verification as lines of text. `program` is what the command that shows a counterexample again begins
+/// with.
+std::string text_of(const Verification& verification, std::string_view program = "broadside");
 
 }  // namespace broadside::lab

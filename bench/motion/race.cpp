@@ -12,7 +12,7 @@
 
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/estimate.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/reference.hpp"

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// What is done about an invalid box: one with a NaN, or with min > max without being the absent box. It is

@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.

@@ -6,6 +6,7 @@
 #include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 #include "broadside/broad_phase.hpp"
+#include "broadside/cpp_version.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/filter.hpp"

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// A box that no algorithm may see: a NaN, or min > max without being absent. Thrown before anything has

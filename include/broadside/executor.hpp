@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// Runs tasks on threads. An engine derives from it to have searches run by its own job system.

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
+
+#include "broadside/cpp_version.hpp"
 
 namespace broadside {
 
@@ -31,4 +35,32 @@ struct Events {
   std::span<const HandlePair> ended;
 };
 
+namespace detail {
+/// Every bit of the handle changes about half the bits of the result: the finaliser of SplitMix64 (Steele,
+/// Lea and Flood 2014). Without it the low bits would be the slot's alone, whatever the generation. `seed`
+/// sets what is hashed before the handle.
+constexpr std::uint64_t hash(const Handle& handle, std::uint64_t seed = 0) noexcept {
+  std::uint64_t bits = seed ^ (std::uint64_t{handle.generation} << 32 | handle.slot);
+  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
+  bits = (bits ^ bits >> 27) * 0x94d049bb133111eb;
+  return bits ^ bits >> 31;
+}
+}  // namespace detail
+
 }  // namespace broadside
+
+/// Handles and pairs of them as keys of std::unordered_map and std::unordered_set.
+template <>
+struct std::hash<broadside::Handle> {
+  std::size_t operator()(const broadside::Handle& handle) const noexcept {
+    return static_cast<std::size_t>(broadside::detail::hash(handle));
+  }
+};
+
+template <>
+struct std::hash<broadside::HandlePair> {
+  std::size_t operator()(const broadside::HandlePair& pair) const noexcept {
+    using broadside::detail::hash;
+    return static_cast<std::size_t>(hash(pair.second, hash(pair.first)));
+  }
+};

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or

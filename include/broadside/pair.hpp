@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// A box's place in the array that was handed in, counted from 0.

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.

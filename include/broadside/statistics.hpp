@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// What one search or one update did, in the paper's units of cost; 0 where an algorithm does not count it.

@@ -10,19 +10,19 @@
 #include "lab/advise/variants.hpp"
 #include "lab/measure/find_case.hpp"
 #include "lab/measure/pair_count.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/track_case.hpp"
-#include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
 namespace {
 
-/// Who takes more than this many times the best one's time is not worth another look.
+/// An algorithm that takes more than this many times the best one's time is not measured again.
 constexpr double margin_of_finalists = 1.6;
 constexpr std::size_t most_finalists = 4;
 
-/// So many of the best have their tunables tried.
+/// Of how many of the best other settings are tried.
 constexpr std::size_t most_with_variants = 2;
 
 /// The first of `frames` frames in which about as many boxes change as in the mean of the history: those
@@ -171,9 +171,12 @@ class Adviser {
     return {.budget_seconds = budget / 12,
             .history_seconds = budget / 3,
             .share_seconds = 0.3 * budget / static_cast<double>(contenders),
-            .least_samples = 6,
-            .most_samples = 64,
-            .single_sample_seconds = budget / 20};
+            .least_rounds = advice_.mode == Mode::find ? std::size_t{6} : std::size_t{2},
+            .most_rounds = 64,
+            .slow_seconds = budget / 20,
+            .slow_history_seconds = budget / 20,
+            .slow_rounds = 1,
+            .case_seconds = 0.4 * budget};
   }
 
   Effort final_effort(std::size_t contenders) const {
@@ -181,15 +184,18 @@ class Adviser {
     return {.budget_seconds = budget,
             .history_seconds = budget,
             .share_seconds = 0.6 * budget / static_cast<double>(contenders),
-            .least_samples = 9,
-            .most_samples = 400,
-            .single_sample_seconds = budget / 8};
+            .least_rounds = advice_.mode == Mode::find ? std::size_t{9} : std::size_t{3},
+            .most_rounds = 400,
+            .slow_seconds = budget / 8,
+            .slow_history_seconds = budget / 8,
+            .slow_rounds = 1,
+            .case_seconds = std::max(budget - watch_.milliseconds() / 1e3, 0.0)};
   }
 
   std::vector<Measurement> measure(std::span<const Contender> contenders, const Effort& effort) {
-    const Contest contest{contenders, catalogue_.algorithms(), effort, options_.watch};
-    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, contest);
-    CaseResult result = measure_find<D, Real>(case_, images_, contest);
+    const Benchmark benchmark{contenders, catalogue_.algorithms(), effort, options_.watch};
+    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, benchmark);
+    CaseResult result = measure_find<D, Real>(case_, images_, benchmark);
     if (!result.floor_ms.empty()) advice_.floor_ms = median(result.floor_ms);
     return std::move(result.measurements);
   }
@@ -269,6 +275,7 @@ class Adviser {
   std::vector<History<D, Real>> images_;
   Case case_;
   Advice advice_;
+  Stopwatch watch_;  // of all that the budget is for
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "lab/advise/choice.hpp"
 #include "lab/advise/signals.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -20,7 +20,7 @@ struct AdviseOptions {
   std::string algorithms = "own";          ///< as Catalogue::select reads it
   std::vector<std::size_t> threads = {1};  ///< that may be used besides one; plain algorithms have one, and
                                            ///< the best are tried with more, which must pay to be advised
-  double budget_seconds = 6;               ///< about how long it may take, but for what checking takes
+  double budget_seconds = 6;               ///< about how long it may take, checks included
   Watch watch{};
 };
 
@@ -36,8 +36,9 @@ struct Ranked {
 /// What is advised and what that is based on. Without a choice there is nothing to advise: nothing was
 /// verified.
 struct Advice {
-  std::string input;    ///< the file's or scene's name
-  std::string warning;  ///< of a file that was read in part; empty otherwise
+  std::string input;           ///< the file's or scene's name
+  std::string warning;         ///< of a file that was read in part; empty otherwise
+  double processor_share = 1;  ///< ProcessorShare of measuring
   Signals signals{};
   Mode mode = Mode::find;
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...

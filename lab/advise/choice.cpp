@@ -6,8 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
-#include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -47,7 +48,7 @@ bool is_auto(const Rival& rival) {
 bool is_clearly_faster(const Rival& variant, const Rival& plain) {
   return variant.milliseconds * margin_of_variants <= plain.milliseconds &&
          plain.milliseconds - variant.milliseconds > indifferent_ms &&
-         part_of_rounds(variant.measurement->samples_ms, plain.measurement->samples_ms) >= rounds_of_variants;
+         part_of_rounds(*variant.measurement, *plain.measurement) >= rounds_of_variants;
 }
 
 }  // namespace
@@ -62,10 +63,12 @@ double undisturbed_mean(std::span<const double> samples, std::size_t inputs) {
   return std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
 }
 
-double part_of_rounds(std::span<const double> a, std::span<const double> b) {
-  const std::size_t rounds = std::min(a.size(), b.size());
+double part_of_rounds(const Measurement& a, const Measurement& b) {
+  const std::vector<double> of_a = round_times(a);
+  const std::vector<double> of_b = round_times(b);
+  const std::size_t rounds = std::min(of_a.size(), of_b.size());
   std::size_t longer = 0;
-  for (std::size_t i = 0; i < rounds; ++i) longer += static_cast<std::size_t>(b[i] > a[i]);
+  for (std::size_t i = 0; i < rounds; ++i) longer += static_cast<std::size_t>(of_b[i] > of_a[i]);
   return rounds == 0 ? 0 : static_cast<double>(longer) / static_cast<double>(rounds);
 }
 

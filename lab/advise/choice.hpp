@@ -56,9 +56,8 @@ double undisturbed(std::span<const double> samples, std::size_t inputs);
 /// be that of either.
 double undisturbed_mean(std::span<const double> samples, std::size_t inputs);
 
-/// In which part of the rounds `b` took longer than `a`. Samples are matched in their order, in which all
-/// take turns; where one has fewer, the first ones count. 0 where there are none.
-double part_of_rounds(std::span<const double> a, std::span<const double> b);
+/// In which part of the rounds that both took part in `b` took longer than `a`; 0 where there are none.
+double part_of_rounds(const Measurement& a, const Measurement& b);
 
 /// Chooses among those that were verified; empty if none of ours and the paper's was. Of equals the first is
 /// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that

@@ -8,9 +8,10 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/advise/advise.hpp"
+#include "lab/measure/ranking.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/report/machine_json.hpp"
-#include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -107,6 +108,8 @@ std::string json_of(const Advice& advice, std::span<const std::string> command) 
   add("target", instruction_set());
   add("input", advice.input);
   add("warning", or_null(advice.warning));
+  add("processor_share", advice.processor_share);
+  add("busy", !busy_hint(advice.processor_share).empty());
   add("signals", json_of(advice.signals));
   add("mode", advice.mode == Mode::find ? "find" : "track");
   add("first_frame", advice.first_frame);

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "lab/advise/advise.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -91,24 +91,39 @@ std::string hinders(const Ranked& slow, const Ranked& chosen, const Signals& sig
   const auto tests = tests_of(of, signals);
   const auto fewest = tests_of(best, signals);
   const bool has_more_tests = tests && fewest && *tests >= clearly * *fewest;
-  const bool has_less_tests = tests && fewest && *tests * clearly <= *fewest;
   if (has_more_tests && name == "brute_force" && !signals.motion)
     return fmt::format("it tests each box against all others, {} tests a box", rounded(*tests));
   if (has_more_tests && name == "sweep_and_prune") return sweep_text(*tests, signals);
   if (has_more_tests)
     return fmt::format("it makes {} tests a box where {} makes {}", rounded(*tests), best.algorithm,
                        rounded(*fewest));
-  if (!of.own_bytes || !best.own_bytes || *of.own_bytes == 0 ||
-      static_cast<double>(*of.own_bytes) < clearly * static_cast<double>(*best.own_bytes))
-    return "";
-  const std::string structures =
-      fmt::format("{} where {} keeps {}", bytes(*of.own_bytes), best.algorithm, bytes(*best.own_bytes));
-  return has_less_tests ? fmt::format("its {} tests a box save less than its structure costs: it keeps {}",
-                                      rounded(*tests), structures)
-                        : "it keeps " + structures;
+  return "";
 }
 
-/// "1.23 times".
+/// Why auto takes longer than what is advised, `name`.
+std::string what_auto_takes(const Measurement& chooser, const std::string& name, Mode mode) {
+  const std::string& what = chooser.explanation;
+  if (what.empty()) return "";
+  if (mode == Mode::track) return "in the last frame, " + what;
+  if (what.substr(0, what.find_first_of(",: ")) == name)
+    return fmt::format("it takes {} as well, once it has sampled the boxes", name);
+  return "it takes " + what;
+}
+
+/// The fastest of the settings made by hand that is faster than what is advised, by more than sentences
+/// count; null where there is none.
+const Ranked* faster_variant(const Advice& advice) {
+  const Ranked* fastest = nullptr;
+  for (const Ranked& ranked : advice.ranking) {
+    if (!ranked.is_variant || !is_timed(ranked.measurement) ||
+        ranked.milliseconds * as_fast > advice.milliseconds)
+      continue;
+    if (fastest == nullptr || ranked.milliseconds < fastest->milliseconds) fastest = &ranked;
+  }
+  return fastest;
+}
+
+/// "1.2 times".
 std::string times(double ratio) { return ratio_text(ratio) + " times"; }
 
 }  // namespace
@@ -128,28 +143,41 @@ std::vector<std::string> reasons_of(const Advice& advice) {
         default_algorithm)};
   switch (choice.why) {
     case Why::automatic: {
-      std::string text = choice.chosen == choice.fastest_plain
-                             ? fmt::format("{} is the fastest", chosen.algorithm)
-                             : fmt::format(
-                                   "{} takes {} the time of {}, the fastest, which is within what "
-                                   "repeated measurements differ by",
-                                   chosen.algorithm, times(time / least), fastest.algorithm);
+      std::string text =
+          choice.chosen == choice.fastest_plain
+              ? fmt::format("{} is the fastest that sets its own options", chosen.algorithm)
+              : fmt::format(
+                    "{} takes {} the time of {}, the fastest that sets its own options, which is "
+                    "within what repeated measurements differ by",
+                    chosen.algorithm, times(time / least), fastest.algorithm);
       text += ", and it chooses anew when the boxes change";
-      if (!chosen.explanation.empty()) text += fmt::format(". Here it takes {}", chosen.explanation);
+      if (!chosen.explanation.empty())
+        text += fmt::format(". {}: {}", advice.mode == Mode::find ? "For these boxes" : "In the last frame",
+                            chosen.explanation);
       reasons.push_back(text);
       break;
     }
     case Why::fastest:
-      reasons.push_back(
-          fmt::format("{} is the fastest: {}", chosen.algorithm, suits(name, chosen, advice.signals)));
+      reasons.push_back(fmt::format("{} is the fastest that sets its own options: {}", chosen.algorithm,
+                                    suits(name, chosen, advice.signals)));
       break;
     case Why::variant:
-      reasons.push_back(fmt::format(
-          "{} takes {:.0f} % less time than {}, the fastest that chooses by itself, and is the faster one in "
-          "{:.0f} % of the rounds; it is for boxes like these only",
-          chosen.algorithm, (1 - time / least) * 100, fastest.algorithm,
-          part_of_rounds(chosen.samples_ms, fastest.samples_ms) * 100));
+      reasons.push_back(
+          fmt::format("{} takes {:.0f} % less time than {}, the fastest that sets its own options, and is "
+                      "the faster one in "
+                      "{:.0f} % of the rounds; it is for boxes like these only",
+                      chosen.algorithm, (1 - time / least) * 100, fastest.algorithm,
+                      part_of_rounds(chosen, fastest) * 100));
       break;
+  }
+  if (const Ranked* const faster = faster_variant(advice)) {
+    reasons.push_back(
+        fmt::format("{} takes {} the time, but it is for boxes like these only, and was the faster one in "
+                    "{:.0f} % of the "
+                    "rounds, where {:.0f} % and {:.0f} % less time are asked for",
+                    faster->measurement.algorithm, times(faster->milliseconds / time),
+                    100 * part_of_rounds(faster->measurement, fastest), 100 * rounds_of_variants,
+                    100 * (1 - 1 / margin_of_variants)));
   }
   std::size_t others = 0;
   for (const Ranked& ranked : advice.ranking) {
@@ -158,9 +186,9 @@ std::vector<std::string> reasons_of(const Advice& advice) {
       continue;
     const double ratio = ranked.milliseconds / time;
     if (ratio <= as_fast || ++others > most_others) continue;
-    const bool says_why = !other.explanation.empty() && base_of(other.algorithm) == default_algorithm;
-    const std::string why = says_why ? "it takes " + other.explanation
-                                     : hinders(ranked, advice.ranking[choice.chosen], advice.signals);
+    const std::string why = base_of(other.algorithm) == default_algorithm
+                                ? what_auto_takes(other, name, advice.mode)
+                                : hinders(ranked, advice.ranking[choice.chosen], advice.signals);
     reasons.push_back(
         fmt::format("{} takes {} as long{}{}", other.algorithm, times(ratio), why.empty() ? "" : ": ", why));
   }
@@ -190,18 +218,16 @@ std::string break_even(const Advice& advice) {
   if (rebuild == nullptr || follow == nullptr || !(moving > 0)) return "";
   const double anew = rebuild->milliseconds;
   const double followed = follow->milliseconds;
-  const std::string both = fmt::format("following what moves takes {} a frame, finding all anew {}",
-                                       duration(followed / 1e3), duration(anew / 1e3));
-  if (followed >= anew)
-    return fmt::format(
-        "so much moves here ({:.3g} % of the boxes a frame) that following it does not pay: {}", moving * 100,
-        both);
+  const std::string both =
+      fmt::format("following what moves in every frame takes {} a frame, finding all anew in every frame {}",
+                  duration(followed / 1e3), duration(anew / 1e3));
   const double from = moving * anew / followed;
-  if (from >= 1) return fmt::format("following pays however many boxes move: {}", both);
+  if (followed < anew && from >= 1) return fmt::format("{}: following pays however many boxes move", both);
   return fmt::format(
-      "{}: from about {:.2g} % moving on, if each mover costs what it does here, finding anew "
-      "is the cheaper one; auto changes over by itself",
-      both, from * 100);
+      "{}: if each mover costs what it does here, finding anew is the cheaper way from about {:.2g} % moving "
+      "on "
+      "(here {:.3g} % in the mean); auto decides it frame by frame",
+      both, from * 100, moving * 100);
 }
 
 }  // namespace

@@ -3,29 +3,45 @@
 
 #include <fmt/format.h>
 
+#include "broadside/algorithm.hpp"
+
 namespace broadside::lab {
 
 std::string snippet(std::string_view spec, Mode mode, int dimension, Precision precision) {
   const std::string_view real = precision == Precision::float64 ? "Double" : "";
   const std::string box = fmt::format("broadside::{}Box{}", real, dimension);
+  const std::string name = Spec::parse(spec).name;
+  const bool is_ours = find_algorithm(name) != nullptr;
+  std::string text = "#include <broadside/broadside.hpp>\n\n";
+  if (!is_ours)
+    text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);
+  // What the library cannot look up by its name is made of its description.
+  const auto made = [&](std::string_view function) {
+    return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec::parse(\"{}\"))", function, dimension,
+                       precision == Precision::float64 ? ", double" : "", name, spec);
+  };
   if (mode == Mode::find) {
-    return fmt::format(
-        "#include <broadside/broadside.hpp>\n\n"
-        "// Each pair of overlapping boxes once, as their places in `boxes`.\n"
-        "std::vector<broadside::Pair> find_overlaps(const std::vector<{}>& boxes) {{\n"
-        "  return broadside::find_pairs(boxes, \"{}\");\n"
-        "}}\n",
-        box, spec);
+    return text + fmt::format(
+                      "// Each pair of overlapping boxes once, as their places in `boxes`.\n"
+                      "std::vector<broadside::Pair> find_overlaps(const std::vector<{}>& boxes) {{\n"
+                      "{}"
+                      "}}\n",
+                      box,
+                      is_ours ? fmt::format("  return broadside::find_pairs(boxes, \"{}\");\n", spec)
+                              : fmt::format("  std::vector<broadside::Pair> pairs;\n"
+                                            "  broadside::PairCollector collector(pairs);\n"
+                                            "  {}->find(boxes, collector);\n"
+                                            "  return pairs;\n",
+                                            made("make_finder")));
   }
-  return fmt::format(
-      "#include <broadside/broadside.hpp>\n\n"
-      "broadside::{0}World{1} world(\"{2}\");\n\n"
-      "broadside::Handle add(const {3}& box) {{ return world.add(box); }}\n"
-      "void move(broadside::Handle handle, const {3}& box) {{ world.move(handle, box); }}\n"
-      "void remove(broadside::Handle handle) {{ world.remove(handle); }}\n\n"
-      "// Once a frame: the pairs that began and ended since the last call.\n"
-      "broadside::Events update() {{ return world.update(); }}\n",
-      real, dimension, spec, box);
+  return text + fmt::format(
+                    "broadside::{0}World{1} world({2});\n\n"
+                    "broadside::Handle add(const {3}& box) {{ return world.add(box); }}\n"
+                    "void move(broadside::Handle handle, const {3}& box) {{ world.move(handle, box); }}\n"
+                    "void remove(broadside::Handle handle) {{ world.remove(handle); }}\n\n"
+                    "// Once a frame: the pairs that began and ended since the last call.\n"
+                    "broadside::Events update() {{ return world.update(); }}\n",
+                    real, dimension, is_ours ? fmt::format("\"{}\"", spec) : made("make_tracker"), box);
 }
 
 }  // namespace broadside::lab

@@ -10,7 +10,7 @@
 namespace broadside::lab {
 
 /// A piece of source that compiles as it stands: a function that finds all pairs by the algorithm of `spec`,
-/// or a world that follows them.
+/// or a world that follows them. An algorithm that is none of the library's is made of its description.
 std::string snippet(std::string_view spec, Mode mode, int dimension, Precision precision);
 
 }  // namespace broadside::lab

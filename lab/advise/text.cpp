@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "lab/advise/advise.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/report/ranking.hpp"
 
 namespace broadside::lab {
 namespace {

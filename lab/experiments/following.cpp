@@ -8,9 +8,9 @@ namespace broadside::lab {
 Effort effort_to_follow(const Laboratory& laboratory) {
   Effort effort = laboratory.effort();
   effort.share_seconds = laboratory.either(0.1, 0.03);
-  effort.least_samples = laboratory.either<std::size_t>(30, 15);
+  effort.least_rounds = laboratory.either<std::size_t>(3, 2);
   effort.history_seconds = laboratory.either(20.0, 2.0);
-  effort.single_sample_seconds = laboratory.either(1.0, 0.1);
+  effort.slow_history_seconds = laboratory.either(1.0, 0.1);
   return effort;
 }
 

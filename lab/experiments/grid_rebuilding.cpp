@@ -54,7 +54,7 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   constexpr std::size_t usual = 10'000;
   const std::size_t many = laboratory.either<std::size_t>(100'000, 20'000);
   Effort few = effort_to_follow(laboratory);
-  few.least_samples = 12;
+  few.least_rounds = 2;
   const std::size_t frames = laboratory.either<std::size_t>(20, 6);
   for (const int dimension : {2, 3}) {
     const std::vector<Case> cases = {

@@ -23,16 +23,20 @@ Effort Laboratory::effort() const {
     return {.budget_seconds = 0.25,
             .history_seconds = 0.5,
             .share_seconds = 0.01,
-            .least_samples = 3,
-            .most_samples = 50,
-            .single_sample_seconds = 0.1};
+            .least_rounds = 3,
+            .most_rounds = 50,
+            .slow_seconds = 0.1,
+            .slow_history_seconds = 0.1,
+            .slow_rounds = 1};
   }
   return {.budget_seconds = 2,
           .history_seconds = 4,
           .share_seconds = 0.1,
-          .least_samples = 5,
-          .most_samples = 200,
-          .single_sample_seconds = 1};
+          .least_rounds = 5,
+          .most_rounds = 200,
+          .slow_seconds = 1,
+          .slow_history_seconds = 1,
+          .slow_rounds = 1};
 }
 
 CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request) const {

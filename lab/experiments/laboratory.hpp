@@ -8,7 +8,7 @@
 
 #include "lab/catalogue.hpp"
 #include "lab/experiments/table.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/plan.hpp"
 #include "lab/measure/steadiness.hpp"

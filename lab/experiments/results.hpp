@@ -29,7 +29,8 @@ struct ExperimentResults {
   std::string date;                  ///< "2026-11-21", in UTC
   std::vector<std::string> command;  ///< the program's arguments, the program itself first
   bool quick = false;
-  bool stopped = false;  ///< before all were done; the one that was going on is left out
+  bool stopped = false;                     ///< before all were done; the one that was going on is left out
+  std::optional<double> processor_share{};  ///< ProcessorShare of measuring; empty in results of before
   std::vector<ExperimentResult> results{};
 };
 
@@ -53,8 +54,9 @@ std::string text_of(const ExperimentResult& result);
 std::string summary_of(const ExperimentResults& results);
 
 /// One object by the schema "broadside.experiments/1": schema, machine, build, target, date, command, quick,
-/// stopped and a list of experiments, each with its texts, its tables (columns, charts, rows), its
-/// finding and, where it is known, how many measurements there were and how many of them unsteady.
+/// stopped, processor_share and busy where they are known, and a list of experiments, each with its texts,
+/// its tables (columns, charts, rows), its finding and, where it is known, how many measurements there were
+/// and how many of them unsteady. docs/schemas/ describes every field.
 std::string json_of(const ExperimentResults& results);
 
 /// What json_of() wrote, read back from the JSON in `text`; findings are not read but made anew from the

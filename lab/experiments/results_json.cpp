@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/experiments/results.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/readers/format.hpp"
 #include "lab/report/machine_json.hpp"
 
@@ -265,10 +266,14 @@ Part read_part(const Reader& reader, const char* key, Part (*read)(const Json&))
 std::string json_of(const ExperimentResults& results) {
   std::string text = fmt::format(
       "{{\n\"schema\": {},\n\"machine\": {},\n\"build\": {},\n\"target\": {},\n\"date\": {},\n"
-      "\"command\": {},\n\"quick\": {},\n\"stopped\": {},\n\"experiments\": [",
+      "\"command\": {},\n\"quick\": {},\n\"stopped\": {},\n",
       json_text(schema), json_text(json_of(results.machine)), json_text(json_of(results.build)),
       json_text(results.target), json_text(results.date), json_text(results.command), results.quick,
       results.stopped);
+  if (results.processor_share)
+    text += fmt::format("\"processor_share\": {},\n\"busy\": {},\n", json_text(*results.processor_share),
+                        !busy_hint(*results.processor_share).empty());
+  text += "\"experiments\": [";
   std::string_view separator = "\n";
   for (const ExperimentResult& result : results.results) {
     text += fmt::format("{}{}", separator, json_text_of(result));
@@ -291,6 +296,8 @@ ExperimentResults read_experiments(std::string_view text, const std::string& nam
       .quick = reader.get<bool>("quick", "true or false"),
       .stopped = reader.get<bool>("stopped", "true or false"),
   };
+  if (json.contains("processor_share"))
+    results.processor_share = reader.get<double>("processor_share", "a number");
   for (const Json& experiment : reader.list("experiments")) {
     ExperimentResult result = read_result(experiment, name);
     for (const ExperimentResult& earlier : results.results) {

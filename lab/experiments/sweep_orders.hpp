@@ -8,7 +8,7 @@
 
 #include "broadside/box.hpp"
 
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/scenes/random.hpp"
 

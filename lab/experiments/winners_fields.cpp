@@ -61,19 +61,23 @@ Effort effort_of_ours(const Laboratory& laboratory) {
   return {.budget_seconds = 2,
           .history_seconds = 8,
           .share_seconds = laboratory.either(0.02, 0.005),
-          .least_samples = laboratory.either<std::size_t>(4, 3),
-          .most_samples = laboratory.either<std::size_t>(100, 40),
-          .single_sample_seconds = 0.5};
+          .least_rounds = laboratory.either<std::size_t>(4, 3),
+          .most_rounds = laboratory.either<std::size_t>(100, 40),
+          .slow_seconds = 0.5,
+          .slow_history_seconds = 0.5,
+          .slow_rounds = 1};
 }
 
-/// Peers are several times slower than ours: few samples say which of them is the fastest.
+/// Peers are several times slower than ours: few rounds say which of them is the fastest.
 Effort effort_of_peers(const Laboratory& laboratory) {
   return {.budget_seconds = laboratory.either(0.15, 0.02),
           .history_seconds = laboratory.either(0.5, 0.04),
           .share_seconds = 0.002,
-          .least_samples = laboratory.either<std::size_t>(2, 1),
-          .most_samples = 10,
-          .single_sample_seconds = laboratory.either(0.02, 0.005)};
+          .least_rounds = laboratory.either<std::size_t>(2, 1),
+          .most_rounds = 10,
+          .slow_seconds = laboratory.either(0.02, 0.005),
+          .slow_history_seconds = laboratory.either(0.02, 0.005),
+          .slow_rounds = 1};
 }
 
 /// The fastest of those that were measured, auto aside.

@@ -47,9 +47,10 @@ std::vector<std::size_t> thread_counts() {
 Effort effort_of(const Laboratory& laboratory, double share_seconds) {
   return {.budget_seconds = 2,
           .share_seconds = share_seconds,
-          .least_samples = laboratory.either<std::size_t>(5, 3),
-          .most_samples = 100,
-          .single_sample_seconds = 1};
+          .least_rounds = laboratory.either<std::size_t>(5, 3),
+          .most_rounds = 100,
+          .slow_seconds = 1,
+          .slow_rounds = 1};
 }
 
 Chart time_chart(const std::string& by, ChartKind kind, const std::string& x, const std::string& series,

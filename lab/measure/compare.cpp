@@ -10,6 +10,8 @@
 
 #include "lab/measure/find_case.hpp"
 #include "lab/measure/pair_count.hpp"
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/measure/processor_share.hpp"
 #include "lab/measure/track_case.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
@@ -77,6 +79,7 @@ class Runner {
     } catch (const Stopped&) {
       comparison_.stopped = true;
     }
+    comparison_.processor_share = share_.value();
     return std::move(comparison_);
   }
 
@@ -118,10 +121,11 @@ class Runner {
       comparison_.not_compared.push_back({request, thrown.what()});
       return;
     }
-    const Contest contest{contenders_, catalogue_.algorithms(), options_.effort, watch};
+    const Benchmark benchmark{contenders_, catalogue_.algorithms(), options_.effort, watch};
     comparison_.cases.push_back(of.mode == Mode::find
-                                    ? measure_find<D>(of, inputs, contest)
-                                    : CaseResult{of, measure_track<D>(of, inputs, contest)});
+                                    ? measure_find<D>(of, inputs, benchmark)
+                                    : CaseResult{of, measure_track<D>(of, inputs, benchmark)});
+    add_ratios(comparison_.cases.back());
     if (options_.finished) options_.finished(comparison_.cases.back());
   }
 
@@ -165,6 +169,7 @@ class Runner {
   std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty where there is none
   std::string place_;                              // of the case that is going on, in the plan
   Comparison comparison_;
+  ProcessorShare share_;
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lab/catalogue.hpp"
-#include "lab/measure/contest.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/plan.hpp"
 
@@ -38,6 +38,7 @@ struct Comparison {
   std::vector<NotCompared> not_compared;
   std::vector<std::string> warnings;  ///< of files that were read in part, each once
   bool stopped = false;               ///< by the watch; the case that was going on is left out
+  double processor_share = 1;         ///< as ProcessorShare has it, of the whole run
 
   /// Whether something was measured and nothing broke the law.
   bool all_verified() const;

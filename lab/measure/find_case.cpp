@@ -1,4 +1,4 @@
-// Measures finders: every contender on the same boxes, in turns, each result checked.
+// Measures finders: every algorithm on the same boxes, in rounds, each result checked.
 #include "lab/measure/find_case.hpp"
 
 #include <algorithm>
@@ -37,141 +37,135 @@ struct Expectation {
   std::string fault;        // of the reference itself
 };
 
+/// An algorithm that takes part.
 template <int D, typename Real>
-struct Contestant {
+struct Entry {
   const Contender* contender;
-  Measurement* entry;
+  Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
-  double spent_ms = 0;           // in timed calls
-  bool done = false;
+  Participation participation{};
 };
 
 template <int D, typename Real>
 class FindCase {
  public:
-  FindCase(const Case& of, Histories<D, Real> inputs, const Contest& contest)
-      : case_(of), inputs_(inputs), contest_(contest) {
+  FindCase(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark)
+      : case_(measured), inputs_(inputs), benchmark_(benchmark) {
     for (const History<D, Real>& input : inputs) extremes_.template take<D, Real>(input.boxes);
   }
 
   CaseResult run() {
-    std::vector<Measurement> entries;
-    for (const Contender& contender : contest_.contenders) entries.push_back(entry_of(contender));
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (let_in(contest_.contenders[i], entries[i]))
-        contestants_.push_back({&contest_.contenders[i], &entries[i]});
+    keep_freed_memory();
+    std::vector<Measurement> measurements;
+    for (const Contender& contender : benchmark_.contenders)
+      measurements.push_back(measurement_of(contender));
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      if (is_eligible(benchmark_.contenders[i], measurements[i]))
+        entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
-    for (Contestant<D, Real>& contestant : contestants_) first_call(contestant);
+    for (Entry<D, Real>& entry : entries_) warm_up(entry);
     has_floor_ =
-        std::is_same_v<Real, float> && !contestants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
-    if (has_floor_) call_floor(0);  // to have it warm
-    for (std::size_t round = 0; round < contest_.effort.most_samples; ++round) play(round);
-    return {case_, std::move(entries), std::move(floor_ms_)};
+        std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
+    if (has_floor_) call_floor(0);  // the first call takes its memory
+    for (std::size_t round = 0; goes_on() && has_time(benchmark_.effort, round, watch_); ++round) play(round);
+    return {case_, std::move(measurements), std::move(floor_ms_)};
   }
 
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
-  /// Fills in why not, if the contender is not let in.
-  bool let_in(const Contender& contender, Measurement& entry) {
-    entry.reason = unfit(contender, D, extremes_);
-    if (!entry.reason.empty()) return false;
-    const double budget = contest_.effort.budget_seconds;
+  /// Fills in why not, if the contender cannot take part.
+  bool is_eligible(const Contender& contender, Measurement& measurement) {
+    measurement.reason = unfit(contender, D, extremes_);
+    if (!measurement.reason.empty()) return false;
+    const double budget = benchmark_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
-      contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
+      benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
       const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
       const double first = call(*finder, some);
-      // Where the machine stalls for a moment, a short call seems many times as long as it is.
+      // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
+      // call takes memory.
       constexpr double is_short_ms = 50;
       return (first < is_short_ms ? std::min(first, call(*finder, some)) : first) / 1e3;
     };
-    const std::string fault = fault_of(entry, [&]() -> std::string {
+    const std::string fault = fault_of(measurement, [&]() -> std::string {
+      benchmark_.watch.at(measurement.algorithm + ", making the reference");
+      touch(expectation(*contender.algorithm, 0).count);
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
-        skip(entry, *estimate, 1, budget);
+        skip(measurement, *estimate, 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(entry, fault);
-    return entry.reason.empty();
+    if (!fault.empty()) fail(measurement, fault);
+    return measurement.reason.empty();
   }
 
-  /// Makes the finder and calls it for the first time: to see what memory it takes, and to have it warm.
-  /// Where this takes too long to be done again, it is the one sample.
-  void first_call(Contestant<D, Real>& contestant) {
-    Measurement& entry = *contestant.entry;
-    contest_.watch.at(entry.algorithm + ", checking");
-    const Expectation& expected = expectation(*contestant.contender->algorithm, 0);
-    entry.verified_by = expected.reference.text();
-    contestant.compared.resize(inputs_.size());
-    pairs_.reserve(expected.count);
-    settle(contestant, fault_of(entry, [&] {
+  /// Makes room for so many pairs and writes to it, so that nobody pays for the system's handing out of
+  /// pages.
+  void touch(std::size_t pairs) {
+    if (pairs > pairs_.capacity()) pairs_.resize(pairs + pairs / 8);
+  }
+
+  /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
+  void warm_up(Entry<D, Real>& entry) {
+    Measurement& measurement = *entry.measurement;
+    benchmark_.watch.at(measurement.algorithm + ", checking");
+    measurement.verified_by = expectation(*entry.contender->algorithm, 0).reference.text();
+    entry.compared.resize(inputs_.size());
+    settle(entry, fault_of(measurement, [&] {
              const AllocationMeter meter;
-             contestant.finder =
-                 make_finder<D, Real>(*contestant.contender->algorithm, contestant.contender->spec);
-             const double milliseconds = call(*contestant.finder, boxes_of(0));
-             count_memory(entry, *contestant.contender->algorithm, meter.read());
-             entry.pairs = pairs_.size();
-             entry.pair_hash = hash_of(pairs_);
-             entry.statistics = contestant.finder->statistics();
-             entry.explanation = contestant.finder->explanation();
-             if (milliseconds > contest_.effort.single_sample_seconds * 1e3) {
-               entry.samples_ms.push_back(milliseconds);
-               contestant.done = true;
-             }
-             return check(contestant, 0);
+             entry.finder = make_finder<D, Real>(*entry.contender->algorithm, entry.contender->spec);
+             const double milliseconds = call(*entry.finder, boxes_of(0));
+             count_memory(measurement, *entry.contender->algorithm, meter.read());
+             measurement.pairs = pairs_.size();
+             measurement.pair_hash = hash_of(pairs_);
+             measurement.statistics = entry.finder->statistics();
+             measurement.explanation = entry.finder->explanation();
+             if (milliseconds > benchmark_.effort.slow_seconds * 1e3) entry.participation.set_slow();
+             return check(entry, 0);
            }));
   }
 
-  /// One timed call of each contestant that is not done, on the same boxes, another one first in each round.
-  /// The floor has the seat behind the last.
+  bool goes_on() const {
+    return std::ranges::any_of(
+        entries_, [&](const auto& entry) { return entry.participation.goes_on(benchmark_.effort); });
+  }
+
+  /// One timed call of each entry that takes part in this round, all on the same boxes. The floor comes
+  /// behind the last entry in the list of turns, and takes part in every round.
   void play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
-    const std::size_t seats = contestants_.size() + (has_floor_ ? 1 : 0);
-    for (const std::size_t seat : turns(seats, round)) {
-      if (seat < contestants_.size())
-        sample(contestants_[seat], input, round);
-      else
-        sample_floor(input);
+    for (const Entry<D, Real>& entry : entries_) {
+      if (entry.participation.goes_on(benchmark_.effort))
+        touch(expectation(*entry.contender->algorithm, input).count);
+    }
+    for (const std::size_t turn : turns(entries_.size() + (has_floor_ ? 1 : 0), round)) {
+      if (turn < entries_.size()) {
+        if (entries_[turn].participation.goes_on(benchmark_.effort)) sample(entries_[turn], input, round);
+      } else {
+        benchmark_.watch.at("the floor");
+        floor_ms_.push_back(call_floor(input));
+      }
     }
   }
 
-  void sample(Contestant<D, Real>& contestant, std::size_t input, std::size_t round) {
-    if (contestant.done) return;
-    Measurement& entry = *contestant.entry;
-    contest_.watch.at(fmt::format("{}, round {}", entry.algorithm, round + 1));
-    pairs_.reserve(expectation(*contestant.contender->algorithm, input).count);
-    settle(contestant, fault_of(entry, [&] {
-             const double milliseconds = call(*contestant.finder, boxes_of(input));
-             entry.samples_ms.push_back(milliseconds);
-             contestant.spent_ms += milliseconds;
-             return check(contestant, input);
+  void sample(Entry<D, Real>& entry, std::size_t input, std::size_t round) {
+    Measurement& measurement = *entry.measurement;
+    benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
+    settle(entry, fault_of(measurement, [&] {
+             const double milliseconds = call(*entry.finder, boxes_of(input));
+             measurement.samples_ms.push_back(milliseconds);
+             entry.participation.add(milliseconds);
+             return check(entry, input);
            }));
-    contestant.done = contestant.done || is_enough(entry.samples_ms, contestant.spent_ms);
-  }
-
-  /// Goes on as long as any contestant does.
-  void sample_floor(std::size_t input) {
-    const bool last = std::ranges::all_of(contestants_, &Contestant<D, Real>::done);
-    if (last && floor_ms_.size() >= contest_.effort.least_samples) return;
-    contest_.watch.at("the floor");
-    floor_ms_.push_back(call_floor(input));
-  }
-
-  /// Whether a contestant has had its share of samples.
-  bool is_enough(const std::vector<double>& samples_ms, double spent_ms) const {
-    return samples_ms.size() >= contest_.effort.least_samples &&
-           spent_ms >= contest_.effort.share_seconds * 1e3;
   }
 
   /// Milliseconds for the floor's work, with as many pairs as a search must give.
   double call_floor(std::size_t input) {
-    const auto known = std::ranges::find(expectations_, input, [](const auto& e) { return e->input; });
-    const std::size_t count = known != expectations_.end()
-                                  ? (*known)->count
-                                  : expectation(*contestants_[0].contender->algorithm, input).count;
-    pairs_.resize(count);
+    pairs_.resize(expectation(*entries_[0].contender->algorithm, input).count);
+    caches_.settle(std::as_bytes(boxes_of(input)));
     const Stopwatch watch;
     floor_.run(boxes_of(input), pairs_);
     return watch.milliseconds();
@@ -181,38 +175,39 @@ class FindCase {
   double call(PairFinder<D, Real>& finder, std::span<const Box<D, Real>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);
+    caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
     finder.find(boxes, collector);
     return watch.milliseconds();
   }
 
-  void settle(Contestant<D, Real>& contestant, const std::string& fault) {
-    contestant.entry->outcome = Outcome::verified;
+  void settle(Entry<D, Real>& entry, const std::string& fault) {
+    entry.measurement->outcome = Outcome::verified;
     if (fault.empty()) return;
-    fail(*contestant.entry, fault);
-    contestant.done = true;
+    fail(*entry.measurement, fault);
+    entry.participation.end();
   }
 
   /// What is wrong with pairs_; empty if nothing is.
-  std::string check(Contestant<D, Real>& contestant, std::size_t input) {
-    const Expectation& expected = expectation(*contestant.contender->algorithm, input);
+  std::string check(Entry<D, Real>& entry, std::size_t input) {
+    const Expectation& expected = expectation(*entry.contender->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;
     const bool equal = pairs_.size() == expected.count && hash_of(pairs_) == expected.hash;
     const bool kept = expected.pairs.size() == expected.count;
-    if (equal && (contestant.compared[input] || !kept)) return {};
-    contestant.compared[input] = true;
+    if (equal && (entry.compared[input] || !kept)) return {};
+    entry.compared[input] = true;
     auto divergence =
         kept ? compare_pairs(pairs_, expected.pairs)
              : compare_pairs(pairs_, expected.reference.template pairs<D, Real>(boxes_of(input)));
     if (!divergence) return {};
-    return explained<D, Real>(*std::move(divergence), contestant.entry->algorithm,
+    return explained<D, Real>(*std::move(divergence), entry.measurement->algorithm,
                               fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
         .text;
   }
 
   /// What the contender must find in the input; computed when first asked for.
   const Expectation& expectation(const Algorithm& contender, std::size_t input) {
-    const Reference reference(contender, contest_.known, boxes_of(0).size(), most_boxes_by_definition);
+    const Reference reference(contender, benchmark_.known, boxes_of(0).size(), most_boxes_by_definition);
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
@@ -231,11 +226,13 @@ class FindCase {
 
   const Case& case_;
   Histories<D, Real> inputs_;
-  const Contest& contest_;
+  const Benchmark& benchmark_;
   Extremes extremes_;
-  std::vector<Contestant<D, Real>> contestants_;
+  std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
+  CacheState caches_;
+  Stopwatch watch_;
   std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;
   bool has_floor_ = false;
   std::vector<double> floor_ms_;
@@ -244,13 +241,13 @@ class FindCase {
 }  // namespace
 
 template <int D, typename Real>
-CaseResult measure_find(const Case& of, Histories<D, Real> inputs, const Contest& contest) {
-  return FindCase<D, Real>(of, inputs, contest).run();
+CaseResult measure_find(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark) {
+  return FindCase<D, Real>(measured, inputs, benchmark).run();
 }
 
-template CaseResult measure_find<2, float>(const Case&, Histories<2, float>, const Contest&);
-template CaseResult measure_find<3, float>(const Case&, Histories<3, float>, const Contest&);
-template CaseResult measure_find<2, double>(const Case&, Histories<2, double>, const Contest&);
-template CaseResult measure_find<3, double>(const Case&, Histories<3, double>, const Contest&);
+template CaseResult measure_find<2, float>(const Case&, Histories<2, float>, const Benchmark&);
+template CaseResult measure_find<3, float>(const Case&, Histories<3, float>, const Benchmark&);
+template CaseResult measure_find<2, double>(const Case&, Histories<2, double>, const Benchmark&);
+template CaseResult measure_find<3, double>(const Case&, Histories<3, double>, const Benchmark&);
 
 }  // namespace broadside::lab

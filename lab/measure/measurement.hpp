@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,6 +37,25 @@ enum class Outcome {
   skipped    ///< it was not let in
 };
 
+/// Where a number lies, with a confidence of 95 %.
+struct Interval {
+  double low;
+  double high;
+
+  bool includes(double number) const noexcept { return low <= number && number <= high; }
+};
+
+/// The time of one algorithm over that of another, in the rounds that both took part in.
+struct PairedRatio {
+  std::string of;                    ///< the spec of the other one
+  double median;                     ///< over the seeds, of each seed's median ratio
+  std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
+  std::size_t rounds;                ///< that both took part in
+
+  /// Whether the two cannot be told apart.
+  bool is_level() const noexcept { return interval && interval->includes(1); }
+};
+
 /// One algorithm in one case. What was counted (pairs, hash, statistics, bytes) is of the first seed.
 struct Measurement {
   std::string algorithm;  ///< its spec
@@ -49,6 +69,7 @@ struct Measurement {
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
   std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
+  std::size_t samples_a_round = 1;   ///< frames of a history; round r of all entries is on the same boxes
   std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
@@ -56,23 +77,31 @@ struct Measurement {
   std::string explanation{};                ///< of an algorithm that chooses: what it chose, and why
   std::optional<std::uint64_t> own_bytes;   ///< what the algorithm holds between calls
   std::optional<std::uint64_t> peak_bytes;  ///< the most it holds at one moment, in or between calls
+
+  std::optional<PairedRatio> to_fastest{};       ///< its time over that of the case's fastest,
+  std::optional<PairedRatio> to_best_own{};      ///< of the fastest of our own other than auto,
+  std::optional<PairedRatio> to_fastest_peer{};  ///< and of the fastest other library
 };
 
 /// A case and its measurements, in the order of the contenders.
 struct CaseResult {
   Case of;
   std::vector<Measurement> measurements;
-  std::vector<double> floor_ms{};  ///< samples of the floor (floor.hpp); none where it makes no sense
+  std::vector<double> floor_ms{};  ///< of the floor (floor.hpp) in each round; none where it makes no sense
 };
 
 /// How much time an algorithm may take in a case.
 struct Effort {
-  double budget_seconds = 0.25;        ///< for one search; above it the algorithm is skipped
-  double history_seconds = 0.3;        ///< likewise for a whole history, from its first frame to its last
-  double share_seconds = 0.02;         ///< timed calls go on until they have taken this long together ...
-  std::size_t least_samples = 3;       ///< ... and are at least so many ...
-  std::size_t most_samples = 100;      ///< ... and at most so many ...
-  double single_sample_seconds = 0.3;  ///< ... unless one takes so long that it is left at one
+  double budget_seconds = 0.25;        ///< for one search; a slower algorithm is skipped
+  double history_seconds = 0.6;        ///< likewise for a whole history, from its first frame to its last
+  double share_seconds = 0.03;         ///< an algorithm takes part in rounds until it was timed this long ...
+  std::size_t least_rounds = 5;        ///< ... and in at least so many rounds ...
+  std::size_t most_rounds = 100;       ///< ... and at most so many ...
+  double slow_seconds = 0.1;           ///< ... but if one search takes longer than this,
+  double slow_history_seconds = 0.35;  ///< or one history longer than this,
+  std::size_t slow_rounds = 2;         ///< it takes part in the first few only
+  double case_seconds = std::numeric_limits<double>::infinity();  ///< for all algorithms and checks together:
+                                                                  ///< once over, no round follows the second
 };
 
 }  // namespace broadside::lab

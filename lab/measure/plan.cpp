@@ -101,9 +101,11 @@ Effort long_effort() {
   return {.budget_seconds = 30,
           .history_seconds = 30,
           .share_seconds = 1,
-          .least_samples = 5,
-          .most_samples = 400,
-          .single_sample_seconds = 5};
+          .least_rounds = 7,
+          .most_rounds = 400,
+          .slow_seconds = 5,
+          .slow_history_seconds = 5,
+          .slow_rounds = 2};
 }
 
 std::vector<CaseRequest> plan_of(const Wishes& wishes) {

@@ -11,9 +11,13 @@ double ProcessorShare::value() const {
   return passed.count() > 0 ? used / passed.count() : 1;
 }
 
-std::string busy_hint(double share) {
+bool is_busy(double share) {
   constexpr double least_of_a_quiet_machine = 0.9;
-  if (share >= least_of_a_quiet_machine) return "";
+  return share < least_of_a_quiet_machine;
+}
+
+std::string busy_hint(double share) {
+  if (!is_busy(share)) return "";
   return fmt::format(
       "busy: others had the processor for {:.0f} % of the time; times are too long, and not by the same "
       "factor: quiet the machine and measure again\n",

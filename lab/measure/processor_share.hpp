@@ -18,6 +18,9 @@ class ProcessorShare {
   std::clock_t used_ = std::clock();
 };
 
+/// Whether others had the processor for more than a tenth of the time, in a run of one thread.
+bool is_busy(double share);
+
 /// A line that says so where a run of one thread had a processor for less than nine tenths of the time; else
 /// empty.
 std::string busy_hint(double share);

@@ -1,4 +1,4 @@
-// Measures trackers: every contender over the same histories, frame by frame in turns, all events checked.
+// Measures trackers: every algorithm over the same histories, frame by frame in turns, all events checked.
 #include "lab/measure/track_case.hpp"
 
 #include <algorithm>
@@ -23,22 +23,23 @@ struct Expectation {
   ExpectedEvents events;
 };
 
+/// An algorithm that takes part.
 template <int D, typename Real>
-struct Contestant {
+struct Entry {
   const Contender* contender;
-  Measurement* entry;
+  Measurement* measurement;
   std::unique_ptr<PairTracker<D, Real>> tracker{};  // of this pass
   const ExpectedEvents* expected = nullptr;         // of this pass
   EventHasher hasher{};
   std::vector<double> frames_ms{};  // of this pass
-  std::vector<double> builds_ms{};  // the first frames of all passes
+  std::vector<double> builds_ms{};  // the first frames of all timed passes
   double pass_ms = 0;               // of this pass, the first frame too
-  double spent_ms = 0;              // in frames, of all passes
   std::uint64_t tests = 0;
   std::uint64_t references = 0;
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
-  bool done = false;
+  Participation participation{};
+  bool plays = false;  // in the pass that is going on
 };
 
 /// Some of the boxes of a history and its first steps, as a history of their own.
@@ -70,8 +71,8 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
 template <int D, typename Real>
 class TrackCase {
  public:
-  TrackCase(const Case& of, Histories<D, Real> inputs, const Contest& contest)
-      : case_(of), inputs_(inputs), contest_(contest) {
+  TrackCase(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark)
+      : case_(measured), inputs_(inputs), benchmark_(benchmark) {
     for (const History<D, Real>& input : inputs) {
       extremes_.template take<D, Real>(input.boxes);
       for (const Step<D, Real>& step : input.steps) {
@@ -82,44 +83,40 @@ class TrackCase {
   }
 
   std::vector<Measurement> run() {
-    std::vector<Measurement> entries;
-    for (const Contender& contender : contest_.contenders) entries.push_back(entry_of(contender));
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (let_in(contest_.contenders[i], entries[i]))
-        contestants_.push_back({&contest_.contenders[i], &entries[i]});
+    keep_freed_memory();
+    std::vector<Measurement> measurements;
+    for (const Contender& contender : benchmark_.contenders)
+      measurements.push_back(measurement_of(contender));
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      measurements[i].samples_a_round = inputs_[0].steps.size();
+      if (is_eligible(benchmark_.contenders[i], measurements[i]))
+        entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
-    // The first pass sees what memory is taken; where it takes too long to be done again, it is timed as
-    // well.
-    pass(0, true);
-    for (Contestant<D, Real>& contestant : contestants_) close_first_pass(contestant);
-    for (std::size_t round = 1; std::ranges::any_of(contestants_, is_on); ++round) {
-      pass(round % inputs_.size(), false);
-      for (Contestant<D, Real>& contestant : contestants_) close_pass(contestant);
+    warm_up();
+    for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_) && play(round); ++round) {
     }
-    return entries;
+    return measurements;
   }
 
  private:
-  static bool is_on(const Contestant<D, Real>& contestant) { return !contestant.done; }
-
-  /// Fills in why not, if the contender is not let in.
-  bool let_in(const Contender& contender, Measurement& entry) {
+  /// Fills in why not, if the contender cannot take part.
+  bool is_eligible(const Contender& contender, Measurement& measurement) {
     const History<D, Real>& history = inputs_[0];
-    entry.reason = unfit(contender, D, extremes_);
-    if (!entry.reason.empty()) return false;
-    const double budget = contest_.effort.history_seconds;
+    measurement.reason = unfit(contender, D, extremes_);
+    if (!measurement.reason.empty()) return false;
+    const double budget = benchmark_.effort.history_seconds;
     const auto history_seconds = [&](std::size_t count) {
-      contest_.watch.at(fmt::format("{}, trying {} boxes", entry.algorithm, count));
+      benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       return seconds_of(contender, thinned(history, count, 2));
     };
-    const std::string fault = fault_of(entry, [&]() -> std::string {
+    const std::string fault = fault_of(measurement, [&]() -> std::string {
       // A history cannot be left half way, so that its frames share the budget.
       if (const auto estimate = estimate_above(budget, case_.boxes, history_seconds))
-        skip(entry, *estimate, case_.frames + 1, budget);
+        skip(measurement, *estimate, case_.frames + 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(entry, fault);
-    return entry.reason.empty();
+    if (!fault.empty()) fail(measurement, fault);
+    return measurement.reason.empty();
   }
 
   /// Seconds for as many frames as the case has, by a history's first frame and the mean of its others; of
@@ -150,119 +147,130 @@ class TrackCase {
     events_.ended.clear();
     PairCollector begun(events_.begun);
     PairCollector ended(events_.ended);
+    caches_.settle(std::as_bytes(frame.boxes));
     const Stopwatch watch;
     tracker.update(frame, begun, ended);
     return watch.milliseconds();
   }
 
-  /// Lets all that are not done track an input from its first frame to its last.
-  void pass(std::size_t input, bool is_first) {
+  /// Lets every entry follow the first input once, untimed: memory is taken, and how much that is shows.
+  void warm_up() {
+    for (Entry<D, Real>& entry : entries_) entry.plays = true;
+    pass(0, 0, true);
+    for (Entry<D, Real>& entry : entries_) {
+      if (!entry.plays) continue;
+      Measurement& measurement = *entry.measurement;
+      measurement.outcome = Outcome::verified;
+      measurement.pairs = static_cast<std::uint64_t>(entry.pairs);
+      measurement.pair_hash = entry.hasher.hash();
+      measurement.explanation = entry.tracker->explanation();
+      if (entry.pass_ms > benchmark_.effort.slow_history_seconds * 1e3) entry.participation.set_slow();
+      entry.builds_ms.clear();
+    }
+  }
+
+  /// Lets every entry that takes part in this round follow the same input; false where none does.
+  bool play(std::size_t round) {
+    for (Entry<D, Real>& entry : entries_) entry.plays = entry.participation.goes_on(benchmark_.effort);
+    if (std::ranges::none_of(entries_, &Entry<D, Real>::plays)) return false;
+    pass(round % inputs_.size(), round + 1, false);
+    for (Entry<D, Real>& entry : entries_) {
+      if (!entry.plays) continue;
+      Measurement& measurement = *entry.measurement;
+      measurement.samples_ms.insert(measurement.samples_ms.end(), entry.frames_ms.begin(),
+                                    entry.frames_ms.end());
+      measurement.build_ms = median(entry.builds_ms);
+      entry.participation.add(entry.pass_ms);
+    }
+    return true;
+  }
+
+  /// Lets the entries that play follow an input from its first frame to its last, frame by frame in turns.
+  /// `number` is the pass's, by which turns are drawn.
+  void pass(std::size_t input, std::size_t number, bool counts_memory) {
     const History<D, Real>& history = inputs_[input];
     std::vector<Box<D, Real>> boxes = history.boxes;
-    for (Contestant<D, Real>& contestant : contestants_) {
-      if (contestant.done) continue;
-      contest_.watch.at(contestant.entry->algorithm + ", checking");
-      contestant.expected = &expectation(contestant, input);
-      contestant.tracker.reset();
-      contestant.frames_ms.clear();
-      contestant.pass_ms = 0;
+    for (Entry<D, Real>& entry : entries_) {
+      if (!entry.plays) continue;
+      benchmark_.watch.at(entry.measurement->algorithm + ", checking");
+      entry.expected = &expectation(entry, input);
+      entry.tracker.reset();
+      entry.frames_ms.clear();
+      entry.pass_ms = 0;
     }
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
       const Frame<D, Real> now{boxes,
                                frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
-      for (const std::size_t seat : turns(contestants_.size(), frame)) {
-        Contestant<D, Real>& contestant = contestants_[seat];
-        if (contestant.done) continue;
-        contest_.watch.at(fmt::format("{}, frame {}", contestant.entry->algorithm, frame));
+      for (const std::size_t turn : turns(entries_.size(), number * (history.steps.size() + 1) + frame)) {
+        Entry<D, Real>& entry = entries_[turn];
+        if (!entry.plays) continue;
+        benchmark_.watch.at(fmt::format("{}, frame {}", entry.measurement->algorithm, frame));
         const std::string fault =
-            fault_of(*contestant.entry, [&] { return take(contestant, now, frame, is_first); });
+            fault_of(*entry.measurement, [&] { return take(entry, now, frame, counts_memory); });
         if (fault.empty()) continue;
-        fail(*contestant.entry, fault);
-        contestant.done = true;
+        fail(*entry.measurement, fault);
+        entry.participation.end();
+        entry.plays = false;
       }
     }
   }
 
-  /// One frame of one contestant; what is wrong with its events.
-  std::string take(Contestant<D, Real>& contestant, const Frame<D, Real>& now, std::size_t frame,
-                   bool is_first) {
-    const ExpectedEvents& expected = *contestant.expected;
+  /// One frame of one entry; what is wrong with its events.
+  std::string take(Entry<D, Real>& entry, const Frame<D, Real>& now, std::size_t frame, bool counts_memory) {
+    const ExpectedEvents& expected = *entry.expected;
     if (!expected.fault.empty()) return expected.fault;
-    events_.begun.reserve(expected.frames[frame].begun.size());
-    events_.ended.reserve(expected.frames[frame].ended.size());
+    touch(events_.begun, expected.frames[frame].begun.size());
+    touch(events_.ended, expected.frames[frame].ended.size());
     const auto make_and_update = [&] {
-      if (!contestant.tracker)
-        contestant.tracker =
-            make_tracker<D, Real>(*contestant.contender->algorithm, contestant.contender->spec);
-      return update(*contestant.tracker, now);
+      if (!entry.tracker)
+        entry.tracker = make_tracker<D, Real>(*entry.contender->algorithm, entry.contender->spec);
+      return update(*entry.tracker, now);
     };
-    const double milliseconds = is_first ? counted(contestant, make_and_update) : make_and_update();
-    contestant.pass_ms += milliseconds;
-    (frame > 0 ? contestant.frames_ms : contestant.builds_ms).push_back(milliseconds);
-    if (is_first) note(contestant, frame);
-    return difference<D, Real>(events_, expected.frames[frame], contestant.entry->algorithm, frame,
+    const double milliseconds = counts_memory ? counted(entry, make_and_update) : make_and_update();
+    entry.pass_ms += milliseconds;
+    (frame > 0 ? entry.frames_ms : entry.builds_ms).push_back(milliseconds);
+    if (counts_memory) note(entry, frame);
+    return difference<D, Real>(events_, expected.frames[frame], entry.measurement->algorithm, frame,
                                now.boxes);
   }
 
-  /// Runs one frame and adds the memory it takes to the contestant's.
+  /// Makes room for so many events and writes to it, so that no entry pays for pages.
+  static void touch(std::vector<Pair>& events, std::size_t count) {
+    if (count > events.capacity()) events.resize(count + count / 8);
+  }
+
+  /// Runs one frame and adds the memory it takes to the entry's.
   template <typename Run>
-  double counted(Contestant<D, Real>& contestant, const Run& run) {
+  double counted(Entry<D, Real>& entry, const Run& run) {
     const AllocationMeter meter;
     const double milliseconds = run();
     if (const auto allocation = meter.read()) {
-      Allocation& memory = contestant.memory;
+      Allocation& memory = entry.memory;
       memory.peak = std::max(memory.peak, memory.kept + allocation->peak);
       memory.kept += allocation->kept;
-      count_memory(*contestant.entry, *contestant.contender->algorithm, memory);
+      count_memory(*entry.measurement, *entry.contender->algorithm, memory);
     }
     return milliseconds;
   }
 
-  /// Notes what is counted in the first pass.
-  void note(Contestant<D, Real>& contestant, std::size_t frame) {
-    contestant.hasher.add(events_);
-    contestant.pairs +=
+  /// Notes what is counted while warming up.
+  void note(Entry<D, Real>& entry, std::size_t frame) {
+    entry.hasher.add(events_);
+    entry.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
-    const auto& statistics = contestant.tracker->statistics();
+    const auto& statistics = entry.tracker->statistics();
     if (frame == 0 || !statistics) return;
-    contestant.tests += statistics->tests;
-    contestant.references += statistics->references;
-    contestant.entry->statistics = Statistics{contestant.tests / frame, contestant.references / frame};
+    entry.tests += statistics->tests;
+    entry.references += statistics->references;
+    entry.measurement->statistics = Statistics{entry.tests / frame, entry.references / frame};
   }
 
-  void close_first_pass(Contestant<D, Real>& contestant) {
-    if (contestant.done) return;
-    Measurement& entry = *contestant.entry;
-    entry.outcome = Outcome::verified;
-    entry.pairs = static_cast<std::uint64_t>(contestant.pairs);
-    entry.pair_hash = contestant.hasher.hash();
-    entry.explanation = contestant.tracker->explanation();
-    entry.build_ms = median(contestant.builds_ms);
-    if (contestant.pass_ms > contest_.effort.single_sample_seconds * 1e3) {
-      entry.samples_ms = contestant.frames_ms;
-      contestant.done = true;
-    }
-  }
-
-  void close_pass(Contestant<D, Real>& contestant) {
-    if (contestant.done) return;
-    Measurement& entry = *contestant.entry;
-    entry.samples_ms.insert(entry.samples_ms.end(), contestant.frames_ms.begin(), contestant.frames_ms.end());
-    // The first pass counts memory, which takes time.
-    entry.build_ms = median(std::span(contestant.builds_ms).subspan(1));
-    contestant.spent_ms += contestant.pass_ms;
-    const std::size_t samples = entry.samples_ms.size();
-    contestant.done = samples >= contest_.effort.most_samples ||
-                      (samples >= contest_.effort.least_samples &&
-                       contestant.spent_ms >= contest_.effort.share_seconds * 1e3);
-  }
-
-  /// What the contestant must report on the input; computed when first asked for.
-  const ExpectedEvents& expectation(Contestant<D, Real>& contestant, std::size_t input) {
-    const Reference reference(*contestant.contender->algorithm, contest_.known, case_.boxes,
+  /// What the entry must report on the input; computed when first asked for.
+  const ExpectedEvents& expectation(Entry<D, Real>& entry, std::size_t input) {
+    const Reference reference(*entry.contender->algorithm, benchmark_.known, case_.boxes,
                               most_tracked_boxes_by_definition);
-    contestant.entry->verified_by = reference.text();
+    entry.measurement->verified_by = reference.text();
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
@@ -273,23 +281,28 @@ class TrackCase {
 
   const Case& case_;
   Histories<D, Real> inputs_;
-  const Contest& contest_;
+  const Benchmark& benchmark_;
   Extremes extremes_;
-  std::vector<Contestant<D, Real>> contestants_;
+  std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   Events events_;  // of the last update; its memory serves all
+  CacheState caches_;
+  Stopwatch watch_;
 };
 
 }  // namespace
 
 template <int D, typename Real>
-std::vector<Measurement> measure_track(const Case& of, Histories<D, Real> inputs, const Contest& contest) {
-  return TrackCase<D, Real>(of, inputs, contest).run();
+std::vector<Measurement> measure_track(const Case& measured, Histories<D, Real> inputs,
+                                       const Benchmark& benchmark) {
+  return TrackCase<D, Real>(measured, inputs, benchmark).run();
 }
 
-template std::vector<Measurement> measure_track<2, float>(const Case&, Histories<2, float>, const Contest&);
-template std::vector<Measurement> measure_track<3, float>(const Case&, Histories<3, float>, const Contest&);
-template std::vector<Measurement> measure_track<2, double>(const Case&, Histories<2, double>, const Contest&);
-template std::vector<Measurement> measure_track<3, double>(const Case&, Histories<3, double>, const Contest&);
+template std::vector<Measurement> measure_track<2, float>(const Case&, Histories<2, float>, const Benchmark&);
+template std::vector<Measurement> measure_track<3, float>(const Case&, Histories<3, float>, const Benchmark&);
+template std::vector<Measurement> measure_track<2, double>(const Case&, Histories<2, double>,
+                                                           const Benchmark&);
+template std::vector<Measurement> measure_track<3, double>(const Case&, Histories<3, double>,
+                                                           const Benchmark&);
 
 }  // namespace broadside::lab

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/geometry_text.hpp"
+#include "lab/readers/number_fault.hpp"
 #include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
@@ -18,7 +20,7 @@ using Fields = std::vector<std::string_view>;
 
 constexpr const char* expected_columns =
     "columns such as 'min_x,min_y,max_x,max_y' or 'center_x,center_y,width,height', with z or without, in "
-    "any order, with or without 'frame,box'";
+    "any order, with or without 'frame,box' or 'frame,id'; or points 'x,y', or 'wkt' or 'bbox'";
 
 bool is_number(std::string_view field) {
   double value = 0;
@@ -31,8 +33,12 @@ bool is_before(std::string_view line) {
   return first == std::string_view::npos || line[first] == '#';
 }
 
+/// Whether a field is more likely a geometry or bounds than their column's name.
+bool is_geometry(std::string_view field) { return field.find_first_of("([") != std::string_view::npos; }
+
 bool is_table_row(const Fields& fields) {
-  return std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
+  return std::ranges::any_of(fields, is_geometry) ||
+         std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
          std::ranges::any_of(fields, is_number);
 }
 
@@ -60,6 +66,51 @@ CsvColumns columns_of_user(const std::string& list, std::size_t count, const Csv
   return columns;
 }
 
+/// The dimension of the first geometry; 2 if there is none.
+int dimension_of_geometries(CsvLines lines, Separator separator, const CsvColumns& columns) {
+  const auto column = static_cast<std::size_t>(std::ranges::find(columns.places, CsvColumns::geometry) -
+                                               columns.places.begin());
+  while (lines.next()) {
+    const Fields fields = fields_of(lines.line(), separator);
+    if (column < fields.size() && !fields[column].empty()) return dimension_of_geometry_text(fields[column]);
+  }
+  return 2;
+}
+
+/// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing is
+/// read from.
+std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLines& lines,
+                                       CsvColumns& columns) {
+  auto labels = std::make_shared<BoxLabels>();
+  const std::vector<std::string>& names = columns.names;
+  std::string_view wanted = options.ids;
+  if (wanted.empty() && options.finds_ids) {
+    const auto track = std::ranges::find(columns.places, CsvColumns::track);
+    wanted = track == columns.places.end() ? std::string_view("id")
+                                           : names[static_cast<std::size_t>(track - columns.places.begin())];
+  }
+  if (!wanted.empty()) {
+    auto column = std::ranges::find(names, wanted);
+    if (column == names.end())
+      column = std::ranges::find(names, plain(wanted), [](const std::string& name) { return plain(name); });
+    if (column == names.end() && !options.ids.empty())
+      lines.refuse(fmt::format("no column {} of ids", shown(wanted)),
+                   fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
+    if (column != names.end()) {
+      int& place = columns.places[static_cast<std::size_t>(column - names.begin())];
+      if (place != CsvColumns::ignored && place != CsvColumns::track)
+        lines.refuse(fmt::format("column {} is read already, and --ids names it", shown(*column)),
+                     "a column of its own for the ids");
+      if (place == CsvColumns::ignored) place = CsvColumns::id;
+      labels->has_ids = true;
+    }
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (columns.places[i] == CsvColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
+  }
+  return labels;
+}
+
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   CsvLines lines(*input);
   CsvLines rows = lines;
@@ -75,7 +126,10 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
     comment = lines.line();
     rows = lines;
   }
-  const Separator separator = separator_of(lines.line());
+  Separator separator = separator_of(lines.line());
+  // The blanks of a geometry that is alone in its line separate nothing.
+  if (separator == Separator::blanks && is_geometry_name(fields_of(lines.line(), separator).front()))
+    separator = Separator::tab;
   const Fields fields = fields_of(lines.line(), separator);
   CsvColumns columns;
   bool has_header = false;
@@ -95,11 +149,20 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
       if (!problem.empty())
         lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns");
     } else if (!has_header && !is_table_row(fields)) {
+      const auto slip = std::ranges::find_if(
+          fields, [](std::string_view field) { return !number_fault(field).expected.empty(); });
+      if (slip != fields.end())
+        lines.refuse(fmt::format("{}, {}", shown(*slip), number_fault(*slip).found),
+                     number_fault(*slip).expected);
       lines.refuse(fmt::format("{}: {}", shown(lines.line(), 100), problem),
                    fmt::format("{}; --columns can name them", expected_columns));
     }
   }
-  return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns)},
+  if (columns.has_geometry)
+    columns.dimension = dimension_of_geometries(has_header ? lines : rows, separator, columns);
+  std::shared_ptr<BoxLabels> labels = find_labels(options, lines, columns);
+  return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns),
+                   std::move(labels), !options.ids.empty(), Quarantine(options)},
                   options.precision.value_or(Precision::float64));
 }
 
@@ -116,6 +179,7 @@ bool recognises(std::string_view bytes, std::string_view extension) {
   if (lines.bytes_left() == 0 && bytes.size() == Input::beginning_bytes) fields.pop_back();
   if (fields.size() < 2) return false;
   return std::ranges::count_if(fields, is_column_name) >= 2 ||
+         std::ranges::any_of(fields, is_geometry_name) ||
          (std::ranges::any_of(fields, is_number) && std::ranges::all_of(fields, [](std::string_view field) {
             return field.empty() || is_number(field);
           }));
@@ -129,9 +193,12 @@ Format csv() {
       .summary = "boxes as a table of text",
       .extensions = {".csv"},
       .has_columns = true,
+      .can_skip = true,
+      .has_ids = true,
       .recognises = recognises,
       .open = open,
       .create = write_csv,
+      .keeps_ids = true,
   };
 }
 

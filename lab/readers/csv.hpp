@@ -8,6 +8,7 @@
 #include "lab/readers/csv_text.hpp"
 #include "lab/readers/frames.hpp"
 #include "lab/readers/input.hpp"
+#include "lab/readers/quarantine.hpp"
 
 namespace broadside::lab::readers {
 
@@ -17,6 +18,9 @@ struct CsvTable {
   CsvLines lines;  ///< from the first line that holds numbers
   Separator separator;
   CsvColumns columns;
+  std::shared_ptr<BoxLabels> labels;
+  bool needs_ids;  ///< a present box without an id is refused
+  Quarantine quarantine;
 };
 
 /// The table's boxes: rounded to the nearest float or double, once, where the table has their bounds; where

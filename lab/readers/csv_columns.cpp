@@ -1,124 +1,38 @@
-// Names of columns and their meanings.
+// What the columns of a table mean together.
 #include "lab/readers/csv_columns.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "lab/readers/csv_names.hpp"
 #include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
 
-/// What a column says of an axis. `position` leaves open of what; the numbered ones are minimum and maximum,
-/// counted from 0 or from 1.
-enum class Role : std::uint8_t { min, max, centre, size, half_size, position, zeroth, first, second, third };
-constexpr std::size_t roles = 10;
-
-struct Meaning {
-  Role role;
-  int axis;
-};
-
 constexpr std::string_view axes = "xyz";
 
-/// Names that stand before an axis, or behind it.
-struct Word {
-  Role role;
-  std::string_view text;
-};
-constexpr auto words = std::to_array<Word>({
-    {Role::min, "min"},
-    {Role::min, "minimum"},
-    {Role::min, "lower"},
-    {Role::min, "low"},
-    {Role::min, "lo"},
-    {Role::max, "max"},
-    {Role::max, "maximum"},
-    {Role::max, "upper"},
-    {Role::max, "high"},
-    {Role::max, "hi"},
-    {Role::centre, "center"},
-    {Role::centre, "centre"},
-    {Role::centre, "c"},
-    {Role::centre, "mid"},
-    {Role::size, "size"},
-    {Role::size, "length"},
-    {Role::size, "d"},
-    {Role::half_size, "half"},
-    {Role::half_size, "h"},
-    {Role::half_size, "halfsize"},
-    {Role::half_size, "halfextent"},
-    {Role::half_size, "halfextents"},
-    {Role::position, ""},
-    {Role::position, "pos"},
-    {Role::position, "position"},
-    {Role::zeroth, "0"},
-    {Role::first, "1"},
-    {Role::second, "2"},
-    {Role::third, "3"},
-});
-
-/// Names with the axis in them.
-struct Whole {
-  std::string_view text;
-  Meaning meaning;
-};
-constexpr auto wholes = std::to_array<Whole>({
-    {"left", {Role::min, 0}},
-    {"right", {Role::max, 0}},
-    {"bottom", {Role::min, 1}},
-    {"top", {Role::max, 1}},
-    {"west", {Role::min, 0}},
-    {"east", {Role::max, 0}},
-    {"south", {Role::min, 1}},
-    {"north", {Role::max, 1}},
-    {"width", {Role::size, 0}},
-    {"height", {Role::size, 1}},
-    {"depth", {Role::size, 2}},
-    {"w", {Role::size, 0}},
-    {"h", {Role::size, 1}},
-    {"d", {Role::size, 2}},
-    {"halfwidth", {Role::half_size, 0}},
-    {"halfheight", {Role::half_size, 1}},
-    {"halfdepth", {Role::half_size, 2}},
-});
-
-/// A name without what people spell differently.
-std::string plain(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (std::string_view("_-. ").find(c) == std::string_view::npos)
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return text;
-}
-
-std::optional<Meaning> meaning_of(std::string_view name) {
-  const std::string text = plain(name);
-  for (const Whole& whole : wholes) {
-    if (text == whole.text) return whole.meaning;
-  }
-  if (text.empty()) return std::nullopt;
-  for (const Word& word : words) {
-    for (const auto& [letter, rest] :
-         {std::pair(text.front(), std::string_view(text).substr(1)),
-          std::pair(text.back(), std::string_view(text).substr(0, text.size() - 1))}) {
-      const std::size_t axis = axes.find(letter);
-      if (axis != std::string_view::npos && rest == word.text)
-        return Meaning{word.role, static_cast<int>(axis)};
-    }
-  }
-  return std::nullopt;
+bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
+  return std::ranges::find(list, plain(name)) != list.end();
 }
 
 bool is_frame(std::string_view name) { return plain(name) == "frame"; }
 
 bool is_box(std::string_view name) { return plain(name) == "box"; }
+
+bool is_radius(std::string_view name) { return plain(name) == "radius" || plain(name) == "r"; }
+
+/// Names for what tells the boxes of frames apart, the first one there is used.
+constexpr auto track_names =
+    std::to_array<std::string_view>({"trackid", "track", "objectid", "object", "id"});
+
+/// Names of bounds in one field before those of geometries, which have to be looked through.
+constexpr auto geometry_names =
+    std::to_array<std::string_view>({"bbox", "bounds", "envelope", "wkt", "geometry", "geom", "thegeom"});
 
 constexpr int none = -1;
 
@@ -150,15 +64,16 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
 /// On a screen y grows downwards: a top that comes with a height and nothing else is where the box begins.
 void read_as_screen(Found& y, std::span<const std::string_view> names) {
   const int top = of(y, Role::max);
-  if (top == none || plain(names[static_cast<std::size_t>(top)]) != "top" || of(y, Role::size) == none)
+  if (top == none || !plain(names[static_cast<std::size_t>(top)]).ends_with("top") ||
+      of(y, Role::size) == none)
     return;
-  for (const Role role : {Role::min, Role::centre, Role::position}) {
+  for (const Role role : {Role::min, Role::centre}) {
     if (of(y, role) != none) return;
   }
   std::swap(y[static_cast<std::size_t>(Role::min)], y[static_cast<std::size_t>(Role::max)]);
 }
 
-std::optional<Choice> choose(const Found& found) {
+std::optional<Choice> choose(const Found& found, int radius) {
   struct Way {
     BoundsForm form;
     Role first;
@@ -177,14 +92,131 @@ std::optional<Choice> choose(const Found& found) {
     if (of(found, way.first) != none && of(found, way.second) != none)
       return Choice{way.form, of(found, way.first), of(found, way.second)};
   }
+  for (const Role role : {Role::centre, Role::position, Role::geographic}) {
+    if (radius != none && of(found, role) != none && of(found, Role::size) == none)
+      return Choice{BoundsForm::centre_radius, of(found, role), radius};
+  }
   return std::nullopt;
+}
+
+/// The column of the only thing that is known on an axis, a position; `none` if more is known or less.
+int point_of(const Found& found) {
+  const int column =
+      of(found, Role::position) != none ? of(found, Role::position) : of(found, Role::geographic);
+  const auto known = std::ranges::count_if(found, [](int other) { return other != none; });
+  return known == 1 ? column : none;
+}
+
+/// The radius, if it is one: beside g and b, r is a colour.
+int radius_of(std::span<const std::string_view> names) {
+  const auto find = [names](std::string_view wanted) {
+    const auto name = std::ranges::find(names, wanted, [](std::string_view text) { return plain(text); });
+    return name == names.end() ? none : static_cast<int>(name - names.begin());
+  };
+  if (const int radius = find("radius"); radius != none) return radius;
+  return find("g") != none && find("b") != none ? none : find("r");
+}
+
+/// The first column of one of these names, the names in order.
+int first_of(std::span<const std::string_view> names, std::span<const std::string_view> wanted) {
+  for (const std::string_view want : wanted) {
+    const auto name = std::ranges::find(names, want, [](std::string_view text) { return plain(text); });
+    if (name != names.end()) return static_cast<int>(name - names.begin());
+  }
+  return none;
+}
+
+/// What is wrong with an axis without bounds; empty for a z axis that need not have any.
+std::string problem_of(const Found& found, std::size_t axis, std::span<const std::string_view> names,
+                       bool is_computed) {
+  const int position = of(found, Role::position);
+  const int size = of(found, Role::size);
+  // Beside bounds on the other two, z and depth need not be those of a box.
+  if (position != none && size != none && (axis < 2 || is_computed))
+    return fmt::format("column {} may be a minimum or a centre",
+                       shown(names[static_cast<std::size_t>(position)]));
+  // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
+  const auto known = std::ranges::find_if(found, [&](int column) {
+    return column != none && column != position && column != of(found, Role::geographic) &&
+           column != of(found, Role::third) && (column != size || axis < 2);
+  });
+  if (known != found.end())
+    return fmt::format("column {} alone does not give bounds on the {} axis",
+                       shown(names[static_cast<std::size_t>(*known)]), axes[axis]);
+  return axis < 2 ? fmt::format("no columns that give bounds on the {} axis", axes[axis]) : "";
+}
+
+/// The columns of boxes without extent, where there are no others; false if there are no such columns.
+bool resolve_points(const std::array<Found, 3>& found, CsvColumns& columns) {
+  const int x = point_of(found[0]);
+  const int y = point_of(found[1]);
+  const int z = point_of(found[2]);
+  if (x == none || y == none) return false;
+  columns.forms.fill(BoundsForm::point);
+  columns.places[static_cast<std::size_t>(x)] = CsvColumns::first;
+  columns.places[static_cast<std::size_t>(y)] = CsvColumns::first + 1;
+  if (z != none) {
+    columns.places[static_cast<std::size_t>(z)] = CsvColumns::first + 2;
+    columns.dimension = 3;
+  }
+  return true;
+}
+
+/// Finds the columns that boxes are made of. Returns what is wrong with them.
+std::string resolve_bounds(std::span<const std::string_view> names, const std::array<Found, 3>& found,
+                           CsvColumns& columns) {
+  const CsvColumns before = columns;
+  const auto place = [&columns](int column, int where) {
+    columns.places[static_cast<std::size_t>(column)] = where;
+  };
+  const int radius = radius_of(names);
+  std::string problem;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Found& of_axis = found[axis];
+    if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
+      std::string points = points_of(of_axis, names);
+      if (!points.empty()) return points;
+    }
+    if (const std::optional<Choice> choice = choose(of_axis, radius)) {
+      const int of_form = static_cast<int>(axis);
+      columns.forms[axis] = choice->form;
+      columns.dimension = std::max(2, of_form + 1);
+      place(choice->first, CsvColumns::first + of_form);
+      place(choice->second,
+            choice->form == BoundsForm::centre_radius ? CsvColumns::radius : CsvColumns::second + of_form);
+    } else if (problem.empty()) {
+      problem = problem_of(of_axis, axis, names, columns.is_computed());
+    }
+  }
+  if (problem.empty()) return {};
+  columns = before;
+  if (const int geometry = first_of(names, geometry_names); geometry != none) {
+    columns.has_geometry = true;
+    place(geometry, CsvColumns::geometry);
+    return {};
+  }
+  if (!resolve_points(found, columns)) return problem;
+  // A z that is not alone says nothing certain of a point.
+  return point_of(found[2]) == none ? problem_of(found[2], 2, names, true) : "";
 }
 
 }  // namespace
 
 bool CsvColumns::is_computed() const noexcept {
-  return std::any_of(forms.begin(), forms.begin() + dimension,
-                     [](BoundsForm form) { return form != BoundsForm::min_max; });
+  return std::any_of(forms.begin(), forms.begin() + dimension, [](BoundsForm form) {
+    return form != BoundsForm::min_max && form != BoundsForm::point;
+  });
+}
+
+unsigned CsvColumns::needed() const noexcept {
+  if (has_geometry) return 1U << geometry;
+  unsigned bits = 0;
+  for (int axis = 0; axis < dimension; ++axis) {
+    bits |= 1U << (first + axis);
+    const BoundsForm form = forms[static_cast<std::size_t>(axis)];
+    if (form != BoundsForm::point) bits |= 1U << (form == BoundsForm::centre_radius ? radius : second + axis);
+  }
+  return bits;
 }
 
 std::string CsvColumns::wanted() const {
@@ -195,7 +227,11 @@ std::string CsvColumns::wanted() const {
   return list;
 }
 
-bool is_column_name(std::string_view name) { return is_frame(name) || is_box(name) || meaning_of(name); }
+bool is_column_name(std::string_view name) {
+  return is_frame(name) || is_box(name) || is_radius(name) || meaning_of(name);
+}
+
+bool is_geometry_name(std::string_view name) { return is_one_of(name, geometry_names); }
 
 std::string resolve(std::span<const std::string_view> names, CsvColumns& columns) {
   columns = {};
@@ -229,42 +265,18 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     columns.places[static_cast<std::size_t>(column)] = where;
   };
   if (columns.has_frames) {
-    if (box == none)
-      return fmt::format("column {} without a column 'box'", shown(names[static_cast<std::size_t>(frame)]));
+    const int track = box == none ? first_of(names, track_names) : none;
+    if (box == none && track == none)
+      return fmt::format("column {} without a column 'box' or 'id'",
+                         shown(names[static_cast<std::size_t>(frame)]));
+    columns.has_tracks = track != none;
     place(frame, CsvColumns::frame);
-    place(box, CsvColumns::box);
+    if (columns.has_tracks)
+      place(track, CsvColumns::track);
+    else
+      place(box, CsvColumns::box);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const Found& of_axis = found[static_cast<std::size_t>(axis)];
-    const char letter = axes[static_cast<std::size_t>(axis)];
-    if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
-      std::string points = points_of(of_axis, names);
-      if (!points.empty()) return points;
-    }
-    if (const std::optional<Choice> choice = choose(of_axis)) {
-      columns.forms[static_cast<std::size_t>(axis)] = choice->form;
-      columns.dimension = std::max(2, axis + 1);
-      place(choice->first, CsvColumns::first + axis);
-      place(choice->second, CsvColumns::second + axis);
-      continue;
-    }
-    const int position = of_axis[static_cast<std::size_t>(Role::position)];
-    const int size = of_axis[static_cast<std::size_t>(Role::size)];
-    // Beside bounds on the other two, z and depth need not be those of a box.
-    if (position != none && size != none && (axis < 2 || columns.is_computed()))
-      return fmt::format("column {} may be a minimum or a centre",
-                         shown(names[static_cast<std::size_t>(position)]));
-    // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
-    const auto known = std::ranges::find_if(of_axis, [&](int column) {
-      return column != none && column != position && column != of(of_axis, Role::third) &&
-             (column != size || axis < 2);
-    });
-    if (known != of_axis.end())
-      return fmt::format("column {} alone does not give bounds on the {} axis",
-                         shown(names[static_cast<std::size_t>(*known)]), letter);
-    if (axis < 2) return fmt::format("no columns that give bounds on the {} axis", letter);
-  }
-  return {};
+  return resolve_bounds(names, found, columns);
 }
 
 std::string positional(std::size_t count, CsvColumns& columns) {

@@ -7,12 +7,38 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace broadside::lab::readers {
 
 /// Of what two columns the bounds on an axis are made.
-enum class BoundsForm : std::uint8_t { min_max, min_size, centre_size, centre_half_size };
+enum class BoundsForm : std::uint8_t {
+  min_max,
+  min_size,
+  centre_size,
+  centre_half_size,
+  centre_radius,  ///< the second is CsvColumns::radius, for all axes
+  point           ///< the first alone
+};
+
+/// The bounds that two values of a form are, computed in double.
+inline std::pair<double, double> bounds_of(BoundsForm form, double first, double second) noexcept {
+  switch (form) {
+    case BoundsForm::min_max:
+      return {first, second};
+    case BoundsForm::min_size:
+      return {first, first + second};
+    case BoundsForm::centre_size:
+      return {first - second / 2, first + second / 2};
+    case BoundsForm::centre_half_size:
+    case BoundsForm::centre_radius:
+      return {first - second, first + second};
+    case BoundsForm::point:
+      return {first, first};
+  }
+  return {first, second};
+}
 
 /// The columns of a table.
 struct CsvColumns {
@@ -23,16 +49,35 @@ struct CsvColumns {
   static constexpr int box = 1;
   static constexpr int first = 2;
   static constexpr int second = 5;
-  static constexpr std::size_t places_of_a_row = 8;
+  static constexpr int radius = 8;
+  static constexpr std::size_t places_of_a_row = 9;
+  // Texts, which are no values.
+  static constexpr int id = 9;         ///< to be shown to the user
+  static constexpr int track = 10;     ///< that tells which box of a frame is which of the next
+  static constexpr int geometry = 11;  ///< well-known text, or the bounds in one field
 
   std::vector<std::string> names{};  ///< of each column, from left to right
   std::vector<int> places{};         ///< of each column's value in a row, or `ignored`
   int dimension = 2;
   bool has_frames = false;
+  bool has_tracks = false;  ///< each frame lists the boxes that are there, by a name or number
+  bool has_geometry =
+      false;  ///< a text instead of columns of bounds; its dimension is known once one is read
   std::array<BoundsForm, 3> forms{};
 
   /// Whether bounds have to be computed.
   bool is_computed() const noexcept;
+
+  /// The bounds on an axis that the values of a row make.
+  std::pair<double, double> bounds(std::span<const double, places_of_a_row> values,
+                                   std::size_t axis) const noexcept {
+    const bool has_radius = forms[axis] == BoundsForm::centre_radius;
+    return bounds_of(forms[axis], values[static_cast<std::size_t>(first) + axis],
+                     values[has_radius ? std::size_t{radius} : static_cast<std::size_t>(second) + axis]);
+  }
+
+  /// The values that a box is made of, as bits: bit p for place p.
+  unsigned needed() const noexcept;
 
   /// The names of the columns that are not ignored, with commas between.
   std::string wanted() const;
@@ -42,8 +87,14 @@ struct CsvColumns {
 /// what is wrong with them; nothing if they are fine.
 std::string resolve(std::span<const std::string_view> names, CsvColumns& columns);
 
+/// A name without what people spell differently: capitals, blanks, `_`, `-` and `.`.
+std::string plain(std::string_view name);
+
 /// Whether a name, or one of its other spellings, is that of a known column.
 bool is_column_name(std::string_view name);
+
+/// Whether a name is that of a column of geometries as text, or of bounds in one field.
+bool is_geometry_name(std::string_view name);
 
 /// What the columns of numbers without names are: 4 or 6, minima and then maxima. Returns what is wrong.
 std::string positional(std::size_t count, CsvColumns& columns);

@@ -57,7 +57,8 @@ CsvFields::CsvFields(const char* begin, const char* end, Separator separator)
 bool CsvFields::next(std::string_view& field) {
   if (!more_) return false;
   skip_padding();
-  if (at_ != end_ && *at_ == '"' && take_quoted(field)) return true;
+  is_quoted_ = at_ != end_ && *at_ == '"' && take_quoted(field);
+  if (is_quoted_) return true;
   const char* const begin = at_;
   if (separator_ == Separator::blanks)
     at_ = std::find_if(at_, end_, [](char c) { return is_padding(c, Separator::blanks); });
@@ -85,6 +86,14 @@ bool CsvFields::take_quoted(std::string_view& field) {
   return true;
 }
 
+void CsvFields::read_text(std::string_view field, std::string& text) const {
+  text.clear();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    text += field[i];
+    if (is_quoted_ && field[i] == '"') ++i;
+  }
+}
+
 void CsvFields::skip_padding() {
   while (at_ != end_ && is_padding(*at_, separator_)) ++at_;
 }
@@ -97,6 +106,18 @@ bool CsvFields::take_separator() {
   if (!more_) return true;
   if (separator_ == Separator::blanks) return at_ != before;
   return *at_++ == static_cast<char>(separator_);
+}
+
+void append_csv_field(std::string& line, std::string_view field) {
+  const bool is_padded = !field.empty() && (is_padding(field.front(), Separator::comma) ||
+                                            is_padding(field.back(), Separator::comma));
+  if (!is_padded && field.find_first_of("\",\r\n") == std::string_view::npos) {
+    line += field;
+    return;
+  }
+  line += '"';
+  for (const char c : field) line.append(c == '"' ? 2 : 1, c);
+  line += '"';
 }
 
 std::vector<std::string_view> fields_of(std::string_view line, Separator separator) {
@@ -138,8 +159,8 @@ void CsvLines::take() {
   passed_ += size + 1;
 }
 
-void CsvLines::refuse(const std::string& found, const std::string& expected) const {
-  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), number_, found, expected));
+void CsvLines::refuse(std::uint64_t line, const std::string& found, const std::string& expected) const {
+  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), line, found, expected));
 }
 
 }  // namespace broadside::lab::readers

@@ -33,6 +33,9 @@ class CsvFields {
   /// Whether there was another field; `field` is then that one.
   bool next(std::string_view& field);
 
+  /// What the field taken last says: two quotes in one that stood in quotes are one.
+  void read_text(std::string_view field, std::string& text) const;
+
   /// Where the next field begins.
   const char* at() const noexcept { return at_; }
 
@@ -48,7 +51,11 @@ class CsvFields {
   const char* end_;
   Separator separator_;
   bool more_ = true;
+  bool is_quoted_ = false;  // the field taken last
 };
+
+/// Appends a field to a line with commas: in quotes where it could be read as anything else.
+void append_csv_field(std::string& line, std::string_view field);
 
 /// All fields of a line.
 std::vector<std::string_view> fields_of(std::string_view line, Separator separator);
@@ -84,7 +91,12 @@ class CsvLines {
   /// How many bytes there are behind the line, without empty lines at the end.
   std::size_t bytes_left() const noexcept { return rest_.size(); }
 
-  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;
+  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+    refuse(number_, found, expected);
+  }
+
+  /// Refuses an earlier line.
+  [[noreturn]] void refuse(std::uint64_t line, const std::string& found, const std::string& expected) const;
 
  private:
   void take();

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "lab/readers/csv.hpp"
+#include "lab/readers/format.hpp"
+#include "lab/readers/shown.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -30,9 +32,13 @@ class Buffer {
   }
 
   void text(std::string_view text) {
-    make_room();
-    std::memcpy(bytes_.data() + used_, text.data(), text.size());
-    used_ += text.size();
+    while (!text.empty()) {
+      make_room();
+      const std::size_t size = std::min(text.size(), bytes_.size() - used_);
+      std::memcpy(bytes_.data() + used_, text.data(), size);
+      used_ += size;
+      text.remove_prefix(size);
+    }
   }
 
   void flush() {
@@ -41,7 +47,7 @@ class Buffer {
   }
 
  private:
-  /// Room for what is longest: the names of the columns.
+  /// Room for any number.
   void make_room() {
     if (bytes_.size() - used_ < 100) flush();
   }
@@ -59,15 +65,6 @@ void write_bounds(Buffer& buffer, const Box<D, Real>& box) {
     if (!absent) buffer.number(static_cast<double>(i < D ? box.min[i] : box.max[i - D]));
   }
   buffer.text("\n");
-}
-
-template <int D, typename Real>
-void write_row(Buffer& buffer, std::size_t frame, BoxId id, const Box<D, Real>& box) {
-  buffer.number(frame);
-  buffer.text(",");
-  buffer.number(index(id));
-  buffer.text(",");
-  write_bounds(buffer, box);
 }
 
 /// What a file must list so that its boxes become those of `step`: the boxes that change, those that go
@@ -99,6 +96,8 @@ class CsvWriter final : public FrameWriter<D, Real> {
  public:
   explicit CsvWriter(std::ostream& stream) : buffer_(stream) {}
 
+  void use_ids(const std::vector<std::string>& ids) override { ids_ = &ids; }
+
   void first(std::span<const Box<D, Real>> boxes) override {
     boxes_.assign(boxes.begin(), boxes.end());
     places_ = boxes.size();
@@ -107,13 +106,13 @@ class CsvWriter final : public FrameWriter<D, Real> {
   void next(const Step<D, Real>& step) override {
     if (frame_ == 0) {
       buffer_.text("frame,box,");
-      buffer_.text(bounds_columns<D>);
-      for (std::size_t i = 0; i < boxes_.size(); ++i) write_row(buffer_, 0, BoxId(i), boxes_[i]);
+      write_names();
+      for (std::size_t i = 0; i < boxes_.size(); ++i) write_row(i, boxes_[i]);
       if (boxes_.empty()) write_frame_alone();
     }
     ++frame_;
     const auto rows = rows_of<D, Real>(step, boxes_, places_);
-    for (const auto& [id, box] : rows) write_row(buffer_, frame_, id, box);
+    for (const auto& [id, box] : rows) write_row(index(id), box);
     if (rows.empty()) write_frame_alone();
     lab::apply(step, boxes_);
     places_ = std::max(places_, boxes_.size());
@@ -121,19 +120,53 @@ class CsvWriter final : public FrameWriter<D, Real> {
 
   void finish() override {
     if (frame_ == 0) {
-      buffer_.text(bounds_columns<D>);
-      for (const Box<D, Real>& box : boxes_) write_bounds(buffer_, box);
+      write_names();
+      for (std::size_t i = 0; i < boxes_.size(); ++i) {
+        write_id(i);
+        write_bounds(buffer_, boxes_[i]);
+      }
     }
     buffer_.flush();
   }
 
  private:
+  void write_names() {
+    if (ids_ != nullptr) buffer_.text("id,");
+    buffer_.text(bounds_columns<D>);
+  }
+
+  void write_id(std::size_t place) {
+    if (ids_ == nullptr) return;
+    if (place < ids_->size()) {
+      quoted_.clear();
+      append_csv_field(quoted_, (*ids_)[place]);
+      if (quoted_.find_first_of("\r\n") != std::string::npos)
+        throw FileError(
+            fmt::format("id {} of box {} has a line break, which a table cannot hold; expected one line",
+                        shown((*ids_)[place]), place));
+      buffer_.text(quoted_);
+    }
+    buffer_.text(",");
+  }
+
+  void write_row(std::size_t place, const Box<D, Real>& box) {
+    buffer_.number(frame_);
+    buffer_.text(",");
+    buffer_.number(place);
+    buffer_.text(",");
+    write_id(place);
+    write_bounds(buffer_, box);
+  }
+
   void write_frame_alone() {
     buffer_.number(frame_);
+    if (ids_ != nullptr) buffer_.text(",");
     buffer_.text(D == 2 ? ",,,,,\n" : ",,,,,,,\n");
   }
 
   Buffer buffer_;
+  const std::vector<std::string>* ids_ = nullptr;
+  std::string quoted_;
   std::vector<Box<D, Real>> boxes_;
   std::size_t places_ = 0;  // in the file, where the array never becomes shorter
   std::size_t frame_ = 0;

@@ -8,6 +8,7 @@ namespace broadside::lab::readers {
 Format trace();
 Format csv();
 Format npy();
+Format npz();
 Format broadmark();
 Format map();
 Format mesh();

@@ -14,17 +14,11 @@
 #include "broadside/suggestion.hpp"
 
 #include "lab/readers/descriptions.hpp"
+#include "lab/readers/unread_formats.hpp"
 #include "lab/readers/write_file.hpp"
 
 namespace broadside::lab {
 namespace {
-
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool has_extension(const Format& format, const std::string& extension) {
   return std::ranges::find(format.extensions, extension) != format.extensions.end();
@@ -78,6 +72,14 @@ bool is_text(std::string_view bytes) {
       bytes, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r' && c != '\n'; });
 }
 
+/// Throws FileError naming the converter if an input is in a format that is known and not read: by its
+/// extension, or, where that is empty, by its first bytes.
+void refuse_unread(Input& input, std::string_view extension) {
+  const std::string_view file = input.path().empty() ? "FILE" : std::string_view(input.name());
+  const std::string found = unread_format(input.beginning(), extension, file);
+  if (!found.empty()) throw FileError(fmt::format("{}: {}", input.name(), found));
+}
+
 const Format& readable_format(Input& input, const ReadOptions& options) {
   const std::string_view name = options.format;
   const std::string_view begin = input.beginning();
@@ -85,6 +87,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
     throw FileError(fmt::format("{}: begins as text in UTF-16; expected UTF-8", input.name()));
   const auto wanted =
       std::ranges::find_if(formats(), [&](const Format& format) { return is_called(format, name); });
+  if (name.empty()) refuse_unread(input, "");
   const Format* const format = name.empty()                ? format_of(begin, input.extension())
                                : wanted == formats().end() ? nullptr
                                                            : &*wanted;
@@ -94,6 +97,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
     throw FileError(fmt::format("{}: unknown format '{}'{}; expected one of: {}", input.name(), name,
                                 suggested(name, can_be_read), listed(can_be_read)));
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
+  if (!input.extension().empty()) refuse_unread(input, input.extension());
   // A table whose own names nobody knows is one by those that the user gives.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
   if (!options.columns.empty() && table != formats().end()) return *table;
@@ -110,8 +114,19 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
     throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
                                 format.name));
   if (!options.layer.empty() && !format.has_layers)
-    throw FileError(fmt::format("{}: is in format {}, which has no layer '{}'; expected a map", name,
-                                format.name, options.layer));
+    throw FileError(
+        fmt::format("{}: is in format {}, which has no layer or array '{}'; expected a map or an "
+                    ".npz file",
+                    name, format.name, options.layer));
+  if (!options.ids.empty() && !format.has_ids)
+    throw FileError(
+        fmt::format("{}: is in format {}, which has no ids such as '{}'; expected a table or a map", name,
+                    format.name, options.ids));
+  if (options.say_invalid && !format.can_skip)
+    throw FileError(
+        fmt::format("{}: is in format {}, of which --skip-invalid can leave nothing out; expected "
+                    "a table or a map",
+                    name, format.name));
   if (options.boxes.empty() ||
       std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
     return;
@@ -141,7 +156,8 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
-      readers::trace(), readers::csv(), readers::npy(), readers::broadmark(), readers::map(), readers::mesh(),
+      readers::trace(),     readers::csv(), readers::npy(),  readers::npz(),
+      readers::broadmark(), readers::map(), readers::mesh(),
   };
   return list;
 }
@@ -155,7 +171,7 @@ BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options)
   if (options.dimension == 3 && dimension_of(frames) == 2)
     throw FileError(fmt::format("{}: holds boxes in 2D; expected boxes in 3D", name));
   if (options.dimension == 2) frames = flattened(std::move(frames));
-  if (options.precision) frames = with_precision(std::move(frames), *options.precision);
+  if (options.precision) frames = with_precision(std::move(frames), *options.precision, name);
   return {std::move(name), &format, std::move(frames)};
 }
 
@@ -199,7 +215,9 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
 }
 
 const Format& writable_format(const std::filesystem::path& path, std::string_view name) {
-  const std::string extension = extension_of(path);
+  // Nothing is compressed as it is written.
+  const std::string compression = compression_extension_of(path);
+  const std::string extension = compression.empty() ? extension_of(path) : compression;
   for (const Format& format : formats()) {
     if (!can_be_written(format)) continue;
     if (name.empty() ? has_extension(format, extension) : is_called(format, name)) return format;
@@ -232,6 +250,8 @@ void write_frames(AnyFrameReader frames, const std::filesystem::path& path, cons
     written([&] {
       writer = std::get<std::unique_ptr<FrameWriter<D, Real>>>(format.create(stream, dimension, precision));
     });
+    const std::shared_ptr<const BoxLabels> labels = reader.labels();
+    if (labels && labels->has_ids && format.keeps_ids) writer->use_ids(labels->ids);
     const std::vector<Box<D, Real>> boxes = reader.first();
     written([&] { writer->first(boxes); });
     for (Step<D, Real> step; reader.next(step);) written([&] { writer->next(step); });

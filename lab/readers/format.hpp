@@ -26,12 +26,17 @@ class FileError : public std::runtime_error {
 
 /// How a file is to be read; what is left empty, the file and its format decide.
 struct ReadOptions {
-  std::string format{};   ///< the name of a format; empty: told by the file's content and name
-  std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
-  std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
-  std::string layer{};    ///< of a map with several, the one to read; empty: all
-  int dimension = 0;      ///< 2 or 3; a file in 3D is seen along the z axis in 2D
+  std::string format{};    ///< the name of a format; empty: told by the file's content and name
+  std::string boxes{};     ///< of what the boxes are to be, one of the format's Format::parts
+  std::string columns{};   ///< the names of a table's columns, from left to right, with commas between
+  std::string layer{};     ///< of a map with several layers, the one to read (empty: all), or an array of .npz
+  std::string ids{};       ///< a table's column or a map's property of ids, as --ids; empty: not read
+  bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
+  int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};
+  /// Where it is there, invalid boxes are left out, as absent ones where the format can hold those, and the
+  /// first are told one by one; otherwise a file with one is refused.
+  std::function<void(std::string_view why)> say_invalid{};
   Progress progress{};
 };
 
@@ -49,6 +54,8 @@ struct Format {
   std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
   bool has_columns = false;             ///< whether ReadOptions::columns means something
   bool has_layers = false;              ///< whether ReadOptions::layer means something
+  bool can_skip = false;                ///< whether ReadOptions::say_invalid means something
+  bool has_ids = false;                 ///< whether ReadOptions::ids means something
   bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
 
   /// Whether a file that begins with these bytes (Input::beginning_bytes of them) and has this extension is
@@ -66,6 +73,7 @@ struct Format {
   std::function<AnyFrameWriter(std::ostream&, int dimension, Precision precision)> create{};
 
   bool has_doubles = true;  ///< whether create() takes doubles, in a format that can be written
+  bool keeps_ids = false;   ///< whether what it makes writes the boxes' ids
 
   std::string missing{};  ///< what is not there and how to get it, where files cannot be read for that reason
 };

@@ -26,7 +26,8 @@ Box<D, Real> converted(const Box<OldD, OldReal>& box) {
 template <int D, typename Real, int OldD, typename OldReal>
 class ConvertedFrames final : public FrameReader<D, Real> {
  public:
-  explicit ConvertedFrames(std::unique_ptr<FrameReader<OldD, OldReal>> frames) : frames_(std::move(frames)) {}
+  explicit ConvertedFrames(std::unique_ptr<FrameReader<OldD, OldReal>> frames, std::string name = {})
+      : frames_(std::move(frames)), name_(std::move(name)) {}
 
   std::vector<Box<D, Real>> first() override { return converted_boxes(frames_->first()); }
 
@@ -36,10 +37,20 @@ class ConvertedFrames final : public FrameReader<D, Real> {
     return true;
   }
 
-  std::string warning() const override { return frames_->warning(); }
+  std::string warning() const override {
+    const std::string warning = frames_->warning();
+    if (rounding_.rounded == 0) return warning;
+    return fmt::format("{}{}{}: {}", warning, warning.empty() ? "" : "\n", name_, rounding_.text());
+  }
+
+  std::string_view importer() const override { return frames_->importer(); }
+
+  std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
  private:
-  static std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
+  std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
+    if constexpr (std::is_same_v<Real, float> && std::is_same_v<OldReal, double>)
+      rounding_.count(std::span<const Box<OldD, OldReal>>(boxes));
     std::vector<Box<D, Real>> result;
     result.reserve(boxes.size());
     std::ranges::transform(boxes, std::back_inserter(result), converted<D, Real, OldD, OldReal>);
@@ -47,15 +58,17 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   }
 
   std::unique_ptr<FrameReader<OldD, OldReal>> frames_;
+  std::string name_;  // the file's
+  Rounding rounding_;
   Step<OldD, OldReal> old_;
 };
 
 template <typename Real, int D, typename OldReal>
-AnyFrameReader with_coordinates_of(std::unique_ptr<FrameReader<D, OldReal>> frames) {
+AnyFrameReader with_coordinates_of(std::unique_ptr<FrameReader<D, OldReal>> frames, std::string name) {
   if constexpr (std::is_same_v<Real, OldReal>)
     return frames;
   else
-    return std::make_unique<ConvertedFrames<D, Real, D, OldReal>>(std::move(frames));
+    return std::make_unique<ConvertedFrames<D, Real, D, OldReal>>(std::move(frames), std::move(name));
 }
 
 template <int D, typename Real>
@@ -72,6 +85,11 @@ std::string_view name(Precision precision) noexcept {
   return precision == Precision::float32 ? "float" : "double";
 }
 
+std::string precision_text(Precision precision, std::string_view importer) {
+  if (importer.empty()) return fmt::format("as {}s", name(precision));
+  return fmt::format("as {}s (read by {} in float)", name(precision), importer);
+}
+
 std::string Rounding::text() const {
   return fmt::format("{} of {} {} rounded to float", grouped(rounded),
                      counted(coordinates, "coordinate", "coordinates"), rounded == 1 ? "was" : "were");
@@ -83,11 +101,16 @@ Precision precision_of_frames(const AnyFrameReader& frames) noexcept {
   return frames.index() < 2 ? Precision::float32 : Precision::float64;
 }
 
-AnyFrameReader with_precision(AnyFrameReader frames, Precision precision) {
+std::string_view importer_of(const AnyFrameReader& frames) {
+  return std::visit([](const auto& reader) { return reader->importer(); }, frames);
+}
+
+AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::string name) {
   return std::visit(
-      [precision](auto& reader) {
-        return precision == Precision::float32 ? with_coordinates_of<float>(std::move(reader))
-                                               : with_coordinates_of<double>(std::move(reader));
+      [&](auto& reader) {
+        return precision == Precision::float32
+                   ? with_coordinates_of<float>(std::move(reader), std::move(name))
+                   : with_coordinates_of<double>(std::move(reader), std::move(name));
       },
       frames);
 }

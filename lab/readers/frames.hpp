@@ -24,6 +24,9 @@ enum class Precision : std::uint8_t { float32, float64 };
 /// "float" or "double".
 std::string_view name(Precision precision) noexcept;
 
+/// "as floats", or "as floats (read by assimp in float)".
+std::string precision_text(Precision precision, std::string_view importer);
+
 template <typename Real>
 constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
 
@@ -44,8 +47,21 @@ struct Rounding {
     }
   }
 
+  Rounding& operator+=(const Rounding& other) noexcept {
+    coordinates += other.coordinates;
+    rounded += other.rounded;
+    return *this;
+  }
+
   /// "2 of 1,000 coordinates were rounded to float".
   std::string text() const;
+};
+
+/// What a file says of its boxes besides their bounds.
+struct BoxLabels {
+  bool has_ids = false;
+  std::vector<std::string> ids{};     ///< the user's, by place, as far as frames have been read; any text
+  std::vector<std::string> unread{};  ///< the names of a table's columns that nothing is read from
 };
 
 /// Gives the frames of a file, one after the other. Throws FileError (lab/readers/format.hpp) where the file
@@ -61,8 +77,16 @@ class FrameReader {
   /// Whether there was another frame; `step` then leads to it from the one before.
   virtual bool next(Step<D, Real>& step) = 0;
 
-  /// After the last frame: what had to be left out of a damaged file, and where; empty otherwise.
+  /// After the last frame: what had to be left out of a damaged file, and where, and how many coordinates
+  /// were rounded where that was asked for; empty otherwise.
   virtual std::string warning() const { return {}; }
+
+  /// Filled as frames are read; null where the file has none.
+  virtual std::shared_ptr<const BoxLabels> labels() const { return nullptr; }
+
+  /// The library that read the file, where it may have rounded the file's numbers to float: pairs of these
+  /// boxes are not exact. Empty otherwise.
+  virtual std::string_view importer() const { return {}; }
 };
 
 /// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.
@@ -70,6 +94,10 @@ template <int D, typename Real>
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
+
+  /// Called before first() where the boxes have ids and the format keeps them (Format::keeps_ids): the ids by
+  /// place. The list outlives the writer, and grows before each call that brings new boxes.
+  virtual void use_ids(const std::vector<std::string>& ids) { static_cast<void>(ids); }
 
   /// The boxes of the first frame. Called once, before next().
   virtual void first(std::span<const Box<D, Real>> boxes) = 0;
@@ -99,11 +127,16 @@ auto for_boxes_of(int dimension, Precision precision, const Make& make) {
 int dimension_of(const AnyFrameReader& frames) noexcept;
 Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
 
+/// FrameReader::importer() of any of the four.
+std::string_view importer_of(const AnyFrameReader& frames);
+
 /// The frames of a file whose reader has all its boxes in memory.
 template <int D, typename Real>
 class HistoryReader final : public FrameReader<D, Real> {
  public:
-  explicit HistoryReader(History<D, Real> history) : history_(std::move(history)) {}
+  explicit HistoryReader(History<D, Real> history, std::shared_ptr<const BoxLabels> labels = nullptr,
+                         std::string warning = {})
+      : history_(std::move(history)), labels_(std::move(labels)), warning_(std::move(warning)) {}
 
   std::vector<Box<D, Real>> first() override { return std::move(history_.boxes); }
 
@@ -113,8 +146,14 @@ class HistoryReader final : public FrameReader<D, Real> {
     return true;
   }
 
+  std::string warning() const override { return warning_; }
+
+  std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
+
  private:
   History<D, Real> history_;
+  std::shared_ptr<const BoxLabels> labels_;
+  std::string warning_;
   std::size_t next_ = 0;
 };
 
@@ -127,8 +166,8 @@ History<D, Real> read_all(FrameReader<D, Real>& frames) {
 }
 
 /// The same frames with coordinates of another type: rounded to the nearest, and the infinite beyond the
-/// largest.
-AnyFrameReader with_precision(AnyFrameReader frames, Precision precision);
+/// largest. Their warning says how many of the file of this name were rounded.
+AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::string name = {});
 
 /// The same frames in 2D: 3D boxes seen along the z axis.
 AnyFrameReader flattened(AnyFrameReader frames);

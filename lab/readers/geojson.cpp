@@ -11,34 +11,45 @@ namespace {
 
 class GeoJson {
  public:
-  GeoJson(MapText& text, MapBoxes& boxes) : text_(text), boxes_(boxes) {}
+  GeoJson(MapText& text, const MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
+      : text_(text), ids_(ids), quarantine_(quarantine), boxes_(boxes) {}
 
   void read(std::string_view type) {
     json::object root = text_.root();
     if (type == "FeatureCollection") {
-      for (auto result : text_.array(text_.field(root, "features"), "an array of features")) {
-        text_.begin_feature();
-        read_feature(text_.object(text_.element(result), "a feature"));
-      }
+      for (auto result : text_.array(text_.field(root, "features"), "an array of features"))
+        read_whole([&] { read_feature(text_.object(text_.element(result), "a feature")); });
     } else if (type == "Feature") {
-      text_.begin_feature();
-      read_feature(root);
+      read_whole([&] { read_feature(root); });
     } else if (type == "GeometryCollection") {
+      ids_.refuse(text_, "geometries");
       for (auto result : text_.array(text_.field(root, "geometries"), "an array of geometries")) {
-        text_.begin_feature();
-        read_geometry(text_.object(text_.element(result), "a geometry"), 1);
-        boxes_.end_feature();
+        read_whole([&] {
+          read_geometry(text_.object(text_.element(result), "a geometry"), 1);
+          boxes_.end_feature();
+        });
       }
     } else {
-      text_.begin_feature();
-      read_geometry(root, 0);
-      boxes_.end_feature();
+      ids_.refuse(text_, "a geometry");
+      read_whole([&] {
+        read_geometry(root, 0);
+        boxes_.end_feature();
+      });
     }
     text_.end_features();
   }
 
  private:
+  /// Reads what is a feature, or leaves it out.
+  template <typename Read>
+  void read_whole(const Read& read) {
+    text_.begin_feature();
+    boxes_.begin_feature();
+    if (!quarantine_.holds(read)) boxes_.drop_feature();
+  }
+
   void read_feature(json::object feature) {
+    boxes_.set_id(ids_.of(text_, feature));
     json::value geometry = text_.field(feature, "geometry");
     if (!text_.is_null(geometry)) read_geometry(text_.object(geometry, "a geometry, or null"), 0);
     boxes_.end_feature();
@@ -90,11 +101,16 @@ class GeoJson {
   }
 
   MapText& text_;
+  const MapIds& ids_;
+  Quarantine& quarantine_;
   MapBoxes& boxes_;
 };
 
 }  // namespace
 
-void read_geojson(MapText& text, std::string_view type, MapBoxes& boxes) { GeoJson(text, boxes).read(type); }
+void read_geojson(MapText& text, std::string_view type, const MapIds& ids, Quarantine& quarantine,
+                  MapBoxes& boxes) {
+  GeoJson(text, ids, quarantine, boxes).read(type);
+}
 
 }  // namespace broadside::lab

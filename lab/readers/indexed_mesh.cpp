@@ -6,9 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "lab/readers/frames.hpp"
 #include "lab/readers/mesh_content.hpp"
 #include "lab/readers/obj.hpp"
 #include "lab/readers/ply.hpp"
@@ -17,16 +14,16 @@ namespace broadside::lab {
 namespace {
 
 /// A place as numbers in which equal ones, and they alone, are equal: -0 is 0, and a NaN is itself.
-std::array<std::uint32_t, 3> place_of(const std::array<float, 3>& vertex) {
-  std::array<std::uint32_t, 3> place{};
+std::array<std::uint64_t, 3> place_of(const std::array<double, 3>& vertex) {
+  std::array<std::uint64_t, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    place[axis] = vertex[axis] == 0 ? 0 : std::bit_cast<std::uint32_t>(vertex[axis]);
+    place[axis] = vertex[axis] == 0 ? 0 : std::bit_cast<std::uint64_t>(vertex[axis]);
   return place;
 }
 
 /// For every vertex the first one that is in the same place, in `a` and in `b`.
 std::vector<std::uint32_t> first_in_place(const IndexedMesh& a, const IndexedMesh& b) {
-  std::vector<std::array<std::uint32_t, 6>> places(a.vertices.size());
+  std::vector<std::array<std::uint64_t, 6>> places(a.vertices.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto now = place_of(a.vertices[i]);
     const auto then = place_of(b.vertices[i]);
@@ -68,12 +65,6 @@ IndexedMesh read_mesh(Input& input) {
   const std::string extension = input.extension();
   if (content == "ply" || extension == ".ply") return read_ply(input);
   return content == "obj" || extension == ".obj" ? read_obj(input) : import_mesh(input);
-}
-
-std::string rounding_of(const IndexedMesh& mesh, std::string_view name) {
-  if (mesh.rounded == 0) return {};
-  return fmt::format("{}: {}, in which meshes are read", name,
-                     Rounding{3 * mesh.vertices.size(), mesh.rounded}.text());
 }
 
 void weld(IndexedMesh& mesh, IndexedMesh* later) {

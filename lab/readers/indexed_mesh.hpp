@@ -9,17 +9,21 @@
 #include <string_view>
 #include <vector>
 
+#include "lab/readers/frames.hpp"
 #include "lab/readers/input.hpp"
 
 namespace broadside::lab {
 
 /// Vertices, and faces of three vertices or more that name them by their places.
 struct IndexedMesh {
-  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<double, 3>> vertices;
   std::vector<std::uint32_t> corners;  ///< the vertices of the faces, one face after the other
   std::vector<std::size_t> face_ends;  ///< where each face ends in `corners`
   bool has_own_vertices = false;       ///< whether the vertices are those of the file, in its order
-  std::uint64_t rounded = 0;           ///< coordinates that were doubles, or integers, which no float holds
+  /// The type of the file's coordinates; floats are held exactly as well.
+  Precision precision = Precision::float64;
+  /// The library that read the file, where it may have rounded the file's numbers to float; empty otherwise.
+  std::string_view importer{};
 
   std::size_t face_count() const noexcept { return face_ends.size(); }
 
@@ -32,8 +36,9 @@ struct IndexedMesh {
 /// Reads a mesh: PLY by read_ply(), OBJ by read_obj(), other formats by import_mesh(). Throws FileError.
 IndexedMesh read_mesh(Input& input);
 
-/// Reads a mesh through assimp: all parts of the file's scene, put where they are in it, one after the other.
-/// Lines and points are no faces. Throws FileError, also if a face names a vertex that is not there.
+/// Reads a mesh through assimp, which keeps floats: all parts of the file's scene, put where they are in it,
+/// one after the other. Lines and points are no faces. Throws FileError, also if a face names a vertex that
+/// is not there.
 ///
 /// In OFF the vertices are the file's own. Of other formats assimp gives each face (or each part) vertices of
 /// its own; see weld().
@@ -44,9 +49,6 @@ std::string mesh_import_missing();
 
 /// Whether a file with this extension is a mesh for import_mesh().
 bool is_mesh_extension(std::string_view extension);
-
-/// What to say of a mesh of this name whose vertices were rounded to float; empty if none was.
-std::string rounding_of(const IndexedMesh& mesh, std::string_view name);
 
 /// Makes vertices in one and the same place one, unless they are the file's own; each is then numbered where
 /// it came first. `later` is nullptr or the same mesh at another time, with as many vertices and the same

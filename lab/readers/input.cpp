@@ -2,7 +2,6 @@
 #include "lab/readers/input.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "lab/readers/byte_source.hpp"
 #include "lab/readers/format.hpp"
 
 namespace broadside::lab {
@@ -21,21 +21,28 @@ namespace {
 
 constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
 
-/// As many bytes as there are now, 0 at the end; -1 where reading failed, with errno set.
-ssize_t read_some(int descriptor, char* to, std::size_t most) {
-  ssize_t got = 0;
-  do {
-    got = ::read(descriptor, to, most);
-  } while (got < 0 && errno == EINTR);
-  return got;
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 }  // namespace
 
-/// What stands between a descriptor, or bytes in memory, and a stream.
+std::string compression_extension_of(const std::filesystem::path& path) {
+  std::string extension = lower(path.extension().string());
+  return extension == ".gz" || extension == ".zst" ? extension : "";
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  const bool is_compressed = !compression_extension_of(path).empty();
+  return lower((is_compressed ? path.stem() : path).extension().string());
+}
+
+/// What stands between a source of bytes, or bytes in memory, and a stream.
 class Input::Buffer final : public std::streambuf {
  public:
-  explicit Buffer(int descriptor) : descriptor_(descriptor), bytes_(std::size_t{1} << 16) {
+  explicit Buffer(ByteSource& source) : source_(&source), bytes_(std::size_t{1} << 16) {
     setg(bytes_.data(), bytes_.data(), bytes_.data());
   }
 
@@ -48,64 +55,51 @@ class Input::Buffer final : public std::streambuf {
   /// The bytes that were read and not taken, at least `count` of them if there are as many. Only before the
   /// first is taken.
   std::string_view peek(std::size_t count) {
-    while (descriptor_ >= 0 && static_cast<std::size_t>(egptr() - gptr()) < count) {
-      const ssize_t got =
-          read_some(descriptor_, egptr(), bytes_.size() - static_cast<std::size_t>(egptr() - eback()));
-      if (got < 0) failed_ = errno;
-      if (got <= 0) break;
+    while (source_ != nullptr && static_cast<std::size_t>(egptr() - gptr()) < count) {
+      const std::size_t got =
+          source_->read(egptr(), bytes_.size() - static_cast<std::size_t>(egptr() - eback()));
+      if (got == 0) break;
       setg(eback(), gptr(), egptr() + got);
     }
     return {gptr(), egptr()};
   }
 
-  /// The number of the error that ended reading; 0 if none did.
-  int failed() const noexcept { return failed_; }
-
   std::function<void(std::size_t)> on_read;
 
  protected:
   int_type underflow() override {
-    if (descriptor_ < 0) return traits_type::eof();
-    const ssize_t got = read_some(descriptor_, bytes_.data(), bytes_.size());
-    // The stream turns an exception into its badbit.
-    if (got < 0) throw std::ios_base::failure("read");
+    if (source_ == nullptr) return traits_type::eof();
+    const std::size_t got = source_->read(bytes_.data(), bytes_.size());
     setg(bytes_.data(), bytes_.data(), bytes_.data() + got);
-    if (on_read) on_read(static_cast<std::size_t>(got));
+    if (on_read) on_read(got);
     return got == 0 ? traits_type::eof() : traits_type::to_int_type(*gptr());
   }
 
  private:
-  int descriptor_ = -1;
+  ByteSource* source_ = nullptr;
   std::vector<char> bytes_;
-  int failed_ = 0;
 };
 
-Input::Input(const std::filesystem::path& path, Progress progress) : progress_(std::move(progress)) {
-  if (path == "-") {
-    name_ = "standard input";
-    descriptor_ = STDIN_FILENO;
-  } else {
-    name_ = path.string();
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor_ < 0) refuse();
-  }
+Input::Input(const std::filesystem::path& path, Progress progress)
+    : name_(path == "-" ? "standard input" : path.string()), progress_(std::move(progress)) {
+  const int descriptor = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) refuse();
+  source_ = std::make_unique<ByteSource>(descriptor, name_);
   struct stat status {};
-  const bool known = ::fstat(descriptor_, &status) == 0;
-  if (!known || S_ISDIR(status.st_mode)) {
-    if (known) errno = EISDIR;
-    const int error = errno;
-    if (descriptor_ != STDIN_FILENO) ::close(descriptor_);
-    errno = error;
+  if (::fstat(descriptor, &status) != 0) refuse();
+  if (S_ISDIR(status.st_mode)) {
+    errno = EISDIR;
     refuse();
   }
   // Standard input may begin in the middle of a file.
-  is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor_, 0, SEEK_CUR) == 0);
+  is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor, 0, SEEK_CUR) == 0);
+  is_regular_ = is_regular_ && !source_->is_compressed();
   if (is_regular_) {
     if (path != "-") path_ = path;
     size_ = static_cast<std::uint64_t>(status.st_size);
   }
   if (progress_) next_report_ = bytes_a_report;
-  buffer_ = std::make_unique<Buffer>(descriptor_);
+  buffer_ = std::make_unique<Buffer>(*source_);
 }
 
 Input::Input(std::string name, std::string_view bytes)
@@ -115,31 +109,25 @@ Input::Input(std::string name, std::string_view bytes)
       has_all_(true),
       buffer_(std::make_unique<Buffer>(bytes)) {}
 
+std::unique_ptr<Input> Input::keeping(std::string name, std::string bytes) {
+  auto input = std::make_unique<Input>(std::move(name), std::string_view());
+  input->kept_ = std::move(bytes);
+  input->all_ = input->kept_;
+  input->size_ = input->kept_.size();
+  input->buffer_ = std::make_unique<Buffer>(input->all_);
+  return input;
+}
+
 Input::~Input() {
   if (mapped_ != nullptr) ::munmap(mapped_, size_);
-  if (descriptor_ >= 0 && descriptor_ != STDIN_FILENO) ::close(descriptor_);
 }
 
-std::string Input::extension() const {
-  std::string extension = std::filesystem::path(name_).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-std::string_view Input::beginning() {
-  const std::string_view begin = buffer_->peek(beginning_bytes).substr(0, beginning_bytes);
-  if (buffer_->failed() != 0) {
-    errno = buffer_->failed();
-    refuse();
-  }
-  return begin;
-}
+std::string_view Input::beginning() { return buffer_->peek(beginning_bytes).substr(0, beginning_bytes); }
 
 std::string_view Input::bytes() {
   if (std::exchange(has_all_, true)) return all_;
   if (is_regular_ && size_ > 0) {
-    void* const mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor_, 0);
+    void* const mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, source_->descriptor(), 0);
     if (mapped == MAP_FAILED) refuse();
     mapped_ = mapped;
     ::madvise(mapped_, size_, MADV_SEQUENTIAL);
@@ -149,10 +137,9 @@ std::string_view Input::bytes() {
   std::size_t used = kept_.size();
   while (true) {
     kept_.resize(std::max<std::size_t>(2 * used, std::size_t{1} << 16));
-    const ssize_t got = read_some(descriptor_, kept_.data() + used, kept_.size() - used);
-    if (got < 0) refuse();
+    const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
     if (got == 0) break;
-    used += static_cast<std::size_t>(got);
+    used += got;
     passed(used);
   }
   kept_.resize(used);
@@ -167,6 +154,8 @@ std::istream& Input::stream() {
       buffer_->on_read = [this, done = std::uint64_t{0}](std::size_t got) mutable { passed(done += got); };
     }
     stream_ = std::make_unique<std::istream>(buffer_.get());
+    // The stream then passes on what the source throws.
+    stream_->exceptions(std::ios::badbit);
   }
   return *stream_;
 }

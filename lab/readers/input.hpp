@@ -1,4 +1,5 @@
-// The bytes that a reader reads: of a file, of standard input, or in memory.
+// The bytes that a reader reads: of a file, of standard input, or in memory. What is compressed by gzip or
+// zstd is decompressed.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +18,15 @@ namespace broadside::lab {
 /// Told, now and then, how many bytes of how many have been read; the second is 0 where nobody knows.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
+/// The extension of a path with its dot, in lower case; that before .gz or .zst, where it is one of these.
+/// Empty if there is none.
+std::string extension_of(const std::filesystem::path& path);
+
+/// ".gz" or ".zst", if a path's name says that the file is compressed; empty otherwise.
+std::string compression_extension_of(const std::filesystem::path& path);
+
+class ByteSource;
+
 /// An input, all at once (bytes()) or piece by piece (stream()): a reader chooses one of the two. One thread
 /// at a time.
 class Input {
@@ -27,8 +37,12 @@ class Input {
   /// Opens a file, or standard input where the path is "-". Throws FileError, also for a folder.
   explicit Input(const std::filesystem::path& path, Progress progress = {});
 
-  /// Bytes in memory, which must outlive the input; `name` is what errors call them.
+  /// Bytes in memory, which must outlive the input and are taken as they are; `name` is what errors call
+  /// them.
   Input(std::string name, std::string_view bytes);
+
+  /// Bytes in memory that the input keeps.
+  static std::unique_ptr<Input> keeping(std::string name, std::string bytes);
 
   ~Input();
   Input(const Input&) = delete;
@@ -37,11 +51,11 @@ class Input {
   /// What errors call it: the path, or "standard input".
   const std::string& name() const noexcept { return name_; }
 
-  /// The path of a file that can be opened again; empty for anything else.
+  /// The path of a file that can be opened again and has the bytes of this input; empty for anything else.
   const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// The extension of its name with its dot, in lower case; empty if it has none.
-  std::string extension() const;
+  /// extension_of() its name.
+  std::string extension() const { return extension_of(name_); }
 
   /// The first bytes, which are not consumed.
   std::string_view beginning();
@@ -49,8 +63,8 @@ class Input {
   /// All bytes. A file is mapped, not copied: nobody may shorten it while it is read. Throws FileError.
   std::string_view bytes();
 
-  /// The bytes in sequence, from the first one; as they come, so that a pipe can be followed. A failure to
-  /// read is an exception of the stream's badbit, with errno set.
+  /// The bytes in sequence, from the first one; as they come, so that a pipe can be followed. What reads from
+  /// it throws FileError where the bytes cannot be read.
   std::istream& stream();
 
   /// Says that all bytes before `byte` have been dealt with. Cheap.
@@ -68,13 +82,13 @@ class Input {
   std::filesystem::path path_;
   Progress progress_;
   std::uint64_t next_report_ = UINT64_MAX;
-  int descriptor_ = -1;
-  bool is_regular_ = false;  // a regular file, whose size is known and which can be mapped
+  std::unique_ptr<ByteSource> source_;  // null in memory
+  bool is_regular_ = false;             // a regular file, whose size is known and which can be mapped
   std::uint64_t size_ = 0;
   std::string_view all_;  // once bytes() was called, or from the start in memory
   bool has_all_ = false;
   void* mapped_ = nullptr;
-  std::string kept_;  // all bytes of what cannot be mapped
+  std::string kept_;  // all bytes of what cannot be mapped, or was given to keep
   std::unique_ptr<Buffer> buffer_;
   std::unique_ptr<std::istream> stream_;
 };

@@ -21,20 +21,26 @@ MapPart part_of(const ReadOptions& options) {
 
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
   MapText text(*input);
-  MapBoxes boxes(part_of(options));
+  const MapIds ids(options.ids);
+  Quarantine quarantine(options);
+  MapBoxes boxes(part_of(options), ids.any());
   while (text.next()) {
     json::object root = text.root();
     // What the text begins anew overwrites its strings.
     const std::string type(text.string(text.field(root, "type"), "the type of a map"));
     if (type == "Topology") {
-      read_topojson(text, options.layer, boxes);
+      read_topojson(text, options.layer, ids, quarantine, boxes);
     } else {
       if (!options.layer.empty())
         text.refuse(fmt::format("GeoJSON, which has no layer '{}'", options.layer), "TopoJSON");
-      read_geojson(text, type, boxes);
+      read_geojson(text, type, ids, quarantine, boxes);
     }
   }
-  return std::make_unique<HistoryReader<2, double>>(History<2, double>{boxes.take(), {}});
+  auto labels = std::make_shared<BoxLabels>();
+  labels->has_ids = ids.any();
+  labels->ids = boxes.take_ids();
+  return std::make_unique<HistoryReader<2, double>>(History<2, double>{boxes.take(), {}}, std::move(labels),
+                                                    quarantine.warning(input->name()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,9 +20,17 @@ enum class MapPart : std::uint8_t {
 /// Gathers boxes while a map is read: points belong to lines, lines to pieces, pieces to features.
 class MapBoxes {
  public:
-  explicit MapBoxes(MapPart part) : part_(part) {}
+  /// `has_ids` says that each feature's id is kept beside each of its boxes.
+  MapBoxes(MapPart part, bool has_ids) : part_(part), has_ids_(has_ids) {}
 
   MapPart part() const noexcept { return part_; }
+
+  void begin_feature() {
+    feature_begin_ = boxes_.size();
+    id_.clear();
+  }
+
+  void set_id(std::string id) { id_ = std::move(id); }
 
   /// The next line begins; lone points need none.
   void begin_line() { is_in_line_ = false; }
@@ -40,19 +49,28 @@ class MapBoxes {
   void add_bounds(const DoubleBox2& bounds) { extend(piece_, bounds); }
 
   /// A segment by itself, as a box.
-  void add_segment(const DoubleBox2& box) { boxes_.push_back(box); }
+  void add_segment(const DoubleBox2& box) { put(box); }
 
   void end_piece() {
-    if (part_ == MapPart::pieces && !is_absent(piece_)) boxes_.push_back(piece_);
+    if (part_ == MapPart::pieces && !is_absent(piece_)) put(piece_);
     extend(feature_, std::exchange(piece_, absent_box<2, double>()));
   }
 
   void end_feature() {
-    if (part_ == MapPart::features) boxes_.push_back(feature_);
+    if (part_ == MapPart::features) put(feature_);
     feature_ = absent_box<2, double>();
   }
 
+  /// Leaves out what there is of the feature begun; its box is absent.
+  void drop_feature() {
+    boxes_.resize(feature_begin_);
+    if (has_ids_) ids_.resize(feature_begin_);
+    piece_ = feature_ = absent_box<2, double>();
+    end_feature();
+  }
+
   std::vector<DoubleBox2> take() { return std::move(boxes_); }
+  std::vector<std::string> take_ids() { return std::move(ids_); }
 
   /// Makes `box` hold `other` as well.
   static void extend(DoubleBox2& box, const DoubleBox2& other) {
@@ -65,11 +83,20 @@ class MapBoxes {
  private:
   void add_segment(DoubleBox2 from, const DoubleBox2& to) {
     extend(from, to);
-    boxes_.push_back(from);
+    put(from);
+  }
+
+  void put(const DoubleBox2& box) {
+    boxes_.push_back(box);
+    if (has_ids_) ids_.push_back(id_);
   }
 
   MapPart part_;
+  bool has_ids_;
   std::vector<DoubleBox2> boxes_;
+  std::vector<std::string> ids_;
+  std::string id_;
+  std::size_t feature_begin_ = 0;  // in boxes_
   DoubleBox2 feature_ = absent_box<2, double>();
   DoubleBox2 piece_ = absent_box<2, double>();
   DoubleBox2 last_{};

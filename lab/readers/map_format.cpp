@@ -42,6 +42,8 @@ Format map_description() {
                 {"pieces", "a box a point, line or polygon; those of a multi-geometry apart"},
                 {"segments", "a box a segment of a line or of a polygon's rings"}},
       .has_layers = true,
+      .can_skip = true,
+      .has_ids = true,
       .recognises = recognises,
   };
 }

@@ -113,6 +113,16 @@ bool MapText::is_null(json::value value) {
   return null;
 }
 
+std::string MapText::label(json::value value, std::string_view expected) {
+  json::json_type type{};
+  if (const auto error = value.type().get(type)) refuse(error, expected);
+  if (type == json::json_type::string) return std::string(string(value, expected));
+  if (type != json::json_type::number) refuse(simdjson::INCORRECT_TYPE, expected);
+  std::string_view token = value.raw_json_token();
+  token = token.substr(0, token.find_last_not_of(blanks) + 1);
+  return std::string(token);
+}
+
 void MapText::begin_feature() {
   ++features_;
   is_in_feature_ = true;

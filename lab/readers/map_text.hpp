@@ -42,6 +42,9 @@ class MapText {
   double number(json::value value);
   bool is_null(json::value value);
 
+  /// A string, or a number as it is written.
+  std::string label(json::value value, std::string_view expected);
+
   /// An array's element, or an object's.
   template <typename Element>
   Element element(simdjson::simdjson_result<Element> result) {

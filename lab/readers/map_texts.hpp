@@ -4,17 +4,21 @@
 #include <string_view>
 
 #include "lab/readers/map_boxes.hpp"
+#include "lab/readers/map_ids.hpp"
 #include "lab/readers/map_text.hpp"
+#include "lab/readers/quarantine.hpp"
 
 namespace broadside::lab {
 
 /// Reads GeoJSON of this outermost type: a FeatureCollection, a Feature or a geometry. A GeometryCollection
 /// that stands by itself has a feature for each of its geometries.
-void read_geojson(MapText& text, std::string_view type, MapBoxes& boxes);
+void read_geojson(MapText& text, std::string_view type, const MapIds& ids, Quarantine& quarantine,
+                  MapBoxes& boxes);
 
 /// Reads TopoJSON: the layer of that name, or all, in the file's order, where `layer` is empty. A layer that
 /// is a GeometryCollection has a feature for each of its geometries. Segments are those of the arcs that the
 /// layers name, each arc once, in the file's order.
-void read_topojson(MapText& text, std::string_view layer, MapBoxes& boxes);
+void read_topojson(MapText& text, std::string_view layer, const MapIds& ids, Quarantine& quarantine,
+                   MapBoxes& boxes);
 
 }  // namespace broadside::lab

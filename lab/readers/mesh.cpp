@@ -1,6 +1,7 @@
 // Meshes (PLY, OBJ, STL, glTF and what else assimp reads): the bounds of their triangles, edges or vertices.
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,19 +15,19 @@
 namespace broadside::lab::readers {
 namespace {
 
-/// The boxes of a mesh, and what was lost where its coordinates became floats.
-class MeshFrames final : public FrameReader<3, float> {
+/// The boxes of a mesh.
+class MeshFrames final : public FrameReader<3, double> {
  public:
-  MeshFrames(std::vector<Box3> boxes, std::string warning)
-      : boxes_(std::move(boxes)), warning_(std::move(warning)) {}
+  MeshFrames(std::vector<DoubleBox3> boxes, std::string_view importer)
+      : boxes_(std::move(boxes)), importer_(importer) {}
 
-  std::vector<Box3> first() override { return std::move(boxes_); }
-  bool next(Step<3>&) override { return false; }
-  std::string warning() const override { return warning_; }
+  std::vector<DoubleBox3> first() override { return std::move(boxes_); }
+  bool next(Step<3, double>&) override { return false; }
+  std::string_view importer() const override { return importer_; }
 
  private:
-  std::vector<Box3> boxes_;
-  std::string warning_;
+  std::vector<DoubleBox3> boxes_;
+  std::string_view importer_;
 };
 
 AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
@@ -42,11 +43,8 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
                                                       : MeshPart::vertices);
   if (elements.size() == 0)
     throw FileError(fmt::format("{}: has no {}; expected at least one", input->name(), part));
-  std::string warning = rounding_of(mesh, input->name());
-  if (warning.empty() && options.precision == Precision::float64)
-    warning = fmt::format("{}: meshes are read in float; as doubles, its coordinates are those floats",
-                          input->name());
-  return std::make_unique<MeshFrames>(elements.boxes(mesh, input->name()), std::move(warning));
+  return with_precision(std::make_unique<MeshFrames>(elements.boxes(mesh, input->name()), mesh.importer),
+                        mesh.precision);
 }
 
 }  // namespace
@@ -56,7 +54,8 @@ Format mesh() {
   const std::string missing = mesh_import_missing();
   return {
       .name = "mesh",
-      .summary = missing.empty() ? "triangle meshes; seen along the z axis in 2D"
+      .summary = missing.empty() ? "triangle meshes, in the file's precision in PLY and OBJ and in float in "
+                                   "others; seen along the z axis in 2D"
                                  : "triangle meshes in PLY and OBJ; for others, " + missing,
       .extensions = {".ply", ".obj", ".stl", ".off", ".gltf", ".glb", ".dae", ".3ds"},
       .parts = {{"triangles", "a box a triangle; a polygon is a fan of them"},

@@ -38,13 +38,13 @@ MeshElements::MeshElements(const IndexedMesh& mesh, MeshPart part) : part_(part)
   }
 }
 
-std::vector<Box3> MeshElements::boxes(const IndexedMesh& mesh, const std::string& file) const {
-  std::vector<Box3> boxes;
+std::vector<DoubleBox3> MeshElements::boxes(const IndexedMesh& mesh, const std::string& file) const {
+  std::vector<DoubleBox3> boxes;
   boxes.reserve(size());
   for (std::size_t element = 0; element < size(); ++element) {
-    Box3 box = absent_box<3>();
+    DoubleBox3 box = absent_box<3, double>();
     for (const std::uint32_t vertex : vertices(element)) {
-      const std::array<float, 3>& place = mesh.vertices[vertex];
+      const std::array<double, 3>& place = mesh.vertices[vertex];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(place[axis])) {
           constexpr std::array<std::string_view, 3> singular = {"vertex", "edge", "face"};

@@ -36,7 +36,7 @@ class MeshElements {
 
   /// The bounds of each, where `mesh` has its vertices. Throws FileError, naming the mesh's file, if one is
   /// not at finite coordinates.
-  std::vector<Box3> boxes(const IndexedMesh& mesh, const std::string& file) const;
+  std::vector<DoubleBox3> boxes(const IndexedMesh& mesh, const std::string& file) const;
 
  private:
   MeshPart part_;

@@ -105,7 +105,9 @@ IndexedMesh import_mesh(Input& input) {
       scene = importer.ReadFile(input.path().string(), 0);
     } else {
       const std::string_view bytes = input.bytes();
-      scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, std::string(content).c_str());
+      // Of what was compressed, the name may still tell the kind.
+      const std::string kind = content.empty() && is_named ? extension.substr(1) : std::string(content);
+      scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, kind.c_str());
     }
     if (scene == nullptr) refuse_import(input, importer.GetErrorString());
     check_corners(input, *scene);
@@ -117,6 +119,8 @@ IndexedMesh import_mesh(Input& input) {
   if (scene->mRootNode == nullptr) refuse_import(input, importer.GetErrorString());
   IndexedMesh mesh = Collector(input, *scene).collect();
   mesh.has_own_vertices = content == "off";
+  mesh.precision = Precision::float32;
+  mesh.importer = "assimp";
   return mesh;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +29,12 @@ class HeaderText {
 
   void expect(char c) {
     if (!take(c)) refuse(fmt::format("'{}'", c));
+  }
+
+  /// Whether a string comes next.
+  bool is_string() {
+    skip_blanks();
+    return rest_.starts_with('\'') || rest_.starts_with('"');
   }
 
   std::string string(std::string_view expected) {
@@ -92,6 +99,27 @@ std::vector<std::uint64_t> take_shape(HeaderText& text) {
   return shape;
 }
 
+/// The fields of a structured array: [('min_x', '<f8'), ('max', '<f4', (2,)), ...].
+std::vector<NpyField> take_fields(HeaderText& text) {
+  constexpr std::string_view type = "a type of numbers such as '<f8'";
+  std::vector<NpyField> fields;
+  text.expect('[');
+  while (!text.take(']')) {
+    text.expect('(');
+    NpyField field;
+    field.name = text.string("a field's name in quotes");
+    text.expect(',');
+    field.type = text.string(type);
+    if (text.take(',')) field.shape = take_shape(text);
+    text.expect(')');
+    fields.push_back(std::move(field));
+    if (text.take(',')) continue;
+    text.expect(']');
+    break;
+  }
+  return fields;
+}
+
 /// Where the dictionary begins and ends.
 struct Extent {
   std::size_t begin;
@@ -139,7 +167,11 @@ NpyHeader read_npy_header(std::string_view bytes, const std::string& name) {
     text.expect(':');
     if (key == "descr" && !has_type) {
       has_type = true;
-      header.type = text.string("a type of numbers such as '<f8'");
+      header.is_structured = !text.is_string();
+      if (header.is_structured)
+        header.fields = take_fields(text);
+      else
+        header.type = text.string("a type of numbers such as '<f8'");
     } else if (key == "fortran_order" && !has_order) {
       has_order = true;
       header.is_column_major = text.truth();

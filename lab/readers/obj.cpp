@@ -67,8 +67,8 @@ class ObjReader {
   }
 
   void read_vertex() {
-    std::array<float, 3> vertex{};
-    for (float& coordinate : vertex) {
+    std::array<double, 3> vertex{};
+    for (double& coordinate : vertex) {
       std::string_view word = next_word(rest_);
       if (word.starts_with('+')) word.remove_prefix(1);
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), coordinate);

@@ -5,7 +5,7 @@
 
 namespace broadside::lab {
 
-/// Reads an OBJ file: its lines "v" as vertices, as floats, and its lines "f" as faces; all else is passed
+/// Reads an OBJ file: its lines "v" as vertices, as doubles, and its lines "f" as faces; all else is passed
 /// over. Vertices are numbered from 0. Throws FileError, naming the line.
 IndexedMesh read_obj(Input& input);
 

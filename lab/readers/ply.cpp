@@ -31,21 +31,14 @@ class PlyNumbers {
 
   std::size_t at() const noexcept { return at_; }
 
-  /// A coordinate, rounded to the nearest float.
-  float coordinate(PlyType type) {
+  /// A coordinate; as text, the nearest number of the type that the header declares.
+  double coordinate(PlyType type) {
     const bool is_text = encoding_ == PlyEncoding::text;
-    if (type == PlyType::float32) return is_text ? parsed<float>("a number") : loaded<float>();
-    const double number = is_text                    ? parsed<double>("a number")
-                          : type == PlyType::float64 ? loaded<double>()
-                                                     : static_cast<double>(whole(type));
-    const float nearest = static_cast<float>(number);
-    // A NaN stays one.
-    rounded_ += static_cast<double>(nearest) != number && number == number ? 1 : 0;
-    return nearest;
+    if (type == PlyType::float32)
+      return static_cast<double>(is_text ? parsed<float>("a number") : loaded<float>());
+    if (is_text) return parsed<double>("a number");
+    return type == PlyType::float64 ? loaded<double>() : static_cast<double>(whole(type));
   }
-
-  /// How many coordinates no float holds, though their type would have.
-  std::uint64_t rounded() const noexcept { return rounded_; }
 
   /// A whole number.
   std::int64_t whole(PlyType type) {
@@ -136,7 +129,6 @@ class PlyNumbers {
 
   std::string_view bytes_;
   std::size_t at_;
-  std::uint64_t rounded_ = 0;
   PlyEncoding encoding_;
   const std::string& file_;
 };
@@ -150,6 +142,7 @@ class PlyReader {
 
   IndexedMesh read() {
     mesh_.has_own_vertices = true;
+    mesh_.precision = Precision::float32;
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") {
         read_vertices(element);
@@ -161,7 +154,6 @@ class PlyReader {
     }
     numbers_.check_end();
     check_corners();
-    mesh_.rounded = numbers_.rounded();
     return std::move(mesh_);
   }
 
@@ -197,13 +189,14 @@ class PlyReader {
       if (found == element.properties.end() || found->is_list)
         throw FileError(fmt::format("{}: its vertices have no {}; expected the properties x, y and z",
                                     input_.name(), axis));
+      if (found->type != PlyType::float32) mesh_.precision = Precision::float64;
     }
     if (element.count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices.size())
       throw FileError(
           fmt::format("{}: has {} vertices; expected at most 4294967295", input_.name(), element.count));
     mesh_.vertices.reserve(mesh_.vertices.size() + element.count);
     for_each(element, [&] {
-      std::array<float, 3> vertex{};
+      std::array<double, 3> vertex{};
       for (const PlyProperty& property : element.properties) {
         const bool is_axis = property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z';
         if (is_axis && !property.is_list)

@@ -5,9 +5,10 @@
 
 namespace broadside::lab {
 
-/// Reads a PLY file, as text or in binary of either byte order: x, y and z of the element "vertex", as
-/// floats, and the list "vertex_indices" (or "vertex_index") of the element "face"; all else is passed over.
-/// Throws FileError, naming the line of the header, or the byte.
+/// Reads a PLY file, as text or in binary of either byte order: x, y and z of the element "vertex", exactly,
+/// and the list "vertex_indices" (or "vertex_index") of the element "face"; all else is passed over. The mesh
+/// is of floats if the header says so of x, y and z, and of doubles otherwise. Throws FileError, naming the
+/// line of the header, or the byte.
 IndexedMesh read_ply(Input& input);
 
 }  // namespace broadside::lab

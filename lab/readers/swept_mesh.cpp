@@ -54,9 +54,9 @@ SweptMesh::SweptMesh(IndexedMesh before, std::string name_before, IndexedMesh af
 SweptElements SweptMesh::swept(MeshPart part) const {
   SweptElements swept{MeshElements(before_, part), {}};
   swept.boxes = swept.elements.boxes(before_, name_before_);
-  const std::vector<Box3> after = swept.elements.boxes(after_, name_after_);
+  const std::vector<DoubleBox3> after = swept.elements.boxes(after_, name_after_);
   for (std::size_t i = 0; i < after.size(); ++i) {
-    Box3& box = swept.boxes[i];
+    DoubleBox3& box = swept.boxes[i];
     for (int axis = 0; axis < 3; ++axis) {
       box.min[axis] = std::min(box.min[axis], after[i].min[axis]);
       box.max[axis] = std::max(box.max[axis], after[i].max[axis]);
@@ -65,12 +65,10 @@ SweptElements SweptMesh::swept(MeshPart part) const {
   return swept;
 }
 
-std::vector<std::string> SweptMesh::warnings() const {
-  std::vector<std::string> list;
-  for (std::string warning : {rounding_of(before_, name_before_), rounding_of(after_, name_after_)}) {
-    if (!warning.empty()) list.push_back(std::move(warning));
-  }
-  return list;
+Precision SweptMesh::precision() const noexcept { return std::max(before_.precision, after_.precision); }
+
+std::string_view SweptMesh::importer() const noexcept {
+  return before_.importer.empty() ? after_.importer : before_.importer;
 }
 
 SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesystem::path& after,

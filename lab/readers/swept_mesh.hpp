@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadside/box.hpp"
@@ -18,7 +19,7 @@ namespace broadside::lab {
 /// Elements of a mesh over two times.
 struct SweptElements {
   MeshElements elements;
-  std::vector<Box3> boxes;  ///< the bounds of each element at both times
+  std::vector<DoubleBox3> boxes;  ///< the bounds of each element at both times
 };
 
 /// A mesh at two times.
@@ -32,8 +33,11 @@ class SweptMesh {
   /// coordinates.
   SweptElements swept(MeshPart part) const;
 
-  /// What to say where coordinates were rounded to float, a line a file; empty if none was.
-  std::vector<std::string> warnings() const;
+  /// That of the files: double if either is.
+  Precision precision() const noexcept;
+
+  /// The library that read a file and may have rounded its numbers to float; empty if none did.
+  std::string_view importer() const noexcept;
 
  private:
   IndexedMesh before_;
@@ -43,8 +47,8 @@ class SweptMesh {
 };
 
 /// Reads a mesh at two times from two files. Of the options, only `format` and `progress` mean something:
-/// coordinates are floats, as read_mesh() gives them. In PLY, OBJ and OFF, vertices and faces have the
-/// numbers that they have in the files. Throws FileError.
+/// coordinates are those of the files, as read_mesh() gives them. In PLY, OBJ and OFF, vertices and faces
+/// have the numbers that they have in the files. Throws FileError.
 SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesystem::path& after,
                           const ReadOptions& options = {});
 

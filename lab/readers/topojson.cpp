@@ -19,9 +19,11 @@ using Point = std::array<double, 2>;
 
 class TopoJson {
  public:
-  TopoJson(MapText& text, MapBoxes& boxes) : text_(text), boxes_(boxes) {}
+  TopoJson(MapText& text, const MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
+      : text_(text), ids_(ids), quarantine_(quarantine), boxes_(boxes) {}
 
   void read(std::string_view layer) {
+    if (boxes_.part() == MapPart::segments) ids_.refuse(text_, "segments of TopoJSON, which features share");
     read_transform();
     read_arcs();
     read_layers(layer);
@@ -91,17 +93,29 @@ class TopoJson {
   void read_layer(json::object layer) {
     const std::string type = type_of(layer);
     if (type != "GeometryCollection") {
-      text_.begin_feature();
-      read_geometry(layer, type, 0);
-      boxes_.end_feature();
+      read_whole([&] {
+        boxes_.set_id(ids_.of(text_, layer));
+        read_geometry(layer, type, 0);
+        boxes_.end_feature();
+      });
       return;
     }
     for (auto result : text_.array(text_.field(layer, "geometries"), "an array of geometries")) {
-      text_.begin_feature();
-      json::object geometry = text_.object(text_.element(result), "a geometry");
-      read_geometry(geometry, type_of(geometry), 1);
-      boxes_.end_feature();
+      read_whole([&] {
+        json::object geometry = text_.object(text_.element(result), "a geometry");
+        boxes_.set_id(ids_.of(text_, geometry));
+        read_geometry(geometry, type_of(geometry), 1);
+        boxes_.end_feature();
+      });
     }
+  }
+
+  /// Reads what is a feature, or leaves it out.
+  template <typename Read>
+  void read_whole(const Read& read) {
+    text_.begin_feature();
+    boxes_.begin_feature();
+    if (!quarantine_.holds(read)) boxes_.drop_feature();
   }
 
   /// Empty for a geometry that is not there.
@@ -182,6 +196,8 @@ class TopoJson {
   }
 
   MapText& text_;
+  const MapIds& ids_;
+  Quarantine& quarantine_;
   MapBoxes& boxes_;
   bool has_transform_ = false;
   Point scale_ = {1, 1};
@@ -192,8 +208,9 @@ class TopoJson {
 
 }  // namespace
 
-void read_topojson(MapText& text, std::string_view layer, MapBoxes& boxes) {
-  TopoJson(text, boxes).read(layer);
+void read_topojson(MapText& text, std::string_view layer, const MapIds& ids, Quarantine& quarantine,
+                   MapBoxes& boxes) {
+  TopoJson(text, ids, quarantine, boxes).read(layer);
 }
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// A comparison as JSON, by the schema "broadside.results/1".
+// A comparison as JSON, by the schema "broadside.results/2".
 #include "lab/report/json.hpp"
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 
 #include "broadside/instruction_set.hpp"
 
+#include "lab/measure/processor_share.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/report/machine_json.hpp"
@@ -16,6 +18,16 @@ namespace broadside::lab {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<PairedRatio>& ratio) {
+  if (!ratio) return {};
+  const auto& interval = ratio->interval;
+  return {{"of", ratio->of},
+          {"median", ratio->median},
+          {"low", interval ? Json(interval->low) : Json()},
+          {"high", interval ? Json(interval->high) : Json()},
+          {"rounds", ratio->rounds}};
+}
 
 Json measurement_json(const CaseResult& result, const Measurement& measurement) {
   const Case& of = result.of;
@@ -47,17 +59,20 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
       measurement.outcome == Outcome::skipped ? Json() : Json(measurement.outcome == Outcome::verified);
   json["verified_by"] = or_null(measurement.verified_by);
   json["skipped"] = or_null(measurement.reason);
-  json["median_ms"] = timed ? Json(median(samples)) : Json();
+  json["rounds"] = samples.size() / measurement.samples_a_round;
+  json["median_ms"] = timed ? Json(time_of(measurement)) : Json();
   json["min_ms"] = timed ? Json(std::ranges::min(samples)) : Json();
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
   json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
   json["samples_ms"] = timed ? Json(samples) : Json();
   json["unsteady"] = timed ? Json(is_unsteady(of, measurement)) : Json();
   json["build_ms"] = timed ? or_null(measurement.build_ms) : Json();
-  json["search_ms"] = nullptr;
   json["ns_per_box"] =
-      timed && of.boxes > 0 ? Json(median(samples) * 1e6 / static_cast<double>(of.boxes)) : Json();
-  json["ns_per_mover"] = timed && movers > 0 ? Json(median(samples) * 1e6 / movers) : Json();
+      timed && of.boxes > 0 ? Json(time_of(measurement) * 1e6 / static_cast<double>(of.boxes)) : Json();
+  json["ns_per_mover"] = timed && movers > 0 ? Json(time_of(measurement) * 1e6 / movers) : Json();
+  json["ratio_to_fastest"] = json_of(measurement.to_fastest);
+  json["ratio_to_best_own"] = json_of(measurement.to_best_own);
+  json["ratio_to_fastest_peer"] = json_of(measurement.to_fastest_peer);
   json["floor_ms"] = result.floor_ms.empty() ? Json() : Json(median(result.floor_ms));
   json["tests"] = statistics ? Json(statistics->tests) : Json();
   json["references"] = statistics ? Json(statistics->references) : Json();
@@ -71,12 +86,13 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
 
 std::string json_of(const Comparison& comparison, std::span<const std::string> command) {
   // One measurement a line: short, and readable where two results are compared.
-  std::string text =
-      fmt::format("{{\n\"schema\": \"broadside.results/1\",\n\"machine\": {},\n\"build\": {},\n",
-                  json_text(json_of(this_machine())), json_text(json_of(this_build())));
-  text +=
-      fmt::format("\"command\": {},\n\"stopped\": {},\n\"measurements\": [",
-                  json_text(std::vector<std::string>(command.begin(), command.end())), comparison.stopped);
+  std::string text = fmt::format(
+      "{{\n\"schema\": \"broadside.results/2\",\n\"date\": \"{}\",\n\"machine\": {},\n\"build\": {},\n",
+      today(), json_text(json_of(this_machine())), json_text(json_of(this_build())));
+  text += fmt::format(
+      "\"command\": {},\n\"stopped\": {},\n\"processor_share\": {},\n\"busy\": {},\n\"measurements\": [",
+      json_text(std::vector<std::string>(command.begin(), command.end())), comparison.stopped,
+      json_text(comparison.processor_share), is_busy(comparison.processor_share));
   std::string_view separator = "\n";
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {

@@ -1,60 +1,77 @@
 // What all cases of a comparison come to.
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/measure/processor_share.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/report/ranking.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::lab {
 namespace {
 
+/// "1.04 (1.03 to 1.05)": of many cases, a third digit means something.
+std::string mean_text(const MeanRatio& ratio) {
+  const std::string mean = fmt::format("{:.3g}", ratio.mean);
+  if (!ratio.interval) return mean;
+  return fmt::format("{} ({:.3g} to {:.3g})", mean, ratio.interval->low, ratio.interval->high);
+}
+
+/// The ratios of two entries over all cases that have both.
+struct Ratios {
+  std::vector<RatiosBySeed> pairs;
+  std::vector<std::string> names;  // of the cases
+
+  void add(const CaseResult& result, const Measurement* entry, const Measurement* other) {
+    if (entry == nullptr || other == nullptr || entry == other) return;
+    pairs.emplace_back(round_times(*entry), round_times(*other),
+                       std::max<std::size_t>(result.of.seeds.size(), 1));
+    names.push_back(name_of(result.of));
+  }
+
+  /// The case whose ratio is the greatest, or the least.
+  template <typename Order>
+  std::size_t extreme(Order order) const {
+    const auto found = std::ranges::max_element(pairs, order, &RatiosBySeed::median);
+    return static_cast<std::size_t>(found - pairs.begin());
+  }
+};
+
 /// How far auto is from the best of our own algorithms, over all cases, as a line; empty where it is not in
 /// the comparison with another one.
 std::string auto_text(const Comparison& comparison) {
-  std::vector<double> ratios;
-  std::string worst;
-  for (const CaseResult& result : comparison.cases) {
-    const auto is_auto = [](const Measurement& m) { return m.algorithm == "auto" && is_timed(m); };
-    const auto chosen = std::ranges::find_if(result.measurements, is_auto);
-    double best = INFINITY;
-    for (const Measurement& measurement : result.measurements) {
-      if (measurement.kind == AlgorithmKind::own && !is_auto(measurement) && is_timed(measurement) &&
-          chosen != result.measurements.end() && measurement.threads == chosen->threads)
-        best = std::min(best, time_of(measurement));
-    }
-    if (chosen == result.measurements.end() || !std::isfinite(best)) continue;
-    const double ratio = time_of(*chosen) / best;
-    if (ratios.empty() || ratio > std::ranges::max(ratios)) worst = name_of(result.of);
-    ratios.push_back(ratio);
-  }
-  if (ratios.empty()) return "";
+  Ratios ratios;
+  for (const CaseResult& result : comparison.cases) ratios.add(result, auto_of(result), best_own_of(result));
+  if (ratios.pairs.empty()) return "";
+  const std::size_t worst = ratios.extreme(std::less<>());
   return fmt::format(
       "auto takes {} times as long as the best of our others, geometric mean of {}; at most {} times ({})\n",
-      ratio_text(geometric_mean(ratios)), counted(ratios.size(), "case", "cases"),
-      ratio_text(std::ranges::max(ratios)), worst);
+      mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
+      ratio_text(ratios.pairs[worst].median()), ratios.names[worst]);
 }
 
-/// The leads of all cases as a line; empty where no case has one.
-std::string leads_text(const Comparison& comparison) {
-  std::vector<double> leads;
-  for (const CaseResult& result : comparison.cases) {
-    if (const std::optional<double> lead = lead_of(result)) leads.push_back(*lead);
-  }
-  if (leads.empty()) return "";
+/// How many times as fast as the fastest peer `name` is, which `entry_of` picks in each case, as a line;
+/// empty where no case has both.
+template <typename EntryOf>
+std::string lead_text(const Comparison& comparison, std::string_view name, const EntryOf& entry_of) {
+  Ratios ratios;
+  for (const CaseResult& result : comparison.cases)
+    ratios.add(result, fastest_of_kind(result, AlgorithmKind::peer), entry_of(result));
+  if (ratios.pairs.empty()) return "";
+  const std::size_t least = ratios.extreme(std::greater<>());
   return fmt::format(
-      "the fastest of ours is {} times as fast as the fastest peer, geometric mean of {}; at least {} "
-      "times\n",
-      ratio_text(geometric_mean(leads)), counted(leads.size(), "case", "cases"),
-      ratio_text(std::ranges::min(leads)));
+      "{} is {} times as fast as the fastest peer, geometric mean of {}; at least {} times ({})\n", name,
+      mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
+      ratio_text(ratios.pairs[least].median()), ratios.names[least]);
 }
 
 struct Standing {
@@ -68,30 +85,49 @@ struct Standing {
 std::vector<Standing> standings(const Comparison& comparison) {
   std::vector<Standing> all;
   for (const CaseResult& result : comparison.cases) {
-    const double fastest = fastest_of(result);
+    const Measurement* const fastest = fastest_of(result);
     for (const Measurement& measurement : result.measurements) {
       auto standing = std::ranges::find(all, measurement.algorithm, &Standing::algorithm);
       if (standing == all.end()) standing = all.insert(all.end(), {measurement.algorithm, 0, {}});
-      if (!is_timed(measurement)) continue;
-      standing->ratios.push_back(time_of(measurement) / fastest);
-      if (time_of(measurement) == fastest) ++standing->fastest;
+      if (!measurement.to_fastest) continue;
+      standing->ratios.push_back(measurement.to_fastest->median);
+      if (&measurement == fastest) ++standing->fastest;
     }
   }
   std::ranges::stable_sort(all, {}, &Standing::mean);
   return all;
 }
 
+/// How many were left out and why, as a line; empty where none was.
+std::string left_out_text(const Comparison& comparison) {
+  std::size_t skipped = 0;
+  std::size_t over_budget = 0;
+  std::map<std::string, std::size_t> reasons;
+  for (const CaseResult& result : comparison.cases) {
+    for (const Measurement& measurement : result.measurements) {
+      if (measurement.outcome != Outcome::skipped) continue;
+      ++skipped;
+      measurement.estimated_ms ? ++over_budget : ++reasons[measurement.reason];
+    }
+  }
+  if (skipped == 0) return "";
+  std::vector<std::string> parts;
+  if (over_budget > 0) parts.push_back(fmt::format("{} over the budget", grouped(over_budget)));
+  for (const auto& [reason, count] : reasons) parts.push_back(fmt::format("{} '{}'", grouped(count), reason));
+  return fmt::format("left out: {} ({})\n", counted(skipped, "measurement", "measurements"),
+                     fmt::join(parts, ", "));
+}
+
 }  // namespace
 
 std::string summary_of(const Comparison& comparison) {
   std::size_t measured = 0;
-  std::size_t skipped = 0;
   std::vector<std::string> failures;
   Steadiness steadiness;
   for (const CaseResult& result : comparison.cases) {
     steadiness.add(steadiness_of(result));
     for (const Measurement& measurement : result.measurements) {
-      ++(measurement.outcome == Outcome::skipped ? skipped : measured);
+      if (measurement.outcome != Outcome::skipped) ++measured;
       if (measurement.outcome == Outcome::failed)
         failures.push_back(name_of(result.of) + ": " + measurement.reason);
     }
@@ -103,20 +139,23 @@ std::string summary_of(const Comparison& comparison) {
     Columns columns("<>>><");
     columns.add({"algorithm", "cases", "fastest", "ratio to the fastest, geometric mean", ""});
     for (const Standing& standing : standings(comparison)) {
+      if (standing.ratios.empty()) continue;
       columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
-                   standing.ratios.empty() ? "-" : ratio_text(standing.mean()), ""});
+                   ratio_text(standing.mean()), ""});
     }
-    text += columns.text("  ") + auto_text(comparison) + leads_text(comparison) + "\n";
+    text += columns.text("  ") + auto_text(comparison) +
+            lead_text(comparison, "the best of ours", best_own_of) + lead_text(comparison, "auto", auto_of) +
+            "\n";
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);
   text += measured == 0 ? "nothing was verified" : counted(measured, "measurement", "measurements");
   if (measured > 0) text += failures.empty() ? ", all verified" : fmt::format(", {} FAILED", failures.size());
-  if (skipped > 0) text += fmt::format("; {} skipped", grouped(skipped));
   if (comparison.stopped) text += "; stopped before the end";
-  text += "\n";
+  text += "\n" + left_out_text(comparison);
   for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
-  return text + hint_of(steadiness, "or go by the least times (min_ms in --json)");
+  return text + hint_of(steadiness, "or go by the least times (min_ms in --json)") +
+         busy_hint(comparison.processor_share);
 }
 
 }  // namespace broadside::lab

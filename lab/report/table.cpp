@@ -8,10 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/report/ranking.hpp"
+#include "lab/report/phrases.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -40,20 +41,6 @@ std::vector<const Measurement*> in_order(const CaseResult& result) {
   return order;
 }
 
-/// What the results were compared with: "quadtree or sweep_and_prune + 200 sampled boxes".
-std::string references_of(const CaseResult& result) {
-  std::vector<std::string> names;
-  std::string addition;
-  for (const Measurement& measurement : result.measurements) {
-    const std::string& by = measurement.verified_by;
-    const std::size_t end = std::min(by.find(' '), by.size());
-    if (by.empty() || std::ranges::find(names, by.substr(0, end)) != names.end()) continue;
-    names.push_back(by.substr(0, end));
-    addition = by.substr(end);
-  }
-  return fmt::format("{}{}", fmt::join(names, " or "), addition);
-}
-
 std::string heading(const CaseResult& result) {
   const Case& of = result.of;
   std::string text = name_of(of);
@@ -70,13 +57,13 @@ std::string heading(const CaseResult& result) {
   return text + "\n";
 }
 
-/// The lead as a line; empty where there is none.
+/// How many times as fast as the fastest peer our best is, as a line; empty where one of the two is missing.
 std::string lead_text(const CaseResult& result) {
-  const std::optional<double> lead = lead_of(result);
-  if (!lead) return "";
-  return fmt::format("  {} is {} times as fast as the fastest peer, {}\n",
-                     fastest_of_kind(result, AlgorithmKind::own)->algorithm, ratio_text(*lead),
-                     fastest_of_kind(result, AlgorithmKind::peer)->algorithm);
+  const Measurement* const own = best_own_of(result);
+  const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
+  if (own == nullptr || peer == nullptr) return "";
+  return fmt::format("  {} is {} times as fast as the fastest peer, {}\n", own->algorithm,
+                     ratio_text(peer->to_best_own->median, peer->to_best_own->interval), peer->algorithm);
 }
 
 /// What algorithms that choose have chosen, a line each.
@@ -101,10 +88,16 @@ std::string verdict(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
+/// The fastest one's time; 0 where nothing was timed.
+double least_time_of(const CaseResult& result) {
+  const Measurement* const fastest = fastest_of(result);
+  return fastest == nullptr ? 0 : time_of(*fastest);
+}
+
 /// What the rows of a case's table share.
 struct Scale {
   explicit Scale(const CaseResult& result)
-      : fastest(fastest_of(result)),
+      : fastest(least_time_of(result)),
         unit(unit_for(fastest)),
         boxes(static_cast<double>(std::max<std::size_t>(result.of.boxes, 1))) {
     const auto is_estimate = [](const Measurement& m) { return m.estimated_ms.has_value(); };
@@ -116,10 +109,16 @@ struct Scale {
     return measurement.estimated_ms ? "~" + unit.text(time_of(measurement)) + " est." : "-" + no_mark;
   }
 
+  /// The ratio to the fastest and, in a cell of its own, its interval.
   std::string ratio(const Measurement& measurement) const {
+    if (measurement.to_fastest) return ratio_text(measurement.to_fastest->median);
     const double ratio = fastest > 0 ? time_of(measurement) / fastest : INFINITY;
-    if (!std::isfinite(ratio)) return "-";
-    return is_timed(measurement) ? ratio_text(ratio) : "~" + ratio_text(ratio);
+    return std::isfinite(ratio) ? "~" + ratio_text(ratio) : "-";
+  }
+
+  static std::string interval(const Measurement& measurement) {
+    if (!measurement.to_fastest || measurement.to_fastest->of == measurement.algorithm) return "-";
+    return interval_text(measurement.to_fastest->interval);
   }
 
   std::string tests(const Measurement& measurement) const {
@@ -145,39 +144,39 @@ std::string still_rows(const CaseResult& result) {
     return scale.unit.text(std::ranges::min(samples)) + ".." + scale.unit.text(std::ranges::max(samples));
   };
   // Where there is no floor, there is no column for it.
-  Columns columns(floor > 0 ? "<>>>>>>><<" : "<>>>>>><<");
+  Columns columns(floor > 0 ? "<>><>>>>><<" : "<>><>>>><<");
   const auto add = [&](std::vector<std::string> row, const std::string& over_floor) {
-    if (floor > 0) row.insert(row.begin() + 3, over_floor);
+    if (floor > 0) row.insert(row.begin() + 4, over_floor);
     columns.add(std::move(row));
   };
-  add({"algorithm", scale.unit.name + scale.no_mark, "ratio", "ns a box", "tests a box", "memory", "peak",
-       "min..max", ""},
+  add({"algorithm", scale.unit.name + scale.no_mark, "ratio", "95 % interval", "ns a box", "tests a box",
+       "memory", "peak", "min..max", ""},
       "floors");
   for (const Measurement* const measurement : in_order(result)) {
     const bool timed = is_timed(*measurement);
     add({measurement->algorithm, scale.time(*measurement), scale.ratio(*measurement),
-         timed ? rounded(time_of(*measurement) * 1e6 / scale.boxes) : "-", scale.tests(*measurement),
-         Scale::memory(*measurement, measurement->own_bytes),
+         Scale::interval(*measurement), timed ? rounded(time_of(*measurement) * 1e6 / scale.boxes) : "-",
+         scale.tests(*measurement), Scale::memory(*measurement, measurement->own_bytes),
          Scale::memory(*measurement, measurement->peak_bytes), timed ? range(measurement->samples_ms) : "-",
          verdict(*measurement)},
         timed ? ratio_text(time_of(*measurement) / floor) : "-");
   }
   if (floor > 0) {
     add({"the floor", scale.unit.text(floor) + scale.no_mark,
-         scale.fastest > 0 ? ratio_text(floor / scale.fastest) : "-", rounded(floor * 1e6 / scale.boxes), "-",
-         "-", "-", range(result.floor_ms), "boxes sorted and gathered, pairs written"},
-        "1.00");
+         scale.fastest > 0 ? ratio_text(floor / scale.fastest) : "-", "-", rounded(floor * 1e6 / scale.boxes),
+         "-", "-", "-", range(result.floor_ms), "boxes sorted and gathered, pairs written"},
+        "1.0");
   }
   return columns.text("  ");
 }
 
 std::string moving_rows(const CaseResult& result) {
   const Scale scale(result);
-  const Measurement* const best_peer = fastest_of_kind(result, AlgorithmKind::peer);
   const double movers = std::max(result.of.moving * scale.boxes, 1.0);
-  Columns columns("<>>>>>>>>>><");
+  Columns columns("<>>>><>>>>>><");
   columns.add({"algorithm", scale.unit.name + " a frame" + scale.no_mark, "p99", "worst", "ratio",
-               "to a peer", "ns a mover", "first frame", "tests a box", "memory", "peak", ""});
+               "95 % interval", "to a peer", "ns a mover", "first frame", "tests a box", "memory", "peak",
+               ""});
   for (const Measurement* const measurement : in_order(result)) {
     const std::vector<double>& samples = measurement->samples_ms;
     const bool timed = is_timed(*measurement);
@@ -185,7 +184,8 @@ std::string moving_rows(const CaseResult& result) {
     columns.add({measurement->algorithm, scale.time(*measurement),
                  timed ? scale.unit.text(percentile(samples, 0.99)) : "-",
                  timed ? scale.unit.text(std::ranges::max(samples)) : "-", scale.ratio(*measurement),
-                 timed && best_peer != nullptr ? ratio_text(time / time_of(*best_peer)) : "-",
+                 Scale::interval(*measurement),
+                 measurement->to_fastest_peer ? ratio_text(measurement->to_fastest_peer->median) : "-",
                  timed ? rounded(time * 1e6 / movers) : "-",
                  timed && measurement->build_ms ? scale.unit.text(*measurement->build_ms) : "-",
                  scale.tests(*measurement), Scale::memory(*measurement, measurement->own_bytes),

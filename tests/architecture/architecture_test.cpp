@@ -136,6 +136,7 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"lab/readers/mesh.cpp", "<box2d/box2d.h>"},
       {"cli/main.cpp", "\"core/input_check.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
+      {"examples/own_algorithm/main.cpp", "\"lab/catalogue.hpp\""},
       {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},
       {"examples/record_box2d/main.cpp", "<broadside/broadside.hpp>"},
       {"tests/unit/cli_test.cpp", "\"cli/compare.hpp\""},

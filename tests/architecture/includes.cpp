@@ -44,7 +44,7 @@ const std::vector<Rule>& rules() {
       {"bench/", lab + R"(|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
-      {"examples/", lab + R"(|<broadside/[a-z_]+\.hpp>)"},
+      {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.
       {"tests/",

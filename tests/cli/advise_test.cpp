@@ -62,6 +62,9 @@ TEST(AdviseVerb, WritesAllOfItAsJson) {
   EXPECT_EQ(json["signals"]["boxes"], 3);
   EXPECT_EQ(json["signals"]["precision"], "double");
   EXPECT_TRUE(json["signals"]["motion"].is_null());
+  EXPECT_GT(json["processor_share"], 0);
+  EXPECT_EQ(json["busy"], json["processor_share"] < 0.9);
+  EXPECT_EQ(json["busy"], ended.output.find("\nbusy: others had the processor for ") != std::string::npos);
   const std::string spec = json["advice"]["spec"];
   EXPECT_THAT(ended.output, HasSubstr("\nAdvice: " + spec + "\n"));
   EXPECT_THAT(json["advice"]["snippet"].get<std::string>(), HasSubstr("\"" + spec + "\""));

@@ -32,8 +32,19 @@ std::vector<std::string> with(std::vector<std::string> arguments, const std::vec
   return arguments;
 }
 
-TEST(CompareVerb, PrintsATableForEachCaseAndASummary) {
+TEST(CompareVerb, PrintsALineForEachCaseAndASummary) {
   const Ended ended = run(small);
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output,
+              AllOf(testing::StartsWith("case "), HasSubstr("\nuniform, 2D, 200 boxes  "),
+                    HasSubstr("\nlattice, 3D, 300 boxes  "), HasSubstr("  the definition\n"),
+                    HasSubstr("All 8 cases"), HasSubstr("measurements, all verified\n"),
+                    HasSubstr("\ndetails: --details prints each case's table; ")));
+  EXPECT_THAT(ended.output, Not(HasSubstr("ns a box")));
+}
+
+TEST(CompareVerb, PrintsATableForEachCaseWhereDetailsAreAskedFor) {
+  const Ended ended = run(with(small, {"--details"}));
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output,
               AllOf(HasSubstr("uniform, 2D, 200 boxes, "), HasSubstr("lattice, 3D, 300 boxes, "),
@@ -53,7 +64,7 @@ TEST(CompareVerb, WritesJsonWithAMeasurementForEachLineOfTheTable) {
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
   const Json json = Json::parse(text_of(folder.file("out.json")));
-  EXPECT_EQ(json["schema"], "broadside.results/1");
+  EXPECT_EQ(json["schema"], "broadside.results/2");
   EXPECT_EQ(json["command"][1], "compare");
   const auto own = std::ranges::count(algorithms(), AlgorithmKind::own, &Algorithm::kind);
   EXPECT_EQ(json["measurements"].size(), 8u * static_cast<std::size_t>(own));
@@ -90,7 +101,7 @@ TEST(CompareVerb, TracksWhatMovesAndReadsNumbersAsPeopleWriteThem) {
 TEST(CompareVerb, TellsOfMotionTheWorstFrameAndWhatAMoverCosts) {
   const Ended ended =
       run({"compare", "--scenes", "uniform", "-n", "300", "--moving", "0.1,1", "--drift", "0.5", "--teleport",
-           "0.1", "--frames", "3", "--dimension", "2", "--algorithms", "auto,bvh"});
+           "0.1", "--frames", "3", "--dimension", "2", "--algorithms", "auto,bvh", "--details"});
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("10 % moving, 3 frames"), HasSubstr("100 % moving, 3 frames"),
                                   HasSubstr(" worst "), HasSubstr(" ns a mover "), HasSubstr("\n  auto: ")));
@@ -103,7 +114,7 @@ TEST(CompareVerb, ComparesOnAFileThatSceneWrote) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.csv"});
   const Ended ended = run({"compare", "--scenes", file, "--algorithms", "own"});
   EXPECT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("boxes.csv, 2D, 100 boxes, "));
+  EXPECT_THAT(ended.output, HasSubstr("boxes.csv, 2D, 100 boxes  "));
 }
 
 TEST(CompareVerb, RefusesAFileThatIsNone) {
@@ -157,7 +168,7 @@ TEST(CompareVerb, TakesItsBoxesFromStandardInput) {
       "$BROADSIDE scene lattice -n 100 --dimension 3 -o - --to trace | "
       "$BROADSIDE compare --scenes - --algorithms own");
   EXPECT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("-, 3D, 100 boxes, "));
+  EXPECT_THAT(ended.output, HasSubstr("-, 3D, 100 boxes  "));
 }
 
 TEST(SceneVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {

@@ -61,9 +61,35 @@ TEST(ConvertVerb, SaysHowManyCoordinatesAreRounded) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 0);
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("2 of 8 coordinates were rounded to float"),
-                                    HasSubstr("1 frame of 2 boxes in 2D, as floats, in format ")));
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("1 frame of 2 boxes in 2D, as floats, in format "),
+                                    EndsWith("; 2 of 8 coordinates were rounded to float\n")));
   }
+}
+
+TEST(ConvertVerb, ReadsWhatIsCompressedAndWritesNothingThatIs) {
+  const std::string corpus = BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/compressed/";
+  for (const std::string extension : {".gz", ".zst"}) {
+    const std::string file = corpus + "boxes.csv" + extension;
+    const Ended ended = run({"pairs", "--count", file});
+    if (ended.status != 0) {
+      EXPECT_THAT(ended.errors, HasSubstr("missing at configure time"));
+      continue;
+    }
+    EXPECT_EQ(ended.output, "2\n");
+    EXPECT_EQ(shell("cat " + file + " | $BROADSIDE pairs --count -").output, "2\n");
+    EXPECT_THAT(run({"info", corpus + "cut_off.csv" + extension}).errors,
+                HasSubstr("cut_off.csv" + extension + ": the compressed file is cut off"));
+  }
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", tenths);
+  for (const std::string name : {"out.csv.gz", "out.csv.zst"}) {
+    const std::vector<Refusal> refusals = {
+        {{file, "-o", folder.file(name)}, {"nothing is compressed as it is written"}},
+        {{file, "-o", folder.file(name), "--to", "csv"}, {"nothing is compressed as it is written"}}};
+    expect_refused("convert", refusals);
+    expect_refused("pairs", refusals);
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.csv"});
 }
 
 TEST(ConvertVerb, StandsInAPipe) {
@@ -99,11 +125,44 @@ TEST(ConvertVerb, AddsToWhatAnOpenDescriptorAppendsTo) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"boxes.csv", "log.csv"}));
 }
 
-TEST(ConvertVerb, ReplacesItsOwnInputOnceTheOutputIsWhole) {
+TEST(ConvertVerb, RefusesToReplaceItsOwnInput) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", tenths);
-  EXPECT_EQ(run({"convert", file, "-o", file}).status, 0);
-  EXPECT_THAT(text_of(file), HasSubstr("0.1,0,1,1\n"));
+  expect_refused("convert", {{{file, "-o", file}, {"-o is '" + file, "the input", "expected another file"}}});
+  EXPECT_EQ(text_of(file), tenths);
+}
+
+TEST(ConvertVerb, KeepsIdsAndNamesTheColumnsItLeavesOut) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("named.csv",
+                                      "ID,name,min_x,min_y,max_x,max_y,area\n"
+                                      "7,\"a, \"\"b\"\"\",0,0,1,1,1\n"
+                                      "7,c,2,2,3,3,1\n");
+  const Ended kept = run({"convert", file, "--to", "csv", "-o", "-"});
+  EXPECT_EQ(kept.output, "id,min_x,min_y,max_x,max_y\n7,0,0,1,1\n7,2,2,3,3\n");
+  EXPECT_THAT(kept.errors,
+              HasSubstr("left out the columns 'name', 'area': format csv holds bounds and ids (--ids)\n"));
+  EXPECT_EQ(run({"convert", file, "--ids", "name", "--to", "csv", "-o", "-"}).output,
+            "id,min_x,min_y,max_x,max_y\n\"a, \"\"b\"\"\",0,0,1,1\nc,2,2,3,3\n");
+  const Ended dropped = run({"convert", file, "-o", folder.file("boxes.npy")});
+  EXPECT_EQ(dropped.status, 0);
+  EXPECT_THAT(dropped.errors,
+              HasSubstr("left out the columns 'ID', 'name', 'area': format npy holds bounds"));
+  EXPECT_THAT(run({"convert", folder.put("plain.csv", tenths), "-o", folder.file("a.csv")}).errors,
+              Not(HasSubstr("left out")));
+  expect_refused("convert", {{{file, "--ids", "id", "-o", folder.file("b.npy")},
+                              {"--ids with format npy", "expected csv"}}});
+}
+
+TEST(ConvertVerb, KeepsTheIdsOfBoxesThatMove) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "frame,box,id,min_x,min_y,max_x,max_y\n"
+      "0,0,red,0,0,1,1\n"
+      "1,0,red,1,0,2,1\n"
+      "1,1,blue,5,5,6,6\n"
+      "2,,,,,,\n";
+  EXPECT_EQ(run({"convert", folder.put("moving.csv", text), "--to", "csv", "-o", "-"}).output, text);
 }
 
 TEST(ConvertVerb, LeavesNothingWhereAFileGrowsTooLarge) {

@@ -44,6 +44,10 @@ TEST(InfoVerb, TellsBoundsToTheLastDigit) {
   EXPECT_THAT(run({"info", file}).output, AllOf(testing::ContainsRegex("\n  x +412345.125 +412350.5 "),
                                                 testing::ContainsRegex("\n  y +5654321.75 +5654330.0625 ")));
   const std::string tenth = folder.put("tenth.csv", "0.1,0,0.3,1\n");
+  const std::string trace = folder.file("tenth.btrace");
+  ASSERT_EQ(run({"convert", tenth, "-o", trace}).status, 0);
+  EXPECT_THAT(run({"info", trace, "--precision", "float"}).errors,
+              HasSubstr("tenth.btrace: 2 of 4 coordinates were rounded to float"));
   EXPECT_THAT(run({"info", tenth, "--precision", "float"}).output,
               testing::ContainsRegex("\n  x +0.1 +0.3 "));
 }

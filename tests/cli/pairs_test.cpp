@@ -93,6 +93,86 @@ TEST(PairsVerb, JoinsTwoFilesAndFindsOnlyWhatIsBetweenThem) {
   EXPECT_THAT(ended.errors, AllOf(HasSubstr("left.csv (4 boxes) with "), HasSubstr("right.csv (2 boxes)")));
 }
 
+TEST(PairsVerb, WritesTheUsersIds) {
+  const TemporaryFolder folder;
+  const std::string left = folder.put("left.csv",
+                                      "name,min_x,min_y,max_x,max_y\n"
+                                      "\"a, \"\"b\"\"\",0,0,2,2\n"
+                                      "far off,9,9,9,9\n"
+                                      "\" c\",1,1,3,3\n"
+                                      ",,,,\n");
+  const std::string right = folder.put("right.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "id": 2.50, "properties": {"name": "line\nbreak"},
+       "geometry": {"type": "Point", "coordinates": [2, 2]}},
+      {"type": "Feature", "geometry": {"type": "Point", "coordinates": [9, 9]},
+       "properties": {"other": 1, "name": "far"}, "id": "x"}]})");
+  for (const std::string order : {"sorted", "found"}) {
+    EXPECT_EQ(run({"pairs", left, "--ids", "name", "--order", order}).output,
+              "first,second\n\"a, \"\"b\"\"\",\" c\"\n");
+  }
+  EXPECT_EQ(run({"pairs", "--ids", "name", left, right}).output,
+            "left,right\n\"a, \"\"b\"\"\",\"line\nbreak\"\nfar off,far\n\" c\",\"line\nbreak\"\n");
+  EXPECT_EQ(run({"pairs", "--ids", "name", "--ids", "id", left, right}).output,
+            "left,right\n\"a, \"\"b\"\"\",2.50\nfar off,x\n\" c\",2.50\n");
+  EXPECT_EQ(run({"convert", right, "--ids", "id", "--to", "csv", "-o", "-"}).output,
+            "id,min_x,min_y,max_x,max_y\n2.50,2,2,2,2\nx,9,9,9,9\n");
+  const std::string array = folder.file("left.npy");
+  ASSERT_EQ(run({"convert", left, "-o", array}).status, 0);
+  const std::string no_ids = folder.put("no.csv", "id,min_x,min_y,max_x,max_y\n,0,0,1,1\n");
+  expect_refused(
+      "pairs",
+      {
+          {{left, "--ids", "nam"}, {"left.csv:1: no column 'nam'", "expected one of: name, min_x"}},
+          {{left, "--ids", "min_x"}, {"column 'min_x' is read already"}},
+          {{no_ids, "--ids", "id"}, {"no.csv:2: column id is ''", "expected an id"}},
+          {{right, "--ids", "other"}, {"feature 0: a feature without a property 'other'"}},
+          {{left, "--ids", "name", "--ids", "name"}, {"--ids 2 times with 1 file"}},
+          {{left, "--ids", "name", "--count"}, {"--ids with --count"}},
+          {{left, "--ids", "name", "-o", folder.file("a.npy")}, {"--ids with an array", "expected CSV"}},
+          {{array, "--ids", "name"}, {"format npy, which has no ids"}},
+      });
+}
+
+TEST(PairsVerb, FindsWhatIsWithinADistance) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("points.csv", "name,lon,lat\na,0,0\nb,1,1\nc,0,2.5\n");
+  const Ended ended = run({"pairs", file, "--within", "1", "--ids", "name"});
+  EXPECT_EQ(ended.output, "first,second\na,b\n");
+  EXPECT_THAT(ended.errors, HasSubstr("points.csv (3 boxes) in 2D: 1 pair within 1, exact in double"));
+  EXPECT_EQ(run({"pairs", file, file, "--within", "1.5", "--count"}).output, "7\n");
+  expect_refused("pairs", {
+                              {{file, "--within", "-1"}, {"--within is '-1'", "a number of 0 or more"}},
+                              {{file, "--within", "inf"}, {"--within is 'inf'"}},
+                              {{file, "--within", "nan"}, {"--within is 'nan'"}},
+                          });
+}
+
+TEST(PairsVerb, LeavesOutWhatIsInvalidAndSaysWhich) {
+  const TemporaryFolder folder;
+  const std::string table = folder.put("boxes.csv", four_boxes + "1,1,x,1\n0,0,9,9\n");
+  const Ended ended = run({"pairs", table, "--skip-invalid"});
+  EXPECT_EQ(ended.output, "first,second\n0,3\n0,5\n1,3\n1,5\n3,5\n");
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("boxes.csv:6: column max_x is 'x', text; expected a number"),
+                                  HasSubstr("boxes.csv: left out 1 invalid box\n"),
+                                  HasSubstr("(6 boxes, 1 of them absent)")));
+  const std::string map = folder.put("map.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "id": 1, "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, "x"]]}},
+      {"type": "Feature", "id": 2, "geometry": {"type": "Point", "coordinates": [1, 1]}},
+      {"type": "Feature", "geometry": {"type": "Point", "coordinates": [1, 1]}},
+      5,
+      {"type": "Feature", "id": 3, "geometry": {"type": "Point", "coordinates": [1, 1]}}]})");
+  const Ended mapped = run({"pairs", map, "--skip-invalid", "--ids", "id"});
+  EXPECT_EQ(mapped.output, "first,second\n2,3\n");
+  EXPECT_THAT(mapped.errors,
+              AllOf(HasSubstr("feature 0: '\"x\"'"), HasSubstr("feature 2: a feature without a member"),
+                    HasSubstr("left out 3 invalid boxes")));
+  EXPECT_EQ(run({"pairs", map, "--skip-invalid"}).output, "first,second\n1,2\n1,4\n2,4\n");
+  const std::string array = folder.file("boxes.npy");
+  ASSERT_EQ(run({"scene", "uniform", "-n", "5", "-o", array}).status, 0);
+  expect_refused("pairs",
+                 {{{array, "--skip-invalid"}, {"format npy", "--skip-invalid can leave nothing out"}}});
+}
+
 TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   const TemporaryFolder folder;
   // A gap that a float does not see at this distance.
@@ -104,7 +184,51 @@ TEST(PairsVerb, IsExactInThePrecisionOfTheInput) {
   const Ended rounded = run({"pairs", "--count", file, "--precision", "float"});
   EXPECT_EQ(rounded.output, "1\n");
   EXPECT_THAT(rounded.errors,
-              HasSubstr("1 pair, exact in float, to which 2 of 8 coordinates were rounded; "));
+              HasSubstr("1 pair, in float, to which 2 of 8 coordinates were rounded; read in "));
+}
+
+TEST(PairsVerb, IsExactInThePrecisionOfAMesh) {
+  const TemporaryFolder folder;
+  // Two triangles with a gap between them that a float does not see at this distance.
+  const std::vector<std::string> vertices = {"5000000 0 0",     "5000000.001 0 0", "5000000 1 0",
+                                             "5000000.002 0 0", "5000001 0 0",     "5000001 1 0"};
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string obj;
+  for (const std::string& vertex : vertices) {
+    ply += vertex + '\n';
+    obj += "v " + vertex + '\n';
+  }
+  const std::string off =
+      folder.put("a.off", "OFF\n6 2 0\n" + ply.substr(ply.find("5000000")) + "3 0 1 2\n3 3 4 5\n");
+  for (const std::string& file :
+       {folder.put("a.ply", ply + "3 0 1 2\n3 3 4 5\n"), folder.put("a.obj", obj + "f 1 2 3\nf 4 5 6\n")}) {
+    for (const bool is_swept : {false, true}) {
+      const auto count = [&](const std::string& mesh, const std::string& precision) {
+        std::vector<std::string> arguments = {"pairs", "--count", mesh};
+        if (is_swept)
+          arguments.insert(arguments.end(), {mesh, "--swept", "--left", "faces", "--right", "faces"});
+        if (!precision.empty()) arguments.insert(arguments.end(), {"--precision", precision});
+        return run(arguments);
+      };
+      for (const std::string precision : {"", "double"}) {
+        const Ended exact = count(file, precision);
+        EXPECT_EQ(exact.output, "0\n") << file;
+        EXPECT_THAT(exact.errors, HasSubstr("0 pairs, exact in double; "));
+      }
+      const Ended rounded = count(file, "float");
+      EXPECT_EQ(rounded.output, "1\n");
+      EXPECT_THAT(rounded.errors,
+                  HasSubstr("1 pair, in float, to which 2 of 12 coordinates were rounded; read in "));
+      const Ended imported = count(off, "double");
+      if (imported.status == 0) {  // with assimp
+        EXPECT_EQ(imported.output, "1\n");
+        EXPECT_THAT(imported.errors,
+                    HasSubstr("1 pair, in double, of coordinates that assimp reads as floats; "));
+      }
+    }
+  }
 }
 
 TEST(PairsVerb, JoinsFloatsWithDoublesAsDoubles) {

@@ -12,6 +12,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check_format("csv", bytes, options);
   options.precision = Precision::float32;
   check_format("csv", bytes, options);
+  options.say_invalid = [](std::string_view) {};
+  options.ids = "id";
+  check_format("csv", bytes, options);
+  options.ids.clear();
+  options.finds_ids = true;
+  check_format("csv", bytes, options);
+  options.say_invalid = nullptr;
   // The first line may be the names that a user gives the columns.
   const std::size_t end = bytes.find('\n');
   if (end == std::string_view::npos) return 0;

@@ -13,11 +13,11 @@ namespace {
 
 std::string written(const IndexedMesh& mesh) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
-                     "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
                      std::to_string(mesh.face_count()) +
                      "\nproperty list uint uint vertex_indices\nend_header\n";
   for (const auto& vertex : mesh.vertices) {
-    for (const float coordinate : vertex) text += fmt::format("{} ", coordinate);
+    for (const double coordinate : vertex) text += fmt::format("{} ", coordinate);
   }
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     text += std::to_string(mesh.face(f).size());

@@ -27,6 +27,15 @@ namespace broadside::track_double_3d {
 #include "snippets/track_double_3d.inc"
 }
 
+namespace broadside::find_mine {
+#include "snippets/find_mine.inc"
+Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
+}  // namespace broadside::find_mine
+namespace broadside::track_mine {
+#include "snippets/track_mine.inc"
+Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
+}  // namespace broadside::track_mine
+
 namespace broadside::lab {
 namespace {
 
@@ -43,6 +52,8 @@ TEST(Snippet, IsWhatIsCompiledHere) {
   EXPECT_EQ(snippet("bvh", Mode::find, 2, twice), pasted("find_double_2d"));
   EXPECT_EQ(snippet("sweep_and_prune:update=merge", Mode::track, 2, single), pasted("track_2d"));
   EXPECT_EQ(snippet("auto", Mode::track, 3, twice), pasted("track_double_3d"));
+  EXPECT_EQ(snippet("mine:axis=x", Mode::find, 2, single), pasted("find_mine"));
+  EXPECT_EQ(snippet("mine", Mode::track, 3, twice), pasted("track_mine"));
 }
 
 TEST(Snippet, FindsThePairsOfAnArray) {
@@ -53,6 +64,7 @@ TEST(Snippet, FindsThePairsOfAnArray) {
   // Floats would not tell these apart.
   EXPECT_EQ(find_double_2d::find_overlaps({{{0, 0}, {1, 1}}, {{1, 1}, {3, 3}}, {{0, 3 + 1e-12}, {3, 4}}}),
             expected);
+  EXPECT_EQ(find_mine::find_overlaps({{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{5, 5}, {6, 6}}}), expected);
 }
 
 TEST(Snippet, FollowsBoxesInAWorld) {
@@ -71,6 +83,10 @@ TEST(Snippet, FollowsBoxesInAWorld) {
   EXPECT_EQ(track_double_3d::update().ended.size(), 1u);
   track_double_3d::remove(box);
   EXPECT_EQ(track_double_3d::update().ended.size(), 0u);
+
+  track_mine::add({{0, 0, 0}, {1, 1, 1}});
+  track_mine::add({{1, 1, 1}, {2, 2, 2}});
+  EXPECT_EQ(track_mine::update().begun.size(), 1u);
 }
 
 }  // namespace

@@ -58,13 +58,6 @@ struct BadFile {
 
 void PrintTo(const BadFile& file, std::ostream* stream) { *stream << file.format << ' ' << file.fault; }
 
-/// A file of a fuzzer's corpus.
-std::string corpus(const std::string& name) {
-  std::ifstream file(BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/" + name, std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<BadFile> bad_tables() {
   const std::string columns = "min_x,min_y,max_x,max_y\n0,0,1,1\n";
   return {
@@ -117,6 +110,22 @@ std::vector<BadFile> bad_arrays() {
        {"numbers of type '<U4'", "floats"}},
       {"npy", "missing_columns", npy_bytes(type, "1, 3", {0, 0, 1}), {"shape (1, 3)", "(n, 4)"}},
       {"npy", "empty", "", {"is empty", "a NumPy array"}},
+  };
+}
+
+std::vector<BadFile> bad_archives() {
+  return {
+      {"npz", "truncated", corpus("npz/cut_off.npz"), {"expected a zip archive"}},
+      {"npz", "wrong_magic", "PKZ and more, but no archive behind it", {"expected a zip archive"}},
+      {"npz",
+       "absurd_count",
+       corpus("npz/claims_2_to_the_31.npz"),
+       {"array 'boxes': has 16 bytes behind its header and claims 2147483648 rows"}},
+      {"npz", "nan", corpus("npz/nan.npz"), {"array 'boxes': row 0 has min (0, nan)", "min <= max"}},
+      {"npz", "inverted", corpus("npz/inverted.npz"), {"array 'boxes': row 0 has min (0, 2)"}},
+      {"npz", "text_for_numbers", corpus("npz/text.npz"), {"numbers of type '<U1'", "floats"}},
+      {"npz", "missing_columns", corpus("npz/three_columns.npz"), {"shape (1, 3)", "(n, 4)"}},
+      {"npz", "empty", "", {"is empty", "an .npz file"}},
   };
 }
 
@@ -212,7 +221,7 @@ std::vector<BadFile> bad_meshes() {
 std::vector<BadFile> bad_files() {
   std::vector<BadFile> all;
   for (const auto& some :
-       {bad_tables(), bad_arrays(), bad_broadmark(), bad_traces(), bad_maps(), bad_meshes()})
+       {bad_tables(), bad_arrays(), bad_archives(), bad_broadmark(), bad_traces(), bad_maps(), bad_meshes()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

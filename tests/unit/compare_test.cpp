@@ -1,7 +1,10 @@
 // The comparison: what is measured, that nothing wrong passes, and what is skipped.
 #include "lab/measure/compare.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +12,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "lab/measure/paired_ratio.hpp"
 #include "lab/scenes/scene.hpp"
 #include "lab/verify.hpp"
 #include "tests/message.hpp"
@@ -134,11 +138,44 @@ TEST(Compare, SeesWhatGoesWrongOnlyLater) {
   }));
   CompareOptions options = options_for("late", {small_still});
   options.effort.share_seconds = 60;
-  options.effort.most_samples = 30;
+  options.effort.most_rounds = 30;
   const Measurement still = only(compare(catalogue, options));
   EXPECT_EQ(still.outcome, Outcome::failed);
   EXPECT_THAT(still.reason,
               HasSubstr("search of seed 20: pair"));  // the one untimed call, then a hundred seeds in turn
+}
+
+TEST(Compare, LetsASlowAlgorithmTakePartInTheFirstRoundsOfTheOthers) {
+  for (const CaseRequest& request : {small_still, small_moving}) {
+    Catalogue catalogue;
+    catalogue.add(spoilt("slow", [](std::vector<Pair>&, std::size_t) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }));
+    CompareOptions options = options_for("grid,slow", {request});
+    options.effort.share_seconds = 0.01;
+    options.effort.slow_seconds = options.effort.slow_history_seconds = 0.01;
+    options.effort.slow_rounds = 2;
+    options.effort.most_rounds = 8;
+    const Comparison comparison = compare(catalogue, options);
+    const CaseResult& result = comparison.cases.at(0);
+    const std::size_t a_round = std::max<std::size_t>(result.of.frames, 1);
+    EXPECT_EQ(result.measurements[0].samples_ms.size(), 8 * a_round);
+    EXPECT_EQ(result.measurements[1].samples_ms.size(), 2 * a_round);
+    ASSERT_TRUE(result.measurements[1].to_fastest);
+    EXPECT_EQ(result.measurements[1].to_fastest->of, "grid");
+    EXPECT_EQ(result.measurements[1].to_fastest->rounds, 2u);
+    EXPECT_FALSE(result.measurements[1].to_fastest->interval);
+  }
+}
+
+TEST(Compare, LetsEveryAlgorithmTakePartInTheLeastOfRounds) {
+  CompareOptions options = options_for("own", {small_still, small_moving});
+  options.effort.share_seconds = 0;
+  options.effort.least_rounds = 6;
+  for (const CaseResult& result : compare(Catalogue(), options).cases) {
+    for (const Measurement& measurement : result.measurements)
+      EXPECT_EQ(round_times(measurement).size(), 6u) << measurement.algorithm;
+  }
 }
 
 TEST(Compare, TakesWhatAnAlgorithmThrowsForItsFailure) {

@@ -237,11 +237,188 @@ TEST_F(CsvTable, SaysWhatIsWrongWithItsColumns) {
                     HasSubstr("expected columns such as")));
   EXPECT_THAT(refusal_of("min_x,xmin,min_y,max_x,max_y\n"), HasSubstr("'min_x' and 'xmin' mean the same"));
   EXPECT_THAT(refusal_of("min_x,min_y,max_x\n"), HasSubstr("column 'min_y' alone"));
-  EXPECT_THAT(refusal_of("frame,min_x,min_y,max_x,max_y\n"), HasSubstr("'frame' without a column 'box'"));
+  EXPECT_THAT(refusal_of("frame,min_x,min_y,max_x,max_y\n"),
+              HasSubstr("'frame' without a column 'box' or 'id'"));
   EXPECT_THAT(refusal_of("city,country\n"), HasSubstr("no columns that give bounds on the x axis"));
   EXPECT_THAT(
       refusal_of("cx,cy,w,h\n0,0,1,-1\n"),
       AllOf(HasSubstr("bad.csv:2: min (-0.5, 0.5) and max (0.5, -0.5)"), HasSubstr("sizes of 0 or more")));
+}
+
+TEST_F(CsvTable, SaysWhyATextIsNoNumber) {
+  const auto refusal = [this](const std::string& number) {
+    return refusal_of("min_x;min_y;max_x;max_y\n0;0;9;" + number + "\n");
+  };
+  EXPECT_THAT(refusal("1,5"),
+              HasSubstr("is '1,5', with a decimal comma; expected a number with a decimal point"));
+  EXPECT_THAT(refusal("-0,25e3"), HasSubstr("with a decimal comma"));
+  EXPECT_THAT(refusal("1,234"), HasSubstr("with a decimal comma or a thousands separator"));
+  for (const std::string number : {"1,234.5", "1 234", "1.234,5", "12'345'678",
+                                   "1\xC2\xA0"
+                                   "234",
+                                   "-1_000"})
+    EXPECT_THAT(refusal(number), HasSubstr("with a thousands separator; expected a number without one"))
+        << number;
+  EXPECT_THAT(refusal("nan"), HasSubstr("is 'nan', NaN; expected a number that a double"));
+  EXPECT_THAT(refusal("NULL"), HasSubstr("is 'NULL', no value; expected"));
+  EXPECT_THAT(refusal(""), HasSubstr("is '', empty; expected"));
+  EXPECT_THAT(refusal("much"), HasSubstr("is 'much', text; expected"));
+  EXPECT_THAT(refusal("5px"), HasSubstr("is '5px', a number with text behind it; expected"));
+  EXPECT_THAT(refusal_of("1,5;2,5;3,5;4,5\n"), HasSubstr("bad.csv:1: '1,5', with a decimal comma"));
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y\n1,5,2,5,3,5,4,5\n"),
+              HasSubstr("8 columns, as decimal commas would make; expected the 4 columns"));
+}
+
+TEST_F(CsvTable, SkipsBlankLines) {
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n\n1,2,5,8\n\n \t\n-1,-2,0,1e10\n\n"), expected);
+  EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n  \n1\t2\t5\t8\n\t\t\t\n"),
+            (std::vector<DoubleBox2>{expected[0], absent_box<2, double>()}))
+      << "tabs alone are empty fields";
+}
+
+TEST_F(CsvTable, LeavesOutInvalidRowsWhereThatIsAsked) {
+  std::vector<std::string> said;
+  ReadOptions options;
+  options.say_invalid = [&](std::string_view why) { said.emplace_back(why.substr(why.find("csv:"))); };
+  options.ids = "id";
+  const std::string rows =
+      "min_x,min_y,max_x,max_y,id\n"
+      "0,0,1,1,a\n"
+      "0,nan,1,1,b\n"
+      "0,0,1\n"
+      "3,0,1,1,c\n"
+      "0,0,1,1,\n"
+      "5,5,6,6,d\n";
+  const BoxFile file = open_file(put("table.csv", rows), options);
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  const DoubleBox2 absent = absent_box<2, double>();
+  EXPECT_EQ(frames.first(),
+            (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, absent, absent, absent, {{5, 5}, {6, 6}}}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"a", "b", "", "c", "", "d"}));
+  EXPECT_THAT(frames.warning(), HasSubstr("table.csv: left out 4 invalid boxes"));
+  EXPECT_THAT(said, testing::ElementsAre(HasSubstr("csv:3: column min_y is 'nan', NaN"),
+                                         HasSubstr("csv:4: 3 columns"), HasSubstr("csv:5: min (3, 0)"),
+                                         HasSubstr("csv:6: column id is ''")));
+
+  // In frames, a box that is invalid goes, and the row's number counts.
+  options.ids.clear();
+  const auto history =
+      history_of<2, double>(put("moving.csv",
+                                "frame,box,min_x,min_y,max_x,max_y\n0,0,0,0,1,1\n0,1,x,0,1,1\n0,2,5,5,6,6\n"
+                                "1,7,0,0,1,1\n1,0,9,0,1,1\n1,y,0,0,1,1\n"),
+                            options);
+  EXPECT_EQ(history.boxes, (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, {{5, 5}, {6, 6}}}));
+  ASSERT_EQ(history.steps.size(), 1u);
+  EXPECT_EQ(history.steps[0].changed, std::vector<BoxId>{BoxId(0)});
+  EXPECT_EQ(history.steps[0].boxes, std::vector<DoubleBox2>{absent});
+
+  said.clear();
+  std::string many = "0,0,1,1\n";
+  for (int i = 0; i < 50; ++i) many += "0,0,1,one\n";
+  EXPECT_EQ((history_of<2, double>(put("many.csv", many), options).boxes.size()), 51u);
+  EXPECT_EQ(said.size(), 20u);
+}
+
+TEST_F(CsvTable, ReadsTracksWhoseRowsListWhatIsThere) {
+  const DoubleBox2 absent = absent_box<2, double>();
+  ReadOptions options;
+  options.ids = "id";
+  options.precision = Precision::float64;
+  // As MOT Challenge has it: by track and then frame, counted from 1, and no frame 3.
+  const BoxFile file = open_file(put("mot.csv",
+                                     "frame,id,bb_left,bb_top,bb_width,bb_height,conf,x,y,z\n"
+                                     "1,9,0,0,1,1,1,-1,-1,-1\n"
+                                     "2,9,2,0,1,1,1,-1,-1,-1\n"
+                                     "4,9,2,0,1,1,1,-1,-1,-1\n"
+                                     "1,car,5,5,1,1,1,-1,-1,-1\n"
+                                     "4,car,7,5,1,1,1,-1,-1,-1\n"
+                                     "4,bus,8,8,1,1,1,-1,-1,-1\n"),
+                                 options);
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  const auto history = read_all(frames);
+  EXPECT_EQ(history.boxes, (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, {{5, 5}, {6, 6}}}));
+  ASSERT_EQ(history.steps.size(), 2u);
+  EXPECT_EQ(history.steps[0].changed, (std::vector<BoxId>{BoxId(0), BoxId(1)}));
+  EXPECT_EQ(history.steps[0].boxes, (std::vector<DoubleBox2>{{{2, 0}, {3, 1}}, absent}));
+  EXPECT_EQ(history.steps[1].size, 3u);
+  EXPECT_EQ(history.steps[1].changed, (std::vector<BoxId>{BoxId(1), BoxId(2)}));
+  EXPECT_EQ(history.steps[1].boxes, (std::vector<DoubleBox2>{{{7, 5}, {8, 6}}, {{8, 8}, {9, 9}}}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"9", "car", "bus"}));
+
+  options = {};
+  options.columns = "frame,id,left,top,width,height";
+  EXPECT_EQ(boxes_of("7,1,0,0,1,1,1,-1\n7,3,5,5,1,1,1,-1\n", options), history.boxes) << "without names";
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,a,0,0,1,1\n2,a,0,0,1,1\n1,a,0,0,1,1\n"),
+              HasSubstr("bad.csv:4: 'a' is there again in frame 1; expected each id once in a frame"));
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\none,a,0,0,1,1\n"),
+              HasSubstr("column frame is 'one', text; expected a number"));
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,,0,0,1,1\n"),
+              HasSubstr("column id is ''; expected an id"));
+}
+
+TEST_F(CsvTable, ReadsPointsAndCircles) {
+  const std::vector<DoubleBox2> points = {{{1, 2}, {1, 2}}};
+  EXPECT_EQ(boxes_of("id,x,y\n7,1,2\n"), points);
+  EXPECT_EQ(boxes_of("name,lat,lon,depth\na,2,1,9\n"), points);
+  EXPECT_EQ(boxes_of("Latitude;Longitude\n2;1\n"), points);
+  EXPECT_EQ(boxes_of("x,y\n,\n"), (std::vector<DoubleBox2>{absent_box<2, double>()}));
+  EXPECT_EQ(solid_boxes_of("x,y,z,r,g,b\n1,2,3,255,0,0\n"), (std::vector<DoubleBox3>{{{1, 2, 3}, {1, 2, 3}}}))
+      << "a colour is no radius";
+  EXPECT_EQ(boxes_of("x,y,radius\n1,2,0.5\n"), (std::vector<DoubleBox2>{{{0.5, 1.5}, {1.5, 2.5}}}));
+  EXPECT_EQ(solid_boxes_of("cx,cy,cz,r\n1,2,3,0.5\n"),
+            (std::vector<DoubleBox3>{{{0.5, 1.5, 2.5}, {1.5, 2.5, 3.5}}}));
+  EXPECT_EQ((history_of<2, float>(put("a.csv", "x,y\n1.00000005960464480000001,0\n")).boxes[0].min[0]),
+            1.00000012F)
+      << "rounded once";
+  EXPECT_THAT(refusal_of("x,y,radius\n1,2,-1\n"), HasSubstr("sizes of 0 or more"));
+  EXPECT_THAT(refusal_of("x,y,radius\n1,2,\n"), HasSubstr("column radius is '', empty"));
+  EXPECT_THAT(refusal_of("x,y,z,depth\n1,2,3,4\n"), HasSubstr("column 'z' may be a minimum or a centre"));
+}
+
+TEST_F(CsvTable, ReadsGeometriesAndBoundsInOneField) {
+  const auto box_of = [this](const std::string& text) {
+    return boxes_of("id,geom\n7,\"" + text + "\"\n").at(0);
+  };
+  const DoubleBox2 box = {{1, 2}, {5, 8}};
+  for (const std::string text :
+       {"LINESTRING (1 2, 5 8)", "linestring(5 2,1 8)",
+        "POLYGON ((1 2, 5 2, 5 8, 1 2), (2 3, 3 3, 3 4, 2 3))", "MULTIPOINT (1 2, 5 8)",
+        "MULTIPOINT ((1 2), EMPTY, (5 8))", "MULTILINESTRING ((1 2, 3 3), (4 4, 5 8))",
+        "MULTIPOLYGON (((1 2, 5 2, 5 8, 1 2)), EMPTY)", "LINESTRING Z (1 2 99, 5 8 -99)",
+        "LINESTRINGM(1 2 0,5 8 0)", "LINESTRING ZM (1 2 0 0, 5 8 0 0)", "SRID=4326;LINESTRING(1 2,5 8)",
+        "GEOMETRYCOLLECTION (POINT (1 2), GEOMETRYCOLLECTION (POINT EMPTY, POINT Z (5 8 3)))", "[1, 2, 5, 8]",
+        "1 2 5 8", "1,2,5,8", "(1.0, 2.0, 5.0, 8.0)", "BOX(1 2,5 8)"})
+    EXPECT_EQ(box_of(text), box) << text;
+  EXPECT_EQ(box_of("POLYGON EMPTY"), (absent_box<2, double>()));
+  EXPECT_EQ(box_of(""), (absent_box<2, double>()));
+  EXPECT_EQ(solid_boxes_of("bbox\n\"[1, 2, 3, 4, 5, 6]\"\n"),
+            (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
+  EXPECT_EQ(solid_boxes_of("bbox;n\nBOX3D(1 2 3,4 5 6);1\n"),
+            (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
+  EXPECT_EQ(boxes_of("WKT\nPOINT (1 2)\n").at(0), (DoubleBox2{{1, 2}, {1, 2}})) << "alone in its line";
+  EXPECT_EQ(boxes_of("lon,lat,wkt\n9,9,POINT (1 2)\n").at(0), (DoubleBox2{{1, 2}, {1, 2}}));
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y,wkt\n1,2,5,8,POINT (9 9)\n").at(0), box);
+  ReadOptions options;
+  options.columns = "id,wkt";
+  EXPECT_EQ(boxes_of("7,POINT (1 2)\n", options).at(0), (DoubleBox2{{1, 2}, {1, 2}}));
+
+  const auto refusal = [this](const std::string& text) {
+    return refusal_of("id,geom\n7,\"" + text + "\"\n");
+  };
+  EXPECT_THAT(refusal("POINT (1 2"),
+              HasSubstr("column geom is 'POINT (1 2', which ends early; expected ')' there"));
+  EXPECT_THAT(refusal("POINT (1)"), HasSubstr("with '', empty; expected a number"));
+  EXPECT_THAT(refusal("POINT (nan nan)"), HasSubstr("with 'nan', NaN; expected a number"));
+  EXPECT_THAT(refusal("POINT (1 2) 3"), HasSubstr("with '3' behind its end"));
+  EXPECT_THAT(refusal("POINT Z (1 2)"), HasSubstr("with a point of 2 numbers; expected 3"));
+  EXPECT_THAT(refusal("CIRCULARSTRING (0 0, 1 1, 2 0)"),
+              HasSubstr("with 'CIRCULARSTRING'; expected POINT, "));
+  EXPECT_THAT(refusal("0101000000000000000000F03F0000000000000040"), HasSubstr("well-known binary"));
+  EXPECT_THAT(refusal("[1, 2, 3]"), HasSubstr("which is 3 numbers; expected 4"));
+  EXPECT_THAT(refusal("[5, 2, 1, 8]"), HasSubstr("min (5, 2) and max (1, 8)"));
+  std::string nested = "POINT (0 0)";
+  for (int i = 0; i < 40; ++i) nested = "GEOMETRYCOLLECTION (" + nested + ")";
+  EXPECT_THAT(refusal(nested), HasSubstr("nested more than 32 deep"));
 }
 
 TEST_F(CsvTable, OfOneFrameIsWrittenAsPlainColumns) {

@@ -109,6 +109,23 @@ TEST(ExperimentResults, SayHowManyMeasurementsWereUnsteadyWhereThatIsKnown) {
                                       HasSubstr("expected a whole number from 0")));
 }
 
+TEST(ExperimentResults, SayWhetherTheMachineWasBusyWhereThatIsKnown) {
+  EXPECT_THAT(json_of(results()), Not(HasSubstr("busy")));
+  EXPECT_EQ(read_experiments(json_of(results()), "x.json").processor_share, std::nullopt);
+
+  ExperimentResults written = results();
+  written.processor_share = 0.58;
+  EXPECT_EQ(Json::parse(json_of(written))["busy"], true);
+  const ExperimentResults read = read_experiments(json_of(written), "x.json");
+  EXPECT_EQ(read.processor_share, 0.58);
+  EXPECT_EQ(json_of(read), json_of(written));
+  written.processor_share = 0.99;
+  EXPECT_EQ(Json::parse(json_of(written))["busy"], false);
+
+  EXPECT_THAT(refusal_after([](Json& json) { json["processor_share"] = "all"; }),
+              HasSubstr("processor_share: \"all\"; expected a number"));
+}
+
 TEST(ExperimentResults, AreJudgedAnewWhenTheyAreRead) {
   Json json = Json::parse(json_of(results()));
   ASSERT_EQ(first(json)["verdict"], "holds");

@@ -14,6 +14,13 @@
 
 namespace broadside::lab {
 
+/// A file of a fuzzer's corpus.
+inline std::string corpus(const std::string& name) {
+  std::ifstream file(BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/" + name, std::ios::binary);
+  EXPECT_TRUE(file) << name;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// Tests with a folder of their own.
 class Files : public testing::Test {
  protected:

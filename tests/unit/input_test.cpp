@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "files.hpp"
+#include "lab/readers/decompressor.hpp"
 #include "lab/readers/format.hpp"
 #include "pipe.hpp"
 #include "tests/message.hpp"
@@ -82,7 +83,78 @@ TEST_F(InputTest, MayBeEmptyOrShort) {
   EXPECT_EQ(piped.bytes(), "abc");
 }
 
+/// Without the library that decompresses it.
+bool is_missing(const std::string& text) {
+  return text.find("missing at configure time") != std::string::npos;
+}
+
+class CompressedInput : public Files, public testing::WithParamInterface<std::string> {
+ protected:
+  std::string compressed(const std::string& name) const { return corpus("compressed/" + name + GetParam()); }
+
+  /// What is said of a file of these bytes that is read whole.
+  std::string refusal_of(const std::string& bytes) const {
+    return message_of<FileError>([&] { Input(put("a.csv" + GetParam(), bytes)).bytes(); });
+  }
+};
+
+TEST_P(CompressedInput, GivesWhatWasCompressedAtOnceOrInPiecesFromAFileOrAPipe) {
+  const std::string plain = corpus("compressed/plain.csv");
+  // One member behind the other, as both formats allow: more than any buffer here holds.
+  std::string bytes;
+  std::string text;
+  for (int i = 0; i < 3000; ++i) {
+    bytes += compressed("boxes.csv");
+    text += plain;
+  }
+  const auto file = put("a.csv" + GetParam(), bytes);
+  try {
+    Input at_once(file);
+    EXPECT_EQ(at_once.beginning(), text.substr(0, Input::beginning_bytes));
+    EXPECT_EQ(at_once.bytes(), text);
+    EXPECT_TRUE(at_once.path().empty()) << "its bytes are others than the file's";
+    EXPECT_EQ(at_once.extension(), ".csv");
+  } catch (const FileError& error) {
+    if (is_missing(error.what())) GTEST_SKIP() << error.what();
+    throw;
+  }
+  Input in_pieces(file);
+  EXPECT_EQ(stream_text(in_pieces), text);
+  const Pipe pipe(bytes);
+  Input piped(pipe.path());
+  EXPECT_EQ(piped.bytes(), text);
+}
+
+TEST_P(CompressedInput, IsRefusedByNameWhereItIsCutOffOrDamaged) {
+  const std::string whole = compressed("boxes.csv");
+  const std::string of_part = refusal_of(whole.substr(0, whole.size() - 1));
+  if (is_missing(of_part)) GTEST_SKIP() << of_part;
+  for (std::size_t size = compression_magic_bytes; size < whole.size(); ++size)
+    EXPECT_THAT(refusal_of(whole.substr(0, size)),
+                HasSubstr("a.csv" + GetParam() + ": the compressed file is cut off"))
+        << size;
+  EXPECT_THAT(refusal_of(compressed("wrong_checksum.csv")),
+              AllOf(HasSubstr("a.csv" + GetParam() + ": byte "), HasSubstr(" of the compressed file: ")));
+  EXPECT_THAT(refusal_of(whole + "more"), HasSubstr("a.csv" + GetParam() + ": "));
+}
+
+TEST_P(CompressedInput, IsRefusedAsAStreamLikewise) {
+  const auto file = put("a.csv" + GetParam(), compressed("cut_off.csv"));
+  const std::string text = message_of<FileError>([&] {
+    Input input(file);
+    std::string line;
+    while (std::getline(input.stream(), line)) continue;
+  });
+  EXPECT_TRUE(is_missing(text) || text.find("is cut off") != std::string::npos) << text;
+}
+
+std::string without_dot(const testing::TestParamInfo<std::string>& info) { return info.param.substr(1); }
+
+INSTANTIATE_TEST_SUITE_P(All, CompressedInput, testing::Values(".gz", ".zst"), without_dot);
+
 TEST_F(InputTest, KnowsItsExtensionInLowerCase) {
+  EXPECT_EQ(Input("a.Csv.GZ", "").extension(), ".csv");
+  EXPECT_EQ(Input("zst", "").extension(), "");
   EXPECT_EQ(Input(put("a.CSV", "")).extension(), ".csv");
   EXPECT_EQ(Input("b.tar.Npy", "").extension(), ".npy");
   EXPECT_EQ(Input(put("c", "")).extension(), "");

@@ -166,7 +166,7 @@ TEST_F(MapTest, RefusesLayersThatAreNotThere) {
   EXPECT_THAT(refusal_of(collection, "lines"), HasSubstr("GeoJSON, which has no layer 'lines'"));
   EXPECT_THAT(
       message_of<FileError>([&] { open_file(put("a.csv", "1,2,3,4\n"), {.format = "csv", .layer = "b"}); }),
-      HasSubstr("format csv, which has no layer 'b'"));
+      HasSubstr("format csv, which has no layer or array 'b'"));
 }
 
 TEST_F(MapTest, RefusesWhatIsWrongNamingByteAndFeature) {

@@ -38,7 +38,7 @@ class MeshTest : public Files {
   }
 
   std::vector<Box3> boxes_of(const std::filesystem::path& file, const std::string& part) const {
-    const BoxFile opened = open_file(file, {.boxes = part});
+    const BoxFile opened = open_file(file, {.boxes = part, .precision = Precision::float32});
     return std::get<std::unique_ptr<FrameReader<3, float>>>(opened.frames)->first();
   }
 };
@@ -83,13 +83,25 @@ TEST_F(MeshTest, KeepsTheVerticesOfAnObjFile) {
   EXPECT_EQ(boxes_of(file, "edges").size(), 7u);
 }
 
-TEST_F(MeshTest, OfDoublesSaysHowManyAreRounded) {
-  const std::string text =
+TEST_F(MeshTest, KeepsThePrecisionOfTheFile) {
+  const std::string doubles =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0.5 16777217 0.1\n1 0 0.1\n0 1 0.1\n3 0 1 2\n";
-  EXPECT_THAT(file_scene(put("a.ply", text)).warning,
-              HasSubstr("a.ply: 1 of 9 coordinates was rounded to float, in which meshes are read"));
+  const auto reader_of = [](const std::filesystem::path& file) { return open_file(file).frames; };
+  const AnyFrameReader ply_doubles = reader_of(put("a.ply", doubles));
+  const std::vector<DoubleBox3> boxes =
+      std::get<std::unique_ptr<FrameReader<3, double>>>(ply_doubles)->first();
+  EXPECT_THAT(boxes, ElementsAre(DoubleBox3{{0, 0, 0.1F}, {1, 16777217, 0.1F}}));
+  EXPECT_EQ(precision_of_frames(reader_of(put("a.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"))),
+            Precision::float64);
+  EXPECT_EQ(precision_of_frames(reader_of(put("b.ply", ply("0.1")))), Precision::float32);
+  EXPECT_EQ(importer_of(ply_doubles), "");
+  const AnyFrameReader imported = reader_of(put("a.off", "OFF\n3 1 0\n0.1 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  EXPECT_EQ(precision_of_frames(imported), Precision::float32);
+  EXPECT_EQ(importer_of(imported), "assimp");
+  EXPECT_THAT(file_scene(path("a.ply")).warning,
+              HasSubstr("a.ply: 1 of 6 coordinates was rounded to float, in which scenes are compared"));
 }
 
 TEST_F(MeshTest, IsRecognisedByContentWhateverItIsCalled) {
@@ -130,10 +142,10 @@ std::vector<Pair> apart(const SweptMesh& mesh, MeshPart left, MeshPart right) {
 TEST_F(MeshTest, SweepsElementsFromOneTimeToTheNext) {
   const SweptMesh mesh = read_swept_mesh(put("0.ply", ply("0")), put("1.ply", ply("2")));
   EXPECT_THAT(mesh.swept(MeshPart::faces).boxes,
-              ElementsAre(Box3{{0, 0, 0}, {1, 1, 2}}, Box3{{1, 0, 0}, {3, 1, 2}}));
-  const std::vector<Box3> vertices = mesh.swept(MeshPart::vertices).boxes;
-  EXPECT_EQ(vertices[4], (Box3{{3, 0, 0}, {3, 0, 2}}));
-  EXPECT_EQ(vertices[5], (Box3{{9, 9, 9}, {9, 9, 9}}));
+              ElementsAre(DoubleBox3{{0, 0, 0}, {1, 1, 2}}, DoubleBox3{{1, 0, 0}, {3, 1, 2}}));
+  const std::vector<DoubleBox3> vertices = mesh.swept(MeshPart::vertices).boxes;
+  EXPECT_EQ(vertices[4], (DoubleBox3{{3, 0, 0}, {3, 0, 2}}));
+  EXPECT_EQ(vertices[5], (DoubleBox3{{9, 9, 9}, {9, 9, 9}}));
 }
 
 TEST_F(MeshTest, LeavesOutPairsThatShareAVertex) {

@@ -68,8 +68,12 @@ std::string binary(bool is_big) {
   file.add(std::uint16_t{0}).add(std::uint32_t{4});
   for (const std::uint32_t vertex : {3, 2, 1, 0}) file.add(vertex);
   file.add('q');
+  constexpr std::array tenths = {0.0, 0.1, 0.2, 0.3};
   for (std::int32_t i = 0; i < 4; ++i)
-    file.add(std::int16_t{7}).add(0.1 * i).add(1.5F * static_cast<float>(i)).add(-i);
+    file.add(std::int16_t{7})
+        .add(tenths[static_cast<std::size_t>(i)])
+        .add(1.5F * static_cast<float>(i))
+        .add(-i);
   return header(is_big ? "binary_big_endian" : "binary_little_endian") + file.add(std::int32_t{5}).bytes();
 }
 
@@ -79,13 +83,26 @@ const std::string text_body =
 TEST(Ply, IsTheSameInEveryEncoding) {
   for (const std::string& file : {header("ascii") + text_body, binary(false), binary(true)}) {
     const IndexedMesh mesh = read(file);
-    EXPECT_THAT(mesh.vertices, ElementsAre(std::array{0.0F, 0.0F, 0.0F}, std::array{1.5F, -1.0F, 0.1F},
-                                           std::array{3.0F, -2.0F, 0.2F}, std::array{4.5F, -3.0F, 0.3F}));
+    EXPECT_THAT(mesh.vertices, ElementsAre(std::array{0.0, 0.0, 0.0}, std::array{1.5, -1.0, 0.1},
+                                           std::array{3.0, -2.0, 0.2}, std::array{4.5, -3.0, 0.3}));
     ASSERT_EQ(mesh.face_count(), 2u);
     EXPECT_THAT(mesh.face(0), ElementsAre(0, 1, 2));
     EXPECT_THAT(mesh.face(1), ElementsAre(3, 2, 1, 0));
     EXPECT_TRUE(mesh.has_own_vertices);
-    EXPECT_EQ(mesh.rounded, 3u) << "0.1, 0.2 and 0.3 are doubles";
+    EXPECT_EQ(mesh.precision, Precision::float64) << "as z is";
+  }
+}
+
+TEST(Ply, HasThePrecisionThatItsHeaderDeclares) {
+  const auto with = [](const std::string& type) {
+    return read("ply\nformat ascii 1.0\nelement vertex 1\nproperty " + type + " x\nproperty " + type +
+                " y\nproperty " + type + " z\nend_header\n1 2 16777217\n");
+  };
+  EXPECT_EQ(with("float").precision, Precision::float32);
+  EXPECT_THAT(with("float").vertices, ElementsAre(std::array{1.0, 2.0, 16777216.0}));
+  for (const std::string type : {"double", "int"}) {
+    EXPECT_EQ(with(type).precision, Precision::float64);
+    EXPECT_THAT(with(type).vertices, ElementsAre(std::array{1.0, 2.0, 16777217.0}));
   }
 }
 

@@ -133,7 +133,7 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(plain + "0,0,1\n"),
               AllOf(HasSubstr("bad.csv:3: 3 columns"), HasSubstr("expected the 4")));
   EXPECT_THAT(refusal_of(plain + "0,0,1,1,\n"), HasSubstr("bad.csv:3: 5 columns"));
-  EXPECT_THAT(refusal_of(plain + "\n1,2,3,4\n"), HasSubstr("bad.csv:3: an empty line"));
+  EXPECT_EQ(refusal_of(plain + "\n1,2,3,4\n"), "was read");
   EXPECT_THAT(refusal_of(plain + "0,0,1,one\n"),
               AllOf(HasSubstr("bad.csv:3: column max_y is 'one'"), HasSubstr("expected a number")));
   EXPECT_THAT(refusal_of(plain + "0,nan,1,1\n"), HasSubstr("column min_y is 'nan'"));
@@ -262,11 +262,29 @@ TEST_F(Mesh, RefusesWhatIsNone) {
   EXPECT_THAT(refusal(put("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), HasSubstr("nan.obj"));
 }
 
+TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
+  const auto shapefile = put("rivers.shp", "anything");
+  EXPECT_THAT(refusal(shapefile), AllOf(HasSubstr("rivers.shp: is a shapefile, which is not read here"),
+                                        HasSubstr("ogr2ogr -f GeoJSON out.geojson " + shapefile.string())));
+  EXPECT_THAT(refusal(put("a.gpkg", std::string("SQLite format 3\0", 16))), HasSubstr("ogr2ogr"));
+  EXPECT_THAT(refusal(put("a.kml", "<?xml version=\"1.0\"?>\n<kml>")), HasSubstr("is KML"));
+  EXPECT_THAT(refusal(put("a.gml", "")), HasSubstr("is empty"));
+  EXPECT_THAT(refusal(put("a.xlsx", "PK")), HasSubstr("libreoffice --headless --convert-to csv "));
+  EXPECT_THAT(refusal(put("a.laz", "?")), HasSubstr("pdal translate "));
+  // By its content, whatever it is called.
+  EXPECT_THAT(refusal(put("a.csv", "PAR1\x15\x04")),
+              AllOf(HasSubstr("a.csv: is Parquet"), HasSubstr("pandas.read_parquet('")));
+  EXPECT_THAT(refusal(put("b.dat", "\x89HDF\r\n\x1a\n")), HasSubstr("h5py"));
+  EXPECT_THAT(refusal(put("c.dat", "ARROW1\n")), HasSubstr("no format known here"))
+      << "has no zero behind it";
+}
+
 TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   EXPECT_THAT(refusal(path("nothing.csv")), AllOf(HasSubstr("nothing.csv"), HasSubstr("No such file")));
   EXPECT_THAT(refusal(path("")), HasSubstr("cannot be read"));
-  EXPECT_THAT(refusal(put("a.xyzzy", "hello")),
-              AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), broadmark (.aabbs)")));
+  EXPECT_THAT(
+      refusal(put("a.xyzzy", "hello")),
+      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), broadmark (.aabbs)")));
   try {
     write_scene(History<2>{}, path("a.obj"));
     FAIL() << "wrote a format that is only read";

@@ -71,7 +71,7 @@ TEST(Registry, HasTheStandardAlgorithm) { EXPECT_NE(find_algorithm(default_algor
 TEST(Registry, RefusesAnUnknownNameAndNamesTheKnownOnes) {
   std::string known;
   for (const Algorithm& algorithm : algorithms()) known += (known.empty() ? "" : ", ") + algorithm.name;
-  const std::string expected = "unknown algorithm 'gird'; expected one of: " + known;
+  const std::string expected = "unknown algorithm 'gird' (did you mean 'grid'?); expected one of: " + known;
   EXPECT_EQ(message_of<InvalidSpec>([] { make_finder<2>("gird:cell=2"); }), expected);
   EXPECT_EQ(message_of<InvalidSpec>([] { make_tracker<3>("gird"); }), expected);
 }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/report/case_line.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/table.hpp"
@@ -55,7 +57,9 @@ CaseResult still_case(std::vector<Measurement> measurements) {
   of.seeds = {1, 2};
   of.dimension = 2;
   of.boxes = 10'000;
-  return {of, std::move(measurements)};
+  CaseResult result{of, std::move(measurements)};
+  add_ratios(result);
+  return result;
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -87,11 +91,23 @@ TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
 TEST(Table, ShowsMedianRatioAndTheRestOfALine) {
   const auto lines =
       lines_of(table_of(still_case({timed("first", {4, 4.5, 5}), timed("second", {8, 9, 10})})));
-  EXPECT_EQ(lines[1], "  algorithm    ms  ratio  ns a box  tests a box   memory     peak  min..max");
+  EXPECT_EQ(lines[1],
+            "  algorithm    ms  ratio  95 % interval  ns a box  tests a box   memory     peak  min..max");
   EXPECT_EQ(lines[2],
-            "  first      4.50   1.00       450         5.00  64.0 kB  65.0 kB  4.00..5.00  verified");
+            "  first      4.50    1.0  -                   450         5.00  64.0 kB  65.0 kB  4.00..5.00  "
+            "verified");
   EXPECT_EQ(lines[3],
-            "  second     9.00   2.00       900         5.00  64.0 kB  65.0 kB  8.00..10.0  verified");
+            "  second     9.00    2.0  -                   900         5.00  64.0 kB  65.0 kB  8.00..10.0  "
+            "verified");
+}
+
+TEST(Table, ShowsTheIntervalOfARatioOrThatTwoAreLevel) {
+  const auto lines = lines_of(
+      table_of(still_case({timed("first", {4, 4, 4, 4, 4, 4}), timed("close", {3.9, 4.1, 4.2, 3.8, 4.3, 4.1}),
+                           timed("second", {8, 8, 8, 9, 9, 8})})));
+  EXPECT_THAT(lines[2], testing::MatchesRegex("  first +4.00 +1.0  - .*"));
+  EXPECT_THAT(lines[3], testing::MatchesRegex("  close +4.10 +1.0  level .*"));
+  EXPECT_THAT(lines[4], testing::MatchesRegex("  second +8.00 +2.[01]  2.0 to 2.[123] .*"));
 }
 
 TEST(Table, EndsWithTheFloorAndCountsInFloors) {
@@ -99,11 +115,11 @@ TEST(Table, EndsWithTheFloorAndCountsInFloors) {
   result.floor_ms = {1.4, 1.6, 1.5};
   const auto lines = lines_of(table_of(result));
   ASSERT_EQ(lines.size(), 6u);
-  EXPECT_THAT(lines[1], StartsWith("  algorithm    ms  ratio  floors  ns a box "));
-  EXPECT_THAT(lines[2], StartsWith("  first      4.50   1.00    3.00       450 "));
-  EXPECT_THAT(lines[3], StartsWith("  second     9.00   2.00    6.00       900 "));
-  EXPECT_THAT(lines[4], StartsWith("  wrong         -      -       -         - "));
-  EXPECT_THAT(lines[5], StartsWith("  the floor  1.50   0.33    1.00       150 "));
+  EXPECT_THAT(lines[1], StartsWith("  algorithm    ms  ratio  95 % interval  floors  ns a box "));
+  EXPECT_THAT(lines[2], StartsWith("  first      4.50    1.0  -                 3.0       450 "));
+  EXPECT_THAT(lines[3], StartsWith("  second     9.00    2.0  -                 6.0       900 "));
+  EXPECT_THAT(lines[4], StartsWith("  wrong         -      -  -                   -         - "));
+  EXPECT_THAT(lines[5], StartsWith("  the floor  1.50   0.33  -                 1.0       150 "));
   EXPECT_THAT(lines[5], HasSubstr("  1.40..1.60  boxes sorted and gathered, pairs written"));
 }
 
@@ -113,7 +129,21 @@ TEST(Table, EndsWithOurLeadOverTheFastestPeer) {
   EXPECT_EQ(lines_of(table_of(result)).size(), 6u);
   result.measurements[2].kind = AlgorithmKind::peer;
   result.measurements[3].kind = AlgorithmKind::peer;
-  EXPECT_EQ(lines_of(table_of(result)).back(), "  ours is 4.00 times as fast as the fastest peer, another");
+  add_ratios(result);
+  EXPECT_EQ(lines_of(table_of(result)).back(), "  ours is 4.0 times as fast as the fastest peer, another");
+}
+
+TEST(CaseLine, NamesOurBestAutoTheFastestPeerTheLeadAndTheCheck) {
+  CaseResult result = still_case({timed("auto", {2.1, 2.2, 2.1, 2.2, 2.1}), timed("ours", {2, 2, 2, 2, 2}),
+                                  timed("theirs", {9, 8, 8, 8, 9}), skipped("slow")});
+  result.measurements[2].kind = AlgorithmKind::peer;
+  add_ratios(result);
+  EXPECT_EQ(case_line(result).find('\n'), case_line(result).size() - 1);
+  EXPECT_THAT(case_line(result),
+              testing::MatchesRegex("uniform, 2D, 10,000 boxes +ours 2.00 ms +1.1 \\(1.1 to 1.1\\) +"
+                                    "theirs 8.00 ms +4.[0-5] \\(4.0 to 4.5\\) +brute_force\n"));
+  EXPECT_THAT(case_line(still_case({failed("wrong")})), HasSubstr("1 FAILED"));
+  EXPECT_THAT(case_line(still_case({skipped("slow")})), HasSubstr("nothing verified"));
 }
 
 TEST(Summary, MeansOurLeadsOverTheFastestPeers) {
@@ -123,19 +153,20 @@ TEST(Summary, MeansOurLeadsOverTheFastestPeers) {
                       still_case({timed("ours", {1})})};
   for (CaseResult& result : comparison.cases) {
     if (result.measurements.size() > 1) result.measurements[1].kind = AlgorithmKind::peer;
+    add_ratios(result);
   }
   EXPECT_THAT(summary_of(comparison),
-              HasSubstr("the fastest of ours is 2.00 times as fast as the fastest peer, geometric mean of 2 "
-                        "cases; at least 1.00 times\n"));
+              HasSubstr("the best of ours is 2 times as fast as the fastest peer, geometric mean of 2 "
+                        "cases; at least 1.0 times (uniform, 2D, 10,000 boxes)\n"));
 }
 
 TEST(Table, LabelsAnEstimateAndKeepsTheColumnsAligned) {
   const auto lines = lines_of(table_of(still_case({timed("first", {4.5}), skipped("slow")})));
-  EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,111 "));
+  EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,100 "));
   EXPECT_THAT(lines[3],
               HasSubstr("  skipped: estimated 41.0 s from 20,000 boxes, scaled by n^2.00; budget 10 s"));
   EXPECT_EQ(lines[2].find("4.50") + 4, lines[3].find("41,000") + 6);
-  EXPECT_EQ(lines[2].find("1.00") + 4, lines[3].find("9,111") + 5);
+  EXPECT_EQ(lines[2].find("1.0 ") + 3, lines[3].find("9,100") + 5);
   EXPECT_EQ(lines[2].find("verified"), lines[3].find("skipped"));
 }
 
@@ -154,10 +185,11 @@ TEST(Table, TellsHowAHistoryMoves) {
   const auto lines = lines_of(table_of(result));
   EXPECT_THAT(lines[0], HasSubstr("10,000 boxes, 10 % moving, 20 frames, 1,234 pairs at the end"));
   EXPECT_EQ(lines[1],
-            "  algorithm  ms a frame   p99  worst  ratio  to a peer  ns a mover  first frame  "
+            "  algorithm  ms a frame   p99  worst  ratio  95 % interval  to a peer  ns a mover  first frame  "
             "tests a box   memory     peak");
   EXPECT_EQ(lines[2],
-            "  first            4.55  4.60   4.60   1.00          -       4,550            -         "
+            "  first            4.55  4.60   4.60    1.0  -                      -       4,550            -  "
+            "       "
             "5.00  64.0 kB  65.0 kB  verified");
 }
 
@@ -170,9 +202,10 @@ TEST(Table, TellsOfMotionWhatAMoverCostsAndWhatAPeerTakes) {
   result.measurements[0].explanation = "incremental, since few move";
   result.measurements[1].kind = AlgorithmKind::peer;
   result.measurements[2].kind = AlgorithmKind::peer;
+  add_ratios(result);
   const auto lines = lines_of(table_of(result));
-  EXPECT_THAT(lines[2], testing::MatchesRegex("  ours +2.00  3.00 +3.00 +1.00 +0.50 +2,000 +7.00 .*"));
-  EXPECT_THAT(lines[4], testing::MatchesRegex("  theirs +8.00  8.00 +8.00 +4.00 +2.00 +8,000 +- .*"));
+  EXPECT_THAT(lines[2], testing::MatchesRegex("  ours +2.00  3.00 +3.00 +1.0  - +0.6[0-9] +2,000 +7.00 .*"));
+  EXPECT_THAT(lines[4], testing::MatchesRegex("  theirs +8.00  8.00 +8.00 +4.0  - +2.0 +8,000 +- .*"));
   EXPECT_EQ(lines[5], "  ours: incremental, since few move");
 }
 
@@ -191,8 +224,8 @@ TEST(Summary, MeansTheRatiosAndCountsTheWins) {
                       still_case({timed("a", {9}), timed("b", {1})})};
   const auto lines = lines_of(summary_of(comparison));
   EXPECT_EQ(lines[0], "All 2 cases");
-  EXPECT_THAT(lines[2], testing::ContainsRegex("b +2 +1 +2.00"));
-  EXPECT_THAT(lines[3], testing::ContainsRegex("a +2 +1 +3.00"));
+  EXPECT_THAT(lines[2], testing::ContainsRegex("b +2 +1 +2.0"));
+  EXPECT_THAT(lines[3], testing::ContainsRegex("a +2 +1 +3.0"));
   EXPECT_EQ(lines.back(), "4 measurements, all verified");
 }
 
@@ -204,7 +237,7 @@ TEST(Summary, NamesEveryFailureAndWhatWasSkipped) {
   comparison.not_compared.push_back({rain, "unknown scene"});
   const std::string summary = summary_of(comparison);
   EXPECT_THAT(summary, HasSubstr("not compared: box2d_rain: unknown scene\n"));
-  EXPECT_THAT(summary, HasSubstr("2 measurements, 1 FAILED; 1 skipped\n"));
+  EXPECT_THAT(summary, HasSubstr("2 measurements, 1 FAILED\nleft out: 1 measurement (1 over the budget)\n"));
   EXPECT_THAT(
       summary,
       HasSubstr(
@@ -221,17 +254,24 @@ Json parsed(const std::vector<Measurement>& measurements) {
 
 TEST(Summary, SaysHowFarAutoIsFromTheBestOfOurOthers) {
   Comparison comparison;
-  CaseResult threaded = still_case({timed("auto", {3}), timed("grid", {2}), timed("grid:threads=2", {1})});
-  threaded.measurements[2].threads = 2;
-  comparison.cases = {still_case({timed("auto", {2}), timed("grid", {2}), timed("bvh", {4})}), threaded};
+  comparison.cases = {still_case({timed("auto", {2}), timed("grid", {2}), timed("bvh", {4})}),
+                      still_case({timed("auto", {3}), timed("grid", {2})})};
   EXPECT_THAT(summary_of(comparison),
               HasSubstr("auto takes 1.22 times as long as the best of our others, geometric mean of 2 cases; "
-                        "at most 1.50 times"));
+                        "at most 1.5 times"));
+}
+
+TEST(Summary, SaysThatTheMachineWasBusy) {
+  Comparison comparison;
+  comparison.cases = {still_case({timed("grid", {2})})};
+  EXPECT_THAT(summary_of(comparison), Not(HasSubstr("busy")));
+  comparison.processor_share = 0.5;
+  EXPECT_THAT(summary_of(comparison), HasSubstr("busy: others had the processor for 50 % of the time"));
 }
 
 TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
   const Json json = parsed({timed("grid", {1, 2, 3})});
-  EXPECT_EQ(json["schema"], "broadside.results/1");
+  EXPECT_EQ(json["schema"], "broadside.results/2");
   EXPECT_EQ(json["command"], (Json{"broadside", "compare"}));
   for (const char* const field : {"cpu", "cores", "memory_bytes", "os"})
     EXPECT_TRUE(json["machine"].contains(field));
@@ -239,13 +279,13 @@ TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
     EXPECT_TRUE(json["build"].contains(field));
   std::vector<std::string> fields;
   for (const auto& item : json["measurements"][0].items()) fields.push_back(item.key());
-  EXPECT_THAT(fields, testing::ElementsAre("scene", "scene_parameters", "seeds", "dimension", "boxes",
-                                           "frames", "moving", "drift", "teleport", "algorithm", "version",
-                                           "kind", "mode", "threads", "target", "pairs", "pair_hash",
-                                           "verified", "verified_by", "skipped", "median_ms", "min_ms",
-                                           "p99_ms", "max_ms", "samples_ms", "unsteady", "build_ms",
-                                           "search_ms", "ns_per_box", "ns_per_mover", "floor_ms", "tests",
-                                           "references", "explanation", "own_bytes", "peak_bytes"));
+  EXPECT_THAT(fields, testing::ElementsAre(
+                          "scene", "scene_parameters", "seeds", "dimension", "boxes", "frames", "moving",
+                          "drift", "teleport", "algorithm", "version", "kind", "mode", "threads", "target",
+                          "pairs", "pair_hash", "verified", "verified_by", "skipped", "rounds", "median_ms",
+                          "min_ms", "p99_ms", "max_ms", "samples_ms", "unsteady", "build_ms", "ns_per_box",
+                          "ns_per_mover", "ratio_to_fastest", "ratio_to_best_own", "ratio_to_fastest_peer",
+                          "floor_ms", "tests", "references", "explanation", "own_bytes", "peak_bytes"));
 }
 
 TEST(JsonResults, HoldWhatWasMeasured) {
@@ -259,6 +299,7 @@ TEST(JsonResults, HoldWhatWasMeasured) {
   EXPECT_EQ(measurement["pair_hash"], "fedcba9876543210");
   EXPECT_EQ(measurement["verified"], true);
   EXPECT_TRUE(measurement["skipped"].is_null());
+  EXPECT_EQ(measurement["rounds"], 3);
   EXPECT_EQ(measurement["median_ms"], 2);
   EXPECT_EQ(measurement["max_ms"], 6);
   EXPECT_EQ(measurement["samples_ms"], (Json{1.0, 2.0, 6.0}));
@@ -275,15 +316,38 @@ TEST(JsonResults, HoldHowBoxesMovedAndWhatTheFirstFrameTook) {
   of.moving = 0.1;
   of.drift = 0.2;
   comparison.cases[0].measurements[0].build_ms = 5;
+  comparison.cases[0].measurements[0].samples_a_round = 3;
   const Json measurements = Json::parse(json_of(comparison, std::vector<std::string>{}))["measurements"];
   EXPECT_EQ(measurements[0]["mode"], "track");
   EXPECT_EQ(measurements[0]["drift"], 0.2);
   EXPECT_TRUE(measurements[0]["teleport"].is_null());
   EXPECT_EQ(measurements[0]["p99_ms"], 6);
   EXPECT_EQ(measurements[0]["max_ms"], 6);
-  EXPECT_EQ(measurements[0]["ns_per_mover"], 2'000);
+  EXPECT_EQ(measurements[0]["rounds"], 1);
+  EXPECT_EQ(measurements[0]["median_ms"], 3);  // the mean of the round's frames
+  EXPECT_EQ(measurements[0]["ns_per_mover"], 3'000);
   EXPECT_EQ(measurements[0]["build_ms"], 5);
   EXPECT_TRUE(measurements[1]["build_ms"].is_null());
+}
+
+TEST(JsonResults, HoldRatiosOfTheRoundsThatBothTookPartIn) {
+  std::vector<Measurement> entries = {timed("auto", {3, 3, 3, 3, 3, 3}), timed("grid", {2, 2, 2, 2, 2, 2}),
+                                      timed("theirs", {8, 8})};
+  entries[2].kind = AlgorithmKind::peer;
+  const Json json = parsed(entries);
+  EXPECT_EQ(json["measurements"][0]["ratio_to_best_own"],
+            (Json{{"of", "grid"}, {"median", 1.5}, {"low", 1.5}, {"high", 1.5}, {"rounds", 6}}));
+  EXPECT_EQ(json["measurements"][0]["ratio_to_fastest_peer"]["median"], 3.0 / 8);
+  EXPECT_EQ(json["measurements"][2]["ratio_to_fastest"],
+            (Json{{"of", "grid"}, {"median", 4.0}, {"low", nullptr}, {"high", nullptr}, {"rounds", 2}}));
+}
+
+TEST(JsonResults, SayHowMuchOfAProcessorTheRunHad) {
+  Comparison comparison;
+  comparison.processor_share = 0.5;
+  const Json json = Json::parse(json_of(comparison, std::vector<std::string>{}));
+  EXPECT_EQ(json["processor_share"], 0.5);
+  EXPECT_EQ(json["busy"], true);
 }
 
 TEST(JsonResults, HaveTheFloorOfTheCaseInEachMeasurement) {

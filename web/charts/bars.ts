@@ -4,7 +4,9 @@ import {
 } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
+import type { Interval } from "./ratios.ts";
 import { colours_of } from "./theme.ts";
+import { whiskerSeries } from "./whiskers.ts";
 
 export interface BarsSpec {
   title: string;
@@ -17,15 +19,18 @@ export interface BarsSpec {
   colours?: readonly string[];
   /** Where bars begin, marked by a line; standard: 0, or where a logarithmic axis begins. */
   from?: number;
-  value_text?: (value: number) => string;
+  /** Of each label, where there is one series: what stands at its bar, and in full where there is room. */
+  texts?: readonly { short: string; full: string }[];
+  /** Likewise: the interval in which its value lies, or none. */
+  whiskers?: readonly (Interval | undefined)[];
 }
 
-function describe(spec: BarsSpec, text: (value: number) => string): string {
+function describe(spec: BarsSpec, text: (value: number, at: number) => string): string {
   const most = 40;
   const parts = spec.labels.slice(0, most).map((label, i) => {
     const values = spec.series.map(({ name, values }) => {
       const value = values[i];
-      return `${name === "" ? "" : name + " "}${value === null || value === undefined ? "none" : text(value)}`;
+      return `${name === "" ? "" : name + " "}${value === null || value === undefined ? "none" : text(value, i)}`;
     });
     return ` ${label}: ${values.join(", ")}.`;
   });
@@ -36,7 +41,8 @@ function describe(spec: BarsSpec, text: (value: number) => string): string {
 /** Bars of `spec`, the first label at the top or at the left. */
 export function draw_bars(spec: BarsSpec, place: Place): Drawn {
   const { theme } = place;
-  const text = spec.value_text ?? rounded;
+  const whiskers = spec.whiskers ?? [];
+  const text = (value: number, at: number): string => spec.texts?.[at]?.full ?? rounded(value);
   const description = describe(spec, text);
   const names = spec.series.map((series) => series.name);
   const colours = colours_of(names, theme);
@@ -44,7 +50,10 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
   const widest = Math.max(0, ...spec.labels.map(text_width));
   const lying = widest > (place.width - 60) / Math.max(1, spec.labels.length) - 10 || spec.labels.length > 12;
   const legend = legend_height(names, place.width);
-  const values = spec.series.flatMap((series) => series.values.filter((value) => value !== null));
+  const values = [
+    ...spec.series.flatMap((series) => series.values.filter((value) => value !== null)),
+    ...whiskers.flatMap((interval) => interval ?? []),
+  ];
   // A bar on a logarithmic axis begins where the axis does, so the least one needs room to be seen.
   const ends = spec.from !== undefined ? [...values, spec.from]
     : spec.y.log ? [...values, ...values.map((value) => value / 1.3)] : values;
@@ -82,9 +91,9 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
         ...frame(names, description, place).tooltip,
         trigger: "axis",
         axisPointer: { type: "shadow" },
-        valueFormatter: (value: unknown) => (typeof value === "number" ? text(value) : "–"),
+        valueFormatter: (value: unknown, at: number) => (typeof value === "number" ? text(value, at) : "–"),
       },
-      series: spec.series.map((series, i) => ({
+      series: [...spec.series.map((series, i) => ({
         type: "bar" as const,
         name: series.name === "" ? axis_name(spec.y) : series.name,
         color: colours[i] ?? theme.muted,
@@ -93,13 +102,16 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
         data: series.values.map((value, at) => ({
           value: value ?? "-",
           ...(single && spec.colours?.[at] !== undefined ? { itemStyle: { color: spec.colours[at] } } : {}),
+          // Its whisker carries the text.
+          ...(whiskers[at] === undefined ? {} : { label: { show: false } }),
         })),
         label: {
           show: single,
           position: lying ? "right" as const : "top" as const,
           color: theme.text,
           fontSize: 11,
-          formatter: (bar: { value: unknown }) => (typeof bar.value === "number" ? text(bar.value) : ""),
+          formatter: (bar: { value: unknown; dataIndex: number }) =>
+            (typeof bar.value === "number" ? spec.texts?.[bar.dataIndex]?.short ?? text(bar.value, bar.dataIndex) : ""),
         },
         ...(i === 0 && spec.from !== undefined ? {
           markLine: {
@@ -110,7 +122,9 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
             data: [lying ? { xAxis: spec.from } : { yAxis: spec.from }],
           },
         } : {}),
-      })),
+      })), ...(whiskers.some((interval) => interval !== undefined) ? [whiskerSeries({
+        whiskers, texts: (spec.texts ?? []).map(({ short }) => short), from: spec.from, lying,
+      }, place)] : [])],
     },
   };
 }

@@ -1,5 +1,5 @@
-// A comparison's cases: who is how fast in each, and over all. The rules are those of lab/report/ranking.cpp.
-import type { Measurement } from "./data.ts";
+// A comparison's cases: who is how fast in each, and over all. The rules are those of lab/measure/ranking.cpp.
+import type { Measurement, Ratio } from "./data.ts";
 import { geometric_mean, grouped } from "./numbers.ts";
 
 /** What was measured on the same boxes. */
@@ -55,12 +55,18 @@ export function ranking(of: Case): Timed[] {
   return of.measurements.filter(is_timed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
-/** The time of the fastest peer over that of the fastest of ours; undefined where one of them is not there. */
-export function lead_of(of: Case): { ratio: number; own: Timed; peer: Timed } | undefined {
-  const ranked = ranking(of);
-  const own = ranked.find((measurement) => measurement.kind === "own");
-  const peer = ranked.find((measurement) => measurement.kind === "peer");
-  return own === undefined || peer === undefined ? undefined : { ratio: peer.median_ms / own.median_ms, own, peer };
+/** The fastest of ours other than auto, which takes one of the others; auto where it is the only one. */
+export function bestOwn(of: Case): Timed | undefined {
+  const own = ranking(of).filter((measurement) => measurement.kind === "own");
+  return own.find(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto") ?? own[0];
+}
+
+/** The time of the fastest peer over that of our best; undefined where one of them is not there. */
+export function lead_of(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
+  const own = bestOwn(of);
+  const peer = ranking(of).find((measurement) => measurement.kind === "peer");
+  if (own === undefined || !peer?.ratio_to_best_own) return undefined;
+  return { ratio: peer.ratio_to_best_own, own, peer };
 }
 
 export interface Standing {
@@ -82,7 +88,7 @@ export function standings(cases: readonly Case[]): Standing[] {
       const label = label_of(measurement);
       const entry = ratios.get(label) ?? { kind: measurement.kind, ratios: [], fastest: 0 };
       ratios.set(label, entry);
-      entry.ratios.push(measurement.median_ms / best);
+      entry.ratios.push(measurement.ratio_to_fastest?.median ?? 1);
       if (measurement.median_ms === best) ++entry.fastest;
     }
   }

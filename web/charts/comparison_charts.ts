@@ -1,12 +1,14 @@
 // The charts of a comparison.
 import { draw_bars } from "./bars.ts";
+import type { BarsSpec } from "./bars.ts";
 import { is_timed, label_of, lead_of, percent, ranking, standings } from "./comparison.ts";
 import type { Case } from "./comparison.ts";
-import type { Measurement } from "./data.ts";
+import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
 import { draw_lines } from "./lines.ts";
 import { draw_map } from "./map.ts";
-import { ratio_text, short, time_text } from "./numbers.ts";
+import { short, time_text } from "./numbers.ts";
+import { intervalOf, intervalText, shortRatioText } from "./ratios.ts";
 import { family_colour } from "./theme.ts";
 import type { Theme } from "./theme.ts";
 
@@ -16,19 +18,28 @@ function colour_of(measurement: { algorithm: string }, theme: Theme): string {
   return family_colour(measurement.algorithm, theme) ?? theme.muted;
 }
 
+const noText = { short: "", full: "none" };
+
+/** The values of a bar for each ratio, with its interval as a whisker. */
+function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "series" | "whiskers" | "texts"> {
+  return {
+    series: [{ name: "", values: ratios.map((ratio) => ratio?.median ?? null) }],
+    whiskers: ratios.map((ratio) => (ratio === null ? undefined : intervalOf(ratio))),
+    texts: ratios.map((ratio) => (ratio === null ? noText : { short: shortRatioText(ratio), full: intervalText(ratio) })),
+  };
+}
+
 /** The times of all algorithms in a case, as multiples of the fastest. */
 export function draw_ratios(of: Case, place: Place): Drawn {
   const ranked = ranking(of);
-  const best = ranked[0]?.median_ms ?? 1;
   return draw_bars({
     title: `Times as multiples of the fastest: ${of.name}`,
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: true },
     labels: ranked.map(label_of),
-    series: [{ name: "", values: ranked.map((measurement) => measurement.median_ms / best) }],
+    ...ratioBars(ranked.map((measurement) => measurement.ratio_to_fastest)),
     colours: ranked.map((measurement) => colour_of(measurement, place.theme)),
     from: 1,
-    value_text: ratio_text,
   }, place);
 }
 
@@ -43,25 +54,23 @@ export function draw_standings(cases: readonly Case[], place: Place): Drawn {
     series: [{ name: "", values: all.map((standing) => standing.ratio) }],
     colours: all.map((standing) => colour_of(standing, place.theme)),
     from: 1,
-    value_text: ratio_text,
   }, place);
 }
 
-/** How many times as fast the fastest of ours is as the fastest peer, case by case. */
+/** How many times as fast our best is as the fastest peer, case by case. */
 export function draw_leads(cases: readonly Case[], place: Place): Drawn {
   const leads = cases.flatMap((of) => {
     const lead = lead_of(of);
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   return draw_bars({
-    title: "The fastest peer's time over that of the fastest of ours",
+    title: "The fastest peer's time over that of our best",
     x: { name: "case", unit: "" },
     y: { name: "times as fast", unit: "", log: true },
     labels: leads.map(({ of }) => short_name(of)),
-    series: [{ name: "", values: leads.map(({ ratio }) => ratio) }],
+    ...ratioBars(leads.map(({ ratio }) => ratio)),
     colours: leads.map(({ own }) => colour_of(own, place.theme)),
     from: 1,
-    value_text: ratio_text,
   }, place);
 }
 

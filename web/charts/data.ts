@@ -1,4 +1,5 @@
-// What the program writes: experiments ("broadside.experiments/1") and comparisons ("broadside.results/1").
+// What the program writes: experiments ("broadside.experiments/1") and comparisons ("broadside.results/2").
+// docs/schemas/ describes every field.
 
 export type Cell = number | string | null;
 
@@ -69,7 +70,22 @@ export interface Experiments {
   command: string[];
   quick: boolean;
   stopped: boolean;
+  /** Processor time over wall time of the run; not in results of before it was noted. */
+  processor_share?: number;
+  busy?: boolean;
   experiments: Experiment[];
+}
+
+/** One entry's time over another's. */
+export interface Ratio {
+  /** The spec of the other. */
+  of: string;
+  median: number;
+  /** The 95 % interval; null where it is not known. */
+  low: number | null;
+  high: number | null;
+  /** Rounds in which both took part; null where it is not known. */
+  rounds: number | null;
 }
 
 /** One algorithm in one case. What was skipped has no times. */
@@ -94,11 +110,17 @@ export interface Measurement {
   verified: boolean | null;
   verified_by: string | null;
   skipped: string | null;
+  /** In how many rounds it was timed; null where it is not known. */
+  rounds: number | null;
   median_ms: number | null;
   min_ms: number | null;
   p99_ms: number | null;
   max_ms: number | null;
   samples_ms: number[] | null;
+  /** Each null where there is nothing to compare with. */
+  ratio_to_fastest: Ratio | null;
+  ratio_to_best_own: Ratio | null;
+  ratio_to_fastest_peer: Ratio | null;
   /** Whether its samples lie too far apart to be trusted; not in results of before it was noted. */
   unsteady?: boolean | null;
   build_ms: number | null;
@@ -112,11 +134,18 @@ export interface Measurement {
   peak_bytes: number | null;
 }
 
+export type RatioName = "ratio_to_fastest" | "ratio_to_best_own" | "ratio_to_fastest_peer";
+
 export interface Comparison {
-  schema: "broadside.results/1";
+  schema: "broadside.results/2";
+  /** "2026-11-21"; null where it is not known. */
+  date: string | null;
   machine: Machine;
   build: Build;
   command: string[];
   stopped: boolean;
+  /** Processor time over wall time of the run, about 1 for one thread; null where it is not known. */
+  processor_share: number | null;
+  busy: boolean | null;
   measurements: Measurement[];
 }

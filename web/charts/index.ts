@@ -10,3 +10,6 @@ export { dark, light, colours_of, family_colour, family_of } from "./theme.ts";
 export type { Theme } from "./theme.ts";
 export type { Drawn, Place } from "./frame.ts";
 export * from "./numbers.ts";
+export { inTodaysShape } from "./old_results.ts";
+export type { OldComparison } from "./old_results.ts";
+export * from "./ratios.ts";

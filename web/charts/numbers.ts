@@ -47,9 +47,10 @@ export function geometric_mean(values: readonly number[]): number {
   return Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
 }
 
-/** A ratio as the program's tables show it. */
+/** A ratio of two times to two significant digits, which is what intervals allow: "0.97", "1.0", "19", "1,300". */
 export function ratio_text(ratio: number): string {
-  return ratio < 99.95 ? ratio.toFixed(2) : rounded(ratio);
+  const rounded_off = ratio.toPrecision(2);
+  return Number(rounded_off) < 10 ? rounded_off : grouped(Number(rounded_off));
 }
 
 function trimmed(value: number): string {

@@ -1,5 +1,5 @@
 // What templates may name of the comparison with other libraries.
-import { ranking, type Case } from "../charts/comparison.ts";
+import { bestOwn, ranking, type Case } from "../charts/comparison.ts";
 import {
   draw_leads,
   draw_scaling,
@@ -7,22 +7,26 @@ import {
   draw_winners,
   scaled_scenes,
 } from "../charts/comparison_charts.ts";
-import type { Comparison } from "../charts/data.ts";
+import type { Comparison, Ratio } from "../charts/data.ts";
 import type { Drawn, Place } from "../charts/frame.ts";
 import { geometric_mean, ratio_text, rounded } from "../charts/numbers.ts";
+import { intervalOf, intervalText, isFaster } from "../charts/ratios.ts";
 import { greatest, least, leads_of, type Facts } from "./facts.ts";
 import { plain, table_text } from "./markdown.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown } from "./words.ts";
 
-const mean = (all: readonly { ratio: number }[]) => ratio_text(geometric_mean(all.map(({ ratio }) => ratio)));
+const mean = (all: readonly { ratio: Ratio }[]) => rounded(geometric_mean(all.map(({ ratio }) => ratio.median)));
 
-export function comparison_data(facts: Facts, { command, build }: Comparison): Record<string, unknown> {
+export function comparison_data(facts: Facts, comparison: Comparison): Record<string, unknown> {
+  const { command, build, busy, measurements } = comparison;
   const { cases, leads, choices } = facts;
   const worst = greatest(choices);
   const peers = facts.standings.filter((standing) => standing.kind === "peer");
-  const lost = leads.filter((lead) => lead.ratio < 1);
   return {
+    /** Whether ratios are of times taken in the same round, with an interval. */
+    paired: measurements.some(({ ratio_to_fastest: ratio }) => ratio !== null && intervalOf(ratio) !== undefined),
+    busy: busy === true,
     cases: shown(cases.length),
     still_cases: shown(facts.still.length),
     moving_cases: shown(facts.moving.length),
@@ -33,14 +37,17 @@ export function comparison_data(facts: Facts, { command, build }: Comparison): R
     mean_lead: mean(leads),
     mean_lead_still: mean(leads_of(facts.still)),
     mean_lead_moving: mean(leads_of(facts.moving)),
-    least_lead: ratio_text(least(leads).ratio),
+    least_lead: ratio_text(least(leads).ratio.median),
+    least_lead_interval: intervalText(least(leads).ratio),
     least_lead_case: least(leads).of.name,
     least_lead_peer: least(leads).peer.algorithm,
-    greatest_lead: ratio_text(greatest(leads).ratio),
+    greatest_lead: ratio_text(greatest(leads).ratio.median),
+    greatest_lead_interval: intervalText(greatest(leads).ratio),
     greatest_lead_case: greatest(leads).of.name,
-    lost: shown(lost.length),
+    lost: shown(facts.lost.length),
+    level: shown(facts.level.length),
     auto_mean: mean(choices),
-    auto_worst: ratio_text(worst.ratio),
+    auto_worst: ratio_text(worst.ratio.median),
     auto_worst_case: worst.of.name,
     command: command.join(" "),
     revision: build.revision,
@@ -54,37 +61,36 @@ function cases_named(facts: Facts, which: string): Case[] {
   return found;
 }
 
-/** Who of ours, of the peers and of the draft's is fastest in each case. */
+/** Which of ours other than auto, of the peers and of the draft's is fastest in each case. */
 export function leads_table(facts: Facts, which: string): string {
   return table_text(
     ["boxes", "ours", " ms", "fastest peer", " ms", " lead", "fastest of the draft's", " ms"],
     cases_named(facts, which).map((of) => {
       const fastest = (kind: string) => {
-        const found = ranking(of).find((measurement) => measurement.kind === kind);
+        const found = kind === "own" ? bestOwn(of) : ranking(of).find((measurement) => measurement.kind === kind);
         return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
       };
       const ratio = leads_of([of])[0]?.ratio;
-      const lead = ratio === undefined ? "-" : ratio_text(ratio);
+      const lead = ratio === undefined ? "-" : intervalText(ratio);
       return [
         plain(of.name),
         ...fastest("own"),
         ...fastest("peer"),
-        ratio !== undefined && ratio < 1 ? `**${lead}**` : lead,
+        ratio !== undefined && isFaster(ratio) ? `**${lead}**` : lead,
         ...fastest("paper"),
       ];
     }),
   );
 }
 
-/** The cases in which a peer is faster than all of ours, as a list; a sentence where there is none. */
-export function lost_list(facts: Facts): string {
-  const lost = facts.leads.filter((lead) => lead.ratio < 1);
-  if (lost.length === 0) return "In no case was a peer faster than the fastest of ours.";
+/** The cases in which a peer is faster than our best, as a list; a sentence where there is none. */
+export function lost_list({ lost }: Facts): string {
+  if (lost.length === 0) return "In no case was a peer faster than our best.";
   return lost
     .map(
       ({ of, own, peer, ratio }) =>
-        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, the fastest of ours, ` +
-        `\`${own.algorithm}\`, ${rounded(own.median_ms)} ms, which is a lead of ${ratio_text(ratio)}.`,
+        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, our best, \`${own.algorithm}\`, ` +
+        `${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
     )
     .join("\n");
 }
@@ -99,7 +105,7 @@ export function standings_table(facts: Facts): string {
       kinds[kind] ?? kind,
       shown(cases),
       shown(fastest),
-      ratio_text(ratio),
+      rounded(ratio),
     ]),
   );
 }
@@ -117,11 +123,11 @@ export function comparison_charts(facts: Facts): Record<string, NamedChart> {
       draw: (place) => draw_standings(facts.cases, place),
     },
     leads_still: {
-      caption: "Boxes that rest: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
+      caption: "Boxes that rest: time of the fastest peer over that of our best, in the colour of the latter",
       draw: (place) => draw_leads(facts.still, place),
     },
     leads_moving: {
-      caption: "Boxes that move: time of the fastest peer over that of the fastest of ours, in the colour of the latter",
+      caption: "Boxes that move: time of the fastest peer over that of our best, in the colour of the latter",
       draw: (place) => draw_leads(facts.moving, place),
     },
     winners: { caption: "The fastest in each case", draw: (place) => draw_winners(facts.cases, place) },

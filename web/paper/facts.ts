@@ -1,13 +1,14 @@
 // What the comparison with other libraries comes to.
 import { cases_of, lead_of, ranking, standings, type Case, type Standing, type Timed } from "../charts/comparison.ts";
-import type { Comparison } from "../charts/data.ts";
+import type { Comparison, Ratio } from "../charts/data.ts";
+import { isFaster, isLevel } from "../charts/ratios.ts";
 import { Problem } from "./problem.ts";
 
 /** A case that both ours and a peer have a time in. */
 export interface Lead {
   of: Case;
   /** The time of the fastest peer over that of our fastest. */
-  ratio: number;
+  ratio: Ratio;
   own: Timed;
   peer: Timed;
 }
@@ -15,7 +16,7 @@ export interface Lead {
 /** The time of `auto` in a case over that of the fastest of our others. */
 export interface Choice {
   of: Case;
-  ratio: number;
+  ratio: Ratio;
 }
 
 export interface Facts {
@@ -24,6 +25,9 @@ export interface Facts {
   still: Case[];
   moving: Case[];
   leads: Lead[];
+  /** Leads that a peer has on us, and those in which nothing tells the two apart. */
+  lost: Lead[];
+  level: Lead[];
   choices: Choice[];
   standings: Standing[];
   timed: number;
@@ -31,10 +35,8 @@ export interface Facts {
 }
 
 function choice_in(of: Case): Choice[] {
-  const own = ranking(of).filter((measurement) => measurement.kind === "own");
-  const chosen = own.find((measurement) => measurement.algorithm === "auto");
-  const best = own.find((measurement) => measurement.algorithm !== "auto");
-  return chosen && best ? [{ of, ratio: chosen.median_ms / best.median_ms }] : [];
+  const ratio = ranking(of).find((measurement) => measurement.algorithm === "auto")?.ratio_to_best_own;
+  return ratio ? [{ of, ratio }] : [];
 }
 
 /** The leads of some cases. */
@@ -46,12 +48,12 @@ export function leads_of(cases: readonly Case[]): Lead[] {
 }
 
 /** The one with the least ratio of at least one. */
-export function least<Thing extends { ratio: number }>(all: readonly Thing[]): Thing {
-  return all.reduce((a, b) => (b.ratio < a.ratio ? b : a));
+export function least<Thing extends { ratio: Ratio }>(all: readonly Thing[]): Thing {
+  return all.reduce((a, b) => (b.ratio.median < a.ratio.median ? b : a));
 }
 
-export function greatest<Thing extends { ratio: number }>(all: readonly Thing[]): Thing {
-  return all.reduce((a, b) => (b.ratio > a.ratio ? b : a));
+export function greatest<Thing extends { ratio: Ratio }>(all: readonly Thing[]): Thing {
+  return all.reduce((a, b) => (b.ratio.median > a.ratio.median ? b : a));
 }
 
 /** Throws Problem if there is nothing to compare, or nothing that moves. */
@@ -66,11 +68,14 @@ export function facts_of(comparison: Comparison, file: string): Facts {
   }
   const choices = cases.flatMap(choice_in);
   if (choices.length === 0) throw new Problem(`${file}: no case with a time of auto; expected at least one`);
+  const leads = leads_of(cases);
   return {
     cases,
     still,
     moving,
-    leads: leads_of(cases),
+    leads,
+    lost: leads.filter((lead) => isFaster(lead.ratio)),
+    level: leads.filter((lead) => isLevel(lead.ratio)),
     choices,
     standings: standings(cases),
     timed: measurements.filter((measurement) => measurement.median_ms !== null).length,

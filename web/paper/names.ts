@@ -156,7 +156,8 @@ export class Paper {
         },
         leads: (which) => leads_table(this.facts, which),
         lost: () => lost_list(this.facts),
-        any_lost: () => this.facts.leads.some((lead) => lead.ratio < 1),
+        any_lost: () => this.facts.lost.length > 0,
+        any_level: () => this.facts.level.length > 0,
         standings: () => standings_table(this.facts),
         picture: (name, caption) => {
           const path = `../pictures/${one_of(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;

@@ -1,5 +1,6 @@
 // The results that the paper quotes, read from JSON and checked: what is not as the program writes it is refused.
 import type { Comparison, Experiments } from "../charts/data.ts";
+import { inTodaysShape, type OldComparison } from "../charts/old_results.ts";
 import { Problem } from "./problem.ts";
 
 type Kind = "a text" | "a finite number" | "true or false" | "a list" | "an object";
@@ -69,15 +70,15 @@ class Place {
   }
 }
 
-function root_of(text: string, file: string, schema: string): Place {
+function root_of(text: string, file: string, ...schemas: string[]): Place {
   let value: unknown;
   try {
     value = JSON.parse(text);
   } catch (error) {
-    throw new Problem(`${file}: ${(error as Error).message}; expected JSON of the schema '${schema}'`);
+    throw new Problem(`${file}: ${(error as Error).message}; expected JSON of the schema '${schemas[0]}'`);
   }
   const root = new Place(value, file);
-  root.at("schema").is_one_of([schema]);
+  root.at("schema").is_one_of(schemas);
   root.has("true or false", "stopped").has("a list", "command");
   if (root.at("stopped").value === true) root.at("stopped").refuse("false: results of a whole run");
   for (const word of root.at("command").list()) word.is("a text");
@@ -138,11 +139,24 @@ function check_measurement(measurement: Place): void {
     measurement.at("verified").refuse("true: nothing is quoted that is wrong");
 }
 
-/** Reads what `broadside compare --json` wrote, with samples or without. Throws Problem. */
+function checkRatio(ratio: Place): void {
+  if (ratio.value === null) return;
+  ratio.has("a text", "of").has("a finite number", "median", "rounds").has_or_null("a finite number", "low", "high");
+}
+
+/** Reads what `broadside compare --json` wrote, today or by the schema before, with samples or without. Throws Problem. */
 export function read_comparison(text: string, file: string): Comparison {
-  const root = root_of(text, file, "broadside.results/1");
+  const root = root_of(text, file, "broadside.results/2", "broadside.results/1");
+  const isOld = root.at("schema").value === "broadside.results/1";
+  if (!isOld) root.has("a text", "date").has("a finite number", "processor_share").has("true or false", "busy");
   const measurements = root.at("measurements").list();
   if (measurements.length === 0) root.at("measurements").refuse("at least one measurement");
-  for (const measurement of measurements) check_measurement(measurement);
-  return root.value as Comparison;
+  for (const measurement of measurements) {
+    check_measurement(measurement);
+    if (isOld) continue;
+    measurement.has_or_null("a finite number", "rounds");
+    for (const name of ["ratio_to_fastest", "ratio_to_best_own", "ratio_to_fastest_peer"])
+      checkRatio(measurement.at(name));
+  }
+  return inTodaysShape(root.value as Comparison | OldComparison);
 }

@@ -4,21 +4,31 @@ import type { Case } from "../charts/comparison.ts";
 import {
   draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings, draw_winners, scaled_scenes,
 } from "../charts/comparison_charts.ts";
-import type { Comparison, Measurement } from "../charts/data.ts";
+import type { Comparison, Measurement, Ratio } from "../charts/data.ts";
 import { bytes_text, geometric_mean, grouped, ratio_text, rounded, time_text } from "../charts/numbers.ts";
+import type { OldComparison } from "../charts/old_results.ts";
+import { intervalOf, intervalText, isLevel } from "../charts/ratios.ts";
 import { data_table } from "./data_table.ts";
 import type { DataColumn } from "./data_table.ts";
 import { add, choices, el, picker } from "./dom.ts";
 import { csv_of_comparison, download_button } from "./downloads.ts";
 import { chart_figure } from "./figure.ts";
-import { facts, tile, unsteady_tile } from "./summary.ts";
+import { facts, tile } from "./summary.ts";
+import type { Doubts } from "./summary.ts";
 
 function outcome_of(measurement: Measurement): string {
-  return measurement.verified === null ? "skipped" : measurement.verified ? "verified" : "FAILED";
+  if (measurement.verified === null) return "skipped";
+  if (!measurement.verified) return "FAILED";
+  return measurement.unsteady === true ? "verified, unsteady" : "verified";
 }
 
 function plural(count: number, one: string): string {
   return `${grouped(count)} ${one}${count === 1 ? "" : "s"}`;
+}
+
+function rangeText(ratio: Ratio): string {
+  const interval = intervalOf(ratio);
+  return interval === undefined ? "" : ` (${ratio_text(interval[0])} to ${ratio_text(interval[1])})`;
 }
 
 function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
@@ -28,21 +38,21 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   const worst = leads.reduce<(typeof leads)[number] | undefined>(
-    (least, lead) => (least === undefined || lead.ratio < least.ratio ? lead : least), undefined);
+    (least, lead) => (least === undefined || lead.ratio.median < least.ratio.median ? lead : least), undefined);
   const failed = comparison.measurements.filter(({ verified }) => verified === false);
   const skipped = comparison.measurements.filter(({ verified }) => verified === null).length;
   const measured = comparison.measurements.length - skipped;
   return el("dl", { class: "tiles" },
     best !== undefined && tile("Fastest over all", best.algorithm,
-      `${ratio_text(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
+      `${rounded(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
     leads.length > 0 && tile("Ours against the fastest peer",
-      `${ratio_text(geometric_mean(leads.map(({ ratio }) => ratio)))} times`,
-      `as fast, the fastest of each; geometric mean of ${plural(leads.length, "case")}`),
-    worst !== undefined && tile("At the least", `${ratio_text(worst.ratio)} times`, `as fast: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
+      `${rounded(geometric_mean(leads.map(({ ratio }) => ratio.median)))} times`,
+      `as fast, the best of each; geometric mean of ${plural(leads.length, "case")}`),
+    worst !== undefined && tile("At the least", isLevel(worst.ratio) ? "level" : `${ratio_text(worst.ratio.median)} times`,
+      `${isLevel(worst.ratio) ? "with it" : "as fast"}${rangeText(worst.ratio)}: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
     tile("Verified", failed.length === 0 ? `all ${grouped(measured)}` : `${grouped(failed.length)} FAILED`,
       `${plural(measured, "measurement")} in ${plural(cases.length, "case")}; ${grouped(skipped)} skipped` +
-        (comparison.stopped ? "; stopped before the end" : "")),
-    unsteady_tile(comparison.measurements.filter(({ unsteady }) => unsteady === true).length, comparison.measurements.filter(is_timed).length));
+        (comparison.stopped ? "; stopped before the end" : "")));
 }
 
 function failures(comparison: Comparison): HTMLElement | null {
@@ -51,6 +61,12 @@ function failures(comparison: Comparison): HTMLElement | null {
   return el("div", { class: "card" }, el("h3", {}, "Failed"), el("ul", {}, ...failed.map((measurement) =>
     el("li", {}, `${measurement.algorithm} on ${measurement.scene}, ${measurement.dimension}D, ${grouped(measurement.boxes)} boxes: ` +
       `${measurement.skipped ?? "its pairs are not those of " + (measurement.verified_by ?? "the reference")}`))));
+}
+
+/** What whiskers are, where there are any. */
+function whiskersNote(cases: readonly Case[]): string {
+  const some = cases.some((of) => of.measurements.some((m) => m.ratio_to_fastest !== null && intervalOf(m.ratio_to_fastest) !== undefined));
+  return some ? " Whiskers: 95 % intervals; “level” where one holds 1." : "";
 }
 
 const kinds: [string, string, Measurement["kind"][]][] = [
@@ -82,21 +98,37 @@ function scaling(cases: readonly Case[]): HTMLElement | null {
 }
 
 const time = (value: number | null): string => (value === null ? "–" : time_text(value));
+const remarks_of = (m: Measurement): string | null =>
+  [m.unsteady === true ? "unsteady" : null, m.skipped ?? m.explanation].filter((part) => part !== null).join("; ") || null;
 const number = (value: number | null): string => (value === null ? "–" : rounded(value));
 
+/** A column of ratios, sorted by their medians. */
+function ratioColumn(title: string, ratioOf: (m: Measurement) => Ratio | null): DataColumn<Measurement> {
+  return {
+    title,
+    value: (m) => ratioOf(m)?.median ?? null,
+    text: (m) => {
+      const ratio = ratioOf(m);
+      return ratio === null ? "–" : intervalText(ratio);
+    },
+  };
+}
+
 function case_table(of: Case): HTMLElement {
-  const best = ranking(of)[0]?.median_ms ?? 1;
   return data_table<Measurement>({
     caption: of.name,
     rows: [...ranking(of), ...of.measurements.filter((measurement) => !is_timed(measurement))],
     columns: [
       { title: "algorithm", value: label_of },
       { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
-      { title: "ratio", value: (m) => (m.median_ms === null ? null : m.median_ms / best), text: (m) => (m.median_ms === null ? "–" : ratio_text(m.median_ms / best)) },
+      ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
+      ratioColumn("to our best", (m) => m.ratio_to_best_own),
+      ratioColumn("to the fastest peer", (m) => m.ratio_to_fastest_peer),
       { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
+      { title: "rounds", value: (m) => m.rounds, text: (m) => (is_timed(m) && m.rounds !== null ? grouped(m.rounds) : "–") },
       { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
       { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
-      { title: "remarks", long: true, value: (m) => m.skipped ?? m.explanation, text: (m) => m.skipped ?? m.explanation ?? "" },
+      { title: "remarks", long: true, value: remarks_of, text: (m) => remarks_of(m) ?? "" },
     ],
   });
 }
@@ -106,7 +138,7 @@ function case_view(cases: readonly Case[]): HTMLElement | null {
   let of = cases[0];
   if (of === undefined) return null;
   const first = of;
-  const ratios = chart_figure(`Multiples of the fastest: ${of.name}`, (place) => draw_ratios(first, place));
+  const ratios = chart_figure(`Multiples of the fastest: ${of.name}`, (place) => draw_ratios(first, place), whiskersNote(cases).trim());
   const frames = chart_figure("", (place) => draw_frames(first, place), "At most the six fastest; dashed: each one's 99th percentile.");
   const table = el("div");
   const floor = el("p", { class: "note" });
@@ -137,6 +169,7 @@ function measurements_table(comparison: Comparison): HTMLElement {
     { title: "algorithm", value: label_of },
     { title: "kind", value: (m) => m.kind },
     { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
+    ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
     { title: "least", value: (m) => m.min_ms, text: (m) => time(m.min_ms) },
     { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
     { title: "ns a box", value: (m) => m.ns_per_box, text: (m) => number(m.ns_per_box) },
@@ -145,7 +178,7 @@ function measurements_table(comparison: Comparison): HTMLElement {
     { title: "references", value: (m) => m.references, text: (m) => number(m.references) },
     { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
     { title: "outcome", value: outcome_of },
-    { title: "remarks", long: true, value: (m) => m.skipped ?? m.explanation, text: (m) => m.skipped ?? m.explanation ?? "" },
+    { title: "remarks", long: true, value: remarks_of, text: (m) => remarks_of(m) ?? "" },
   ];
   return data_table({
     caption: "All measurements",
@@ -162,15 +195,24 @@ function measurements_table(comparison: Comparison): HTMLElement {
   });
 }
 
-/** The sections of a comparison, each [id, title, element]. */
-export function comparison_sections(comparison: Comparison, date: string): [string, string, HTMLElement][] {
+export function doubtsOfComparison({ measurements, busy, processor_share }: Comparison): Doubts {
+  return {
+    busy, processorShare: processor_share, unsteady: measurements.filter(({ unsteady }) => unsteady === true).length,
+    measurements: measurements.filter(is_timed).length,
+  };
+}
+
+/** The sections of a comparison, each [id, title, element]. Its JSON is handed out as it was `written`. */
+export function comparison_sections(
+  comparison: Comparison, date: string, written: Comparison | OldComparison,
+): [string, string, HTMLElement][] {
   const cases = cases_of(comparison.measurements);
   const target = comparison.measurements.find((measurement) => measurement.target !== null)?.target ?? null;
   const leads = cases.some((of) => lead_of(of) !== undefined);
   const summary = el("section", {}, tiles(comparison, cases), failures(comparison),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts({ ...comparison, date, target }),
       el("p", { class: "downloads", style: "margin: 1rem 0 0" },
-        download_button("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(comparison)), " ",
+        download_button("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(written)), " ",
         download_button("Save as CSV", "comparison.csv", "text/csv", () => csv_of_comparison(comparison)))));
   const charts = el("section", {});
   if (cases.length > 1) {
@@ -182,8 +224,8 @@ export function comparison_sections(comparison: Comparison, date: string): [stri
         "The fastest in each case", (place) => draw_winners(cases, place),
         "Scene, boxes and, where they move, how many of them.").element)),
     leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chart_figure(
-      "How many times as fast as the fastest peer the fastest of ours is", (place) => draw_leads(cases, place),
-      "Below 1, the peer is faster. Each bar has the colour of the one of ours.").element));
+      "How many times as fast as the fastest peer our best is", (place) => draw_leads(cases, place),
+      `Below 1, the peer is faster. Each bar has the colour of our best, which is never auto: that takes one of the others.${whiskersNote(cases)}`).element));
   }
   add(charts, scaling(cases), case_view(cases));
   return [

@@ -1,5 +1,5 @@
 // The data behind the page, to be saved: made here, so nothing is asked of a network.
-import type { Comparison, Table } from "../charts/data.ts";
+import type { Comparison, Measurement, RatioName, Table } from "../charts/data.ts";
 import { el } from "./dom.ts";
 
 function save(name: string, type: string, text: string): void {
@@ -25,10 +25,15 @@ export function csv_of_rows(heads: readonly string[], rows: readonly (readonly u
   return [heads, ...rows].map((row) => row.map(field).join(",") + "\r\n").join("");
 }
 
-/** A line for each measurement; its samples stand in one field, a space between. */
+const ratioParts = ["of", "median", "low", "high", "rounds"] as const;
+
+/** A line for each measurement; its samples stand in one field, a space between; a ratio is five fields. */
 export function csv_of_comparison({ measurements }: Comparison): string {
-  const names = Object.keys(measurements[0] ?? {}) as (keyof (typeof measurements)[number])[];
-  return csv_of_rows(names, measurements.map((measurement) => names.map((name) => measurement[name])));
+  const names = Object.keys(measurements[0] ?? {}) as (keyof Measurement)[];
+  const isRatio = (name: keyof Measurement): name is RatioName => name.startsWith("ratio_to_");
+  const heads = names.flatMap((name) => (isRatio(name) ? ratioParts.map((part) => `${name}_${part}`) : [name]));
+  return csv_of_rows(heads, measurements.map((measurement) => names.flatMap((name) =>
+    (isRatio(name) ? ratioParts.map((part) => measurement[name]?.[part]) : [measurement[name]]))));
 }
 
 export function csv_of_table(table: Table): string {

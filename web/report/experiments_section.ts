@@ -6,7 +6,8 @@ import { data_table } from "./data_table.ts";
 import { el } from "./dom.ts";
 import { csv_of_table, download_button } from "./downloads.ts";
 import { chart_figure } from "./figure.ts";
-import { facts, tile, unsteady_tile } from "./summary.ts";
+import { facts, tile } from "./summary.ts";
+import type { Doubts } from "./summary.ts";
 
 const looks = { "holds": ["good", "✓"], "holds when": ["fair", "◐"], "does not hold": ["bad", "✕"] } as const;
 
@@ -58,19 +59,25 @@ function view(experiment: Experiment): HTMLElement {
     el("details", {}, el("summary", {}, `What was measured, as tables (${grouped(rows)} rows)`), ...experiment.tables.map(table_view)));
 }
 
+export function doubtsOfExperiments({ experiments, busy, processor_share }: Experiments): Doubts {
+  const sum = (of: "unsteady" | "measurements"): number =>
+    experiments.reduce((all, one) => all + (one.steadiness?.[of] ?? 0), 0);
+  return {
+    busy: busy ?? null, processorShare: processor_share ?? null, unsteady: sum("unsteady"), measurements: sum("measurements"),
+  };
+}
+
 /** The sections of experiments, each [id, title, element]. */
 export function experiment_sections(results: Experiments): [string, string, HTMLElement][] {
   const { experiments } = results;
   const count = (verdict: Experiment["verdict"]): string => String(experiments.filter((one) => one.verdict === verdict).length);
   const seconds = experiments.reduce((sum, one) => sum + one.seconds, 0);
-  const sum = (of: "unsteady" | "measurements"): number => experiments.reduce((all, one) => all + (one.steadiness?.[of] ?? 0), 0);
   const summary = el("section", {},
     el("dl", { class: "tiles" },
       tile("Claims that hold", count("holds"), `of ${experiments.length}`),
       tile("That hold under a condition", count("holds when")),
       tile("That do not hold", count("does not hold")),
-      tile("Measured in", `${rounded(seconds)} s`, (results.quick ? "quickly: fewer boxes, fewer samples" : "thoroughly") + (results.stopped ? "; stopped before the end" : "")),
-      unsteady_tile(sum("unsteady"), sum("measurements"))),
+      tile("Measured in", `${rounded(seconds)} s`, (results.quick ? "quickly: fewer boxes, fewer samples" : "thoroughly") + (results.stopped ? "; stopped before the end" : ""))),
     el("div", { class: "card" }, el("h3", {}, "Verdicts"), el("ol", { class: "verdicts" }, ...experiments.map((one) =>
       el("li", {}, el("span", {}, `${one.number}.`), el("a", { href: `#${one.name}` }, one.title), el("span", {}, badge(one)))))),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts(results),

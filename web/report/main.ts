@@ -1,24 +1,28 @@
 // The report: builds the page from the document that the program put into it.
 import type { Comparison, Experiments } from "../charts/data.ts";
-import { comparison_sections } from "./comparison_section.ts";
+import { inTodaysShape } from "../charts/old_results.ts";
+import type { OldComparison } from "../charts/old_results.ts";
+import { comparison_sections, doubtsOfComparison } from "./comparison_section.ts";
 import { add, el } from "./dom.ts";
 import { drawing_section } from "./drawing_section.ts";
 import type { Drawing } from "./drawing_section.ts";
-import { experiment_sections } from "./experiments_section.ts";
+import { doubtsOfExperiments, experiment_sections } from "./experiments_section.ts";
+import { doubtsNotice } from "./summary.ts";
 import { begin_themes } from "./themes.ts";
 
 /** What lab/report/page.cpp puts together. */
 interface ReportDocument {
   date: string;
-  comparison: Comparison | null;
+  comparison: Comparison | OldComparison | null;
   experiments: Experiments | null;
   drawings: Drawing[];
 }
 
 function build(report: ReportDocument): void {
-  const { comparison, experiments, drawings } = report;
+  const { comparison: written, experiments, drawings } = report;
+  const comparison = written === null ? null : inTodaysShape(written);
   const sections: [string, string, HTMLElement][] = [];
-  if (comparison !== null) sections.push(...comparison_sections(comparison, report.date));
+  if (comparison !== null && written !== null) sections.push(...comparison_sections(comparison, report.date, written));
   if (experiments !== null) sections.push(...experiment_sections(experiments));
   const pictures = drawing_section(drawings);
   if (pictures !== undefined) sections.push(pictures);
@@ -32,7 +36,9 @@ function build(report: ReportDocument): void {
   const nav = document.getElementById("sections");
   if (main === null || nav === null) return;
   add(nav, el("ul", {}, ...sections.map(([id, name]) => el("li", {}, el("a", { href: `#${id}` }, name)))));
-  add(main, el("div", { class: "intro" }, el("h1", {}, title), el("p", {}, intro)));
+  add(main, el("div", { class: "intro" }, el("h1", {}, title), el("p", {}, intro),
+    comparison !== null && doubtsNotice(doubtsOfComparison(comparison)),
+    experiments !== null && doubtsNotice(doubtsOfExperiments(experiments))));
   for (const [id, name, section] of sections) {
     section.id = id;
     section.setAttribute("aria-labelledby", `${id}-heading`);

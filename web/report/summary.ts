@@ -8,10 +8,24 @@ export function tile(name: string, big: string, small = ""): HTMLElement {
   return el("div", { class: "tile" }, el("dt", {}, name), el("dd", { class: "big" }, big), small !== "" && el("dd", { class: "small" }, small));
 }
 
-/** A tile that says how many times are not to be trusted; none where all are. */
-export function unsteady_tile(unsteady: number, measurements: number): HTMLElement | false {
-  return unsteady > 0 && tile("Unsteady", `${grouped(unsteady)} of ${grouped(measurements)}`,
-    "measurements, whose median sample is far above the least: quiet the machine and measure again");
+/** What makes the times of a run doubtful: that its machine was busy, that some vary too much. */
+export interface Doubts {
+  busy: boolean | null;
+  processorShare: number | null;
+  unsteady: number;
+  measurements: number;
+}
+
+/** A notice of them, for the top of the page; null where there are none. */
+export function doubtsNotice({ busy, processorShare, unsteady, measurements }: Doubts): HTMLElement | null {
+  const others = processorShare === null ? "for part of this run" : `for ${Math.round(100 * (1 - processorShare))} % of this run`;
+  const doubts: [string, string][] = [];
+  if (busy === true) doubts.push(["Busy machine.", `Other programs had the processor ${others}, so times are too long, and not all by the same factor.`]);
+  if (unsteady > 0) doubts.push(["Unsteady times.", `${grouped(unsteady)} of ${grouped(measurements)} measurements vary so much that their median cannot be trusted.`]);
+  if (doubts.length === 0) return null;
+  return el("div", { class: `notice ${busy === true ? "bad" : "fair"}`, role: "note", "aria-label": "Doubtful times" },
+    ...doubts.map(([name, text]) => el("p", {}, el("strong", {}, name), ` ${text}`)),
+    el("p", {}, "Quiet the machine and measure again before you quote these times."));
 }
 
 function command_text(command: readonly string[]): string {

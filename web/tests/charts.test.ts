@@ -5,12 +5,12 @@ import { test } from "node:test";
 import {
   bytes_text, cases_of, colours_of, dark, draw_frames, draw_leads, draw_lines, draw_ratios, draw_scaling, draw_standings,
   draw_table_chart, draw_winners, family_of, grouped, label_of, lead_of, light, rounded, scaled_scenes, short, standings,
-  time_text,
+  inTodaysShape, intervalText, ratio_text, time_text,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
 import { log_ticks } from "../charts/frame.ts";
 import { svg_of } from "../charts/render.ts";
-import { comparison } from "./fixture.ts";
+import { comparison, oldComparison } from "./fixture.ts";
 
 const place: Place = { theme: light, width: 640 };
 
@@ -111,7 +111,42 @@ test("measurements on the same boxes are one case", () => {
 
 test("a lead is the fastest peer's time over that of the fastest of ours", () => {
   const lead = lead_of(cases[0]!);
-  assert.deepEqual([lead?.own.algorithm, lead?.peer.algorithm, lead?.ratio], ["bvh", "box2d_tree", 4]);
+  assert.deepEqual([lead?.own.algorithm, lead?.peer.algorithm, lead?.ratio.median], ["bvh", "box2d_tree", 4]);
+  assert.equal(intervalText(lead!.ratio), "4.0 (3.8 to 4.2)");
+});
+
+test("ratios have two significant digits, and are level where their interval holds one", () => {
+  assert.deepEqual([0.0514, 0.996, 1.04, 1.26, 9.96, 19.4, 134, 1349].map(ratio_text),
+    ["0.051", "1.0", "1.0", "1.3", "10", "19", "130", "1,300"]);
+  const text = (low: number | null, high: number | null): string =>
+    intervalText({ of: "grid", median: 1.02, low, high, rounds: 5 });
+  assert.deepEqual([text(1.01, 1.03), text(0.98, 1.06), text(1, 1.06), text(null, null)],
+    ["1.0 (1.0 to 1.0)", "1.0 (level)", "1.0 (level)", "1.0"]);
+});
+
+test("results of the schema before are read with ratios of their medians, which have no interval", () => {
+  const read = inTodaysShape(oldComparison);
+  assert.deepEqual([read.schema, read.busy, read.processor_share, read.measurements[0]?.rounds],
+    ["broadside.results/2", null, null, null]);
+  const [grid, bvh, box2d] = read.measurements;
+  assert.deepEqual(grid?.ratio_to_fastest, { of: "bvh", median: 2, low: null, high: null, rounds: null });
+  assert.equal(bvh?.ratio_to_fastest?.median, 1);
+  assert.deepEqual([box2d?.ratio_to_best_own?.median, box2d?.ratio_to_fastest_peer?.median], [4, 1]);
+  assert.equal(bvh?.ratio_to_fastest_peer?.median, 0.25);
+  assert.equal(read.measurements[7]?.ratio_to_fastest, null);
+  assert.equal(inTodaysShape(comparison), comparison);
+  const [of] = cases_of(read.measurements);
+  assert.equal(series_of(draw_ratios(of!, place)).length, 1);
+});
+
+test("a ratio's interval is a whisker of its bar, and told in words", () => {
+  const drawn = draw_ratios(cases[0]!, place);
+  const [bars, whiskers] = series_of(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
+  assert.deepEqual([bars?.type, whiskers?.type], ["bar", "custom"]);
+  // Of the fastest, the ratio is to itself.
+  assert.deepEqual(bars?.data.map(({ label }) => label === undefined), [true, false, false, false]);
+  assert.match(drawn.description, / bvh: 1\.0\. grid: 2\.0 \(1\.9 to 2\.1\)\. /);
+  assert.match(draw_ratios(cases[2]!, place).description, / bvh: 1\.2 \(level\)\. /);
 });
 
 test("an algorithm's threads are told once", () => {

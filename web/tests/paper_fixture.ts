@@ -4,6 +4,8 @@ import { dirname, join } from "node:path";
 import { cwd } from "node:process";
 
 import type { Comparison, Experiments, Measurement } from "../charts/data.ts";
+import type { OldComparison } from "../charts/old_results.ts";
+import { inRounds } from "./fixture.ts";
 
 function folder_with(path: string, from: string): string {
   if (existsSync(join(from, path))) return from;
@@ -70,7 +72,7 @@ export function experiments(): Experiments {
   };
 }
 
-function measurement(algorithm: string, kind: Measurement["kind"], median_ms: number, moving = 0): Measurement {
+function measurement(algorithm: string, kind: Measurement["kind"], median_ms: number, moving = 0): OldComparison["measurements"][number] {
   return {
     scene: "uniform",
     scene_parameters: {},
@@ -109,7 +111,8 @@ function measurement(algorithm: string, kind: Measurement["kind"], median_ms: nu
   };
 }
 
-export function comparison(): Comparison {
+/** By the schema before. */
+export function oldComparison(): OldComparison {
   return {
     schema: "broadside.results/1",
     machine,
@@ -126,4 +129,8 @@ export function comparison(): Comparison {
       measurement("bullet_dbvt", "peer", 1, 0.1),
     ],
   };
+}
+
+export function comparison(): Comparison {
+  return inRounds(oldComparison());
 }

@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 
-import { comparison } from "./fixture.ts";
+import { comparison, doubtful, oldComparison } from "./fixture.ts";
 
 const program = process.env["BROADSIDE_PROGRAM"] ?? "";
 const web = process.env["BROADSIDE_WEB"] ?? "";
@@ -112,6 +112,8 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     page_with("fixture.html", {
       date: "2026-11-21", comparison, experiments: null, drawings: [drawing("uniform", 2), drawing("clustered", 3)],
     });
+    page_with("doubtful.html", { date: "2026-11-21", comparison: doubtful, experiments: null, drawings: [] });
+    page_with("old.html", { date: "2026-11-21", comparison: oldComparison, experiments: null, drawings: [] });
     page_with("quick.html", { date: "2026-11-21", comparison: quick_comparison(), experiments: null, drawings: [] });
     const playwright = createRequire(`${web}/`)("playwright-core") as typeof import("playwright-core");
     browser = await playwright.chromium.launch({ executablePath: chromium_path, args: ["--no-sandbox"] });
@@ -154,6 +156,31 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     await page.locator("#measurements").getByLabel("Search").fill("churn");
     assert.equal(await page.locator(rows).count(), 1);
     await page.close();
+  });
+
+  test("says at its top that the machine was busy and times unsteady", async () => {
+    const { page } = await open("doubtful.html");
+    const notice = page.locator("main .intro .notice");
+    assert.match(await notice.innerText(), /^Busy machine\. Other programs had the processor for 42 % .*\n+Unsteady times\. 1 of 10 /);
+    const { y, height } = (await notice.boundingBox())!;
+    assert.ok(y + height < 900, "below the first screen");
+    await page.goto(`file://${join(folder, "fixture.html")}`);
+    await page.waitForSelector("nav a");
+    assert.equal(await page.locator(".notice").count(), 0);
+    await page.close();
+  });
+
+  test("shows ratios with their intervals, and those of results of the schema before without", async () => {
+    const ratios = async (name: string): Promise<string[]> => {
+      const { page, problems } = await open(name);
+      await page.locator("#cases select").selectOption({ label: "churn, 2D, 1,000 boxes, 25 % moving" });
+      const cells = await texts(page, "#cases tbody td:nth-child(3)");
+      assert.deepEqual(problems, []);
+      await page.close();
+      return cells;
+    };
+    assert.deepEqual(await ratios("fixture.html"), ["1.0", "1.2 (level)", "1.8 (1.7 to 1.9)"]);
+    assert.deepEqual(await ratios("old.html"), ["1.0", "1.2", "1.8"]);
   });
 
   test("sorts by a column, by the keyboard alone, and back", async () => {
@@ -225,7 +252,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     assert.deepEqual(JSON.parse(await save("Save as JSON")), comparison);
     const lines = (await save("Save as CSV")).trim().split("\r\n");
     assert.equal(lines.length, comparison.measurements.length + 1);
-    assert.match(lines[0] ?? "", /^scene,scene_parameters,/);
+    assert.match(lines[0] ?? "", /^scene,scene_parameters,.*,ratio_to_fastest_median,ratio_to_fastest_low,/);
     assert.deepEqual(problems, []);
     await page.close();
   });

@@ -1,6 +1,9 @@
 // The command-line program: reads the verb and its options, runs it, and turns what it throws into an exit
 // status and a message.
+#include "broadside/program.hpp"
+
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <string>
@@ -16,15 +19,16 @@
 #include "cli/message.hpp"
 #include "cli/parse_errors.hpp"
 #include "cli/verbs.hpp"
+#include "lab/catalogue.hpp"
 
 namespace {
 
 using broadside::cli::Exit;
 
-Exit run(const std::vector<std::string>& given) {
+Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue& catalogue) {
   const std::vector<std::string> arguments = broadside::cli::without_help_verb(given);
   CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
-                   "broadside");
+                   broadside::cli::program_name());
   program.formatter(std::make_shared<broadside::cli::HelpFormatter>());
   program.set_help_flag("-h,--help", "Print this help and end");
   program.set_version_flag("--version", "broadside " BROADSIDE_VERSION, "Print the version and end");
@@ -33,16 +37,16 @@ Exit run(const std::vector<std::string>& given) {
       "Exit status: 0 fine, 1 a verification failed or nothing was verified, 2 unusable arguments or input, "
       "130 interrupted, 141 a pipe was closed by its reader.");
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
-      {"compare", broadside::cli::add_compare(program, given)},
-      {"advise", broadside::cli::add_advise(program, given)},
-      {"experiment", broadside::cli::add_experiment(program, given)},
-      {"pairs", broadside::cli::add_pairs(program)},
+      {"compare", broadside::cli::add_compare(program, catalogue, given)},
+      {"advise", broadside::cli::add_advise(program, catalogue, given)},
+      {"experiment", broadside::cli::add_experiment(program, catalogue, given)},
+      {"pairs", broadside::cli::add_pairs(program, catalogue)},
       {"info", broadside::cli::add_info(program)},
-      {"verify", broadside::cli::add_verify(program)},
+      {"verify", broadside::cli::add_verify(program, catalogue)},
       {"convert", broadside::cli::add_convert(program)},
       {"scene", broadside::cli::add_scene(program)},
-      {"draw", broadside::cli::add_draw(program)},
-      {"list", broadside::cli::add_list(program)},
+      {"draw", broadside::cli::add_draw(program, catalogue)},
+      {"list", broadside::cli::add_list(program, catalogue)},
   };
   program.add_subcommand("help", "Shows this help, or a verb's: broadside help pairs.");
   for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
@@ -64,21 +68,29 @@ Exit run(const std::vector<std::string>& given) {
 
 }  // namespace
 
-int main(int count, char** values) {
+namespace broadside {
+
+int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms) {
+  using cli::Exit;
   const std::vector<std::string> arguments(values, values + count);
-  broadside::cli::on_failing_write();
+  if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename());
+  cli::on_failing_write();
   try {
-    const Exit exit = run(arguments);
-    broadside::cli::flush_output();
+    lab::Catalogue catalogue;
+    for (Algorithm& algorithm : algorithms) catalogue.add(std::move(algorithm));
+    const Exit exit = run(arguments, catalogue);
+    cli::flush_output();
     return static_cast<int>(exit);
-  } catch (const broadside::cli::Interruption& interruption) {
-    broadside::cli::say(interruption.what());
+  } catch (const cli::Interruption& interruption) {
+    cli::say(interruption.what());
     return static_cast<int>(Exit::interrupted);
   } catch (const std::bad_alloc&) {
-    broadside::cli::say("out of memory; expected fewer boxes, frames or pairs");
+    cli::say("out of memory; expected fewer boxes, frames or pairs");
     return static_cast<int>(Exit::unusable);
   } catch (const std::exception& error) {
-    broadside::cli::say(error.what());
+    cli::say(error.what());
     return static_cast<int>(Exit::unusable);
   }
 }
+
+}  // namespace broadside

@@ -1,0 +1,120 @@
+// Two builds of the program against each other: compare_builds OLD NEW [ROUNDS] [ARGUMENTS OF compare ...].
+// Runs `OLD compare` and `NEW compare` in turns, ROUNDS times each (standard: 5), every run a process of its
+// own with an order drawn anew, and prints the time of the new build over that of the old one for each case
+// and algorithm: the median over the rounds, with a 95 % bootstrap interval. Processes differ among
+// themselves (where memory lies, say), so that one of each says little.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+#include "lab/report/machine.hpp"
+#include "lab/report/phrases.hpp"
+
+namespace broadside::bench {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Single quotes: no shell reads anything into what they hold.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// The median times of one run of `program compare`, by case and algorithm; an algorithm that was skipped is
+/// left out.
+std::map<std::string, double> times_of(const std::string& program,
+                                       const std::vector<std::string>& arguments) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("compare_builds.{}.json", std::random_device()());
+  std::string command = quoted(program) + " compare --json " + quoted(file.string());
+  for (const std::string& argument : arguments) command += " " + quoted(argument);
+  const int status = std::system((command + " >/dev/null").c_str());
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  std::filesystem::remove(file);
+  if (status != 0 || json.is_discarded())
+    throw std::runtime_error(
+        fmt::format("'{}' ended with status {}; expected 0 and results", command, status));
+  std::map<std::string, double> times;
+  for (const Json& measurement : json["measurements"]) {
+    if (measurement["median_ms"].is_null()) continue;
+    const std::string name = fmt::format(
+        "{}, {}D, {} boxes, {:.3g} % moving, {}", measurement["scene"].get<std::string>(),
+        measurement["dimension"].get<int>(), lab::grouped(measurement["boxes"].get<std::size_t>()),
+        measurement["moving"].get<double>() * 100, measurement["algorithm"].get<std::string>());
+    times[name] = measurement["median_ms"].get<double>();
+  }
+  return times;
+}
+
+void run(const std::vector<std::string>& programs, std::size_t rounds,
+         const std::vector<std::string>& arguments) {
+  std::map<std::string, std::array<std::vector<double>, 2>> times;
+  std::mt19937 random;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    const std::size_t first = random() % 2;
+    for (const std::size_t build : {first, 1 - first}) {
+      std::fprintf(stderr, "round %zu of %zu: %s\n", round + 1, rounds, programs[build].c_str());
+      for (const auto& [name, time] : times_of(programs[build], arguments))
+        times[name][build].push_back(time);
+    }
+  }
+  const lab::Build build = lab::this_build();
+  fmt::print("{} over {}, {} rounds; {}, {} cores; {}\n", programs[1], programs[0], rounds,
+             lab::this_machine().cpu, lab::this_machine().cores, build.compiler);
+  lab::Columns columns("<>>>");
+  columns.add({"case and algorithm", "old ms", "new ms", "new over old"});
+  std::vector<lab::RatiosBySeed> pairs;
+  for (const auto& [name, both] : times) {
+    // Near the budget, an algorithm is skipped in some runs.
+    if (both[0].size() != rounds || both[1].size() != rounds) continue;
+    pairs.emplace_back(both[1], both[0], 1);
+    columns.add(
+        {name, lab::rounded(lab::median(both[0])), lab::rounded(lab::median(both[1])),
+         fmt::format("{:.3f} ({})", pairs.back().median(), lab::interval_text(pairs.back().interval()))});
+  }
+  if (pairs.empty()) throw std::runtime_error("no algorithm was timed by both builds; expected at least one");
+  const lab::MeanRatio mean = lab::geometric_mean(pairs);
+  fmt::print("{}geometric mean of {}: {:.3f}", columns.text(""), pairs.size(), mean.mean);
+  if (mean.interval) fmt::print(" ({:.3f} to {:.3f})", mean.interval->low, mean.interval->high);
+  fmt::print("\n");
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** values) {
+  const std::vector<std::string> arguments(values + 1, values + count);
+  try {
+    if (arguments.size() < 2)
+      throw std::runtime_error(fmt::format(
+          "{} arguments; expected OLD NEW [ROUNDS] [ARGUMENTS OF compare ...]", arguments.size()));
+    const bool has_rounds =
+        arguments.size() > 2 && arguments[2].find_first_not_of("0123456789") == std::string::npos;
+    const std::size_t rounds = has_rounds ? std::stoul(arguments[2]) : 5;
+    broadside::bench::run({arguments[0], arguments[1]}, std::max<std::size_t>(rounds, 1),
+                          {arguments.begin() + (has_rounds ? 3 : 2), arguments.end()});
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "compare_builds: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,21 @@
+// The command-line program as a function: all its verbs, for algorithms of your own as well. Link
+// Broadside::program.
+#pragma once
+
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+
+namespace broadside {
+
+/// Runs the program `broadside` on the arguments of main(), and returns the exit status.
+///
+/// `algorithms` are known by their names beside those of the library and its peers. Those of kind `own`,
+/// which is the default, belong to the group "own". A name that is taken is refused, as an unusable argument
+/// is. Messages begin with the file name in values[0].
+///
+/// Call it once, as all that main() does: it handles SIGINT, SIGTERM and SIGHUP, and ignores SIGPIPE and
+/// SIGXFSZ. Throws nothing: whatever goes wrong is said on stderr.
+int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms = {});
+
+}  // namespace broadside

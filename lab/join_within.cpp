@@ -1,0 +1,109 @@
+// Pairs of boxes within a distance: those that overlap once each box is enlarged by half of it, rounded
+// outward, and that then pass a test without rounding.
+#include "lab/join_within.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace broadside::lab {
+namespace {
+
+/// Whether b - a <= distance for real numbers. After Knuth's TwoSum, a + distance is sum + error exactly; sum
+/// is the nearest double, so that no other double lies between the two.
+bool is_within(double a, double b, double distance) {
+  if (b <= a) return true;
+  const double sum = a + distance;
+  if (b != sum) return b < sum;
+  const double part = sum - a;
+  const double error = (a - (sum - part)) + (distance - part);
+  // A NaN where the sum is infinite: then b is as well, and a is not.
+  return error >= 0;
+}
+
+template <int D, typename Real>
+bool are_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) {
+  bool within = true;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    within = within &&
+             is_within(static_cast<double>(a.max[axis]), static_cast<double>(b.min[axis]), distance) &&
+             is_within(static_cast<double>(b.max[axis]), static_cast<double>(a.min[axis]), distance);
+  }
+  return within;
+}
+
+/// The boxes, each larger by at least half the distance on every side.
+template <int D, typename Real>
+std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, double distance) {
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  const double half = distance / 2;
+  std::vector<Box<D, Real>> result = boxes;
+  for (Box<D, Real>& box : result) {
+    if (is_absent(box)) continue;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      // The next number makes good what rounding took away, here and where half of the least number is none.
+      box.min[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.min[axis]) - half), -infinity);
+      box.max[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.max[axis]) + half), infinity);
+    }
+  }
+  return result;
+}
+
+/// Passes on the pairs of boxes that are within the distance.
+template <int D, typename Real>
+class PairsWithin final : public PairSink {
+ public:
+  PairsWithin(const std::vector<Box<D, Real>>& left, const std::vector<Box<D, Real>>& right, double distance,
+              PairSink& pairs)
+      : left_(left), right_(right), distance_(distance), pairs_(pairs) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    // Not by add(), which orders the two: they may be of two sets.
+    while (!pairs.empty()) {
+      const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), PairSink::max_room));
+      pairs = pairs.subspan(chunk.size());
+      Pair* const room = pairs_.room(chunk.size());
+      std::size_t kept = 0;
+      for (const Pair pair : chunk) {
+        room[kept] = pair;
+        kept += are_within(left_[index(pair.first)], right_[index(pair.second)], distance_) ? 1 : 0;
+      }
+      pairs_.commit(kept);
+    }
+  }
+
+  const std::vector<Box<D, Real>>& left_;
+  const std::vector<Box<D, Real>>& right_;
+  double distance_;
+  PairSink& pairs_;
+};
+
+}  // namespace
+
+void join_within(const AnyBoxes& boxes, double distance, const Contender& contender, PairSink& pairs) {
+  std::visit(
+      [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
+        PairsWithin<D, Real> within(list, list, distance, pairs);
+        join(enlarged(list, distance), contender, within);
+      },
+      boxes);
+  pairs.flush();
+}
+
+void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Contender& contender,
+                 PairSink& pairs) {
+  std::visit(
+      [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
+        const auto& other = std::get<std::vector<Box<D, Real>>>(right);
+        PairsWithin<D, Real> within(list, other, distance, pairs);
+        join(enlarged(list, distance), enlarged(other, distance), contender, within);
+      },
+      left);
+  pairs.flush();
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,151 @@
+// What measuring a search and measuring a history have in common.
+#include "lab/measure/benchmark.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <fmt/format.h>
+
+#include "broadside/error.hpp"
+#include "broadside/version.hpp"
+
+#include "lab/numbers.hpp"
+
+namespace broadside::lab {
+
+void Watch::at(std::string_view what) const {
+  if (stop && stop()) throw Stopped();
+  if (progress) progress(what);
+}
+
+std::vector<std::size_t> turns(std::size_t entries, std::size_t round) {
+  std::vector<std::size_t> order(entries);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(round));
+  return order;
+}
+
+void Participation::add(double milliseconds) {
+  ++rounds_;
+  spent_ms_ += milliseconds;
+}
+
+bool Participation::goes_on(const Effort& effort) const noexcept {
+  if (has_ended_ || rounds_ >= effort.most_rounds) return false;
+  if (is_slow_) return rounds_ < effort.slow_rounds;
+  return rounds_ < effort.least_rounds || spent_ms_ < effort.share_seconds * 1e3;
+}
+
+bool has_time(const Effort& effort, std::size_t round, const Stopwatch& of_case) {
+  constexpr std::size_t always = 2;
+  return round < always || of_case.milliseconds() < effort.case_seconds * 1e3;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  // Nothing goes back to the system at the heap's end, and large blocks come from the heap as well, where
+  // they are used again.
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_MMAP_MAX, 0);
+#endif
+}
+
+CacheState::CacheState() : memory_((std::size_t{4} << 20) / sizeof(std::uint64_t), 1) {}
+
+void CacheState::settle(std::span<const std::byte> input) {
+  constexpr std::size_t line = 64;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < memory_.size(); i += line / sizeof(std::uint64_t)) sum += ++memory_[i];
+  for (std::size_t i = 0; i < input.size(); i += line) sum += std::to_integer<std::uint64_t>(input[i]);
+  // Kept, so that no compiler leaves the reading out.
+  memory_[1] = sum;
+}
+
+Measurement measurement_of(const Contender& contender) {
+  const Algorithm& algorithm = *contender.algorithm;
+  Measurement measurement;
+  measurement.algorithm = contender.spec.text();
+  measurement.version = algorithm.version.empty() ? BROADSIDE_VERSION : algorithm.version;
+  measurement.kind = algorithm.kind;
+  measurement.threads = threads_of(contender);
+  return measurement;
+}
+
+std::string fault_of(const Measurement& measurement, const std::function<std::string()>& run) {
+  try {
+    return run();
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::exception& thrown) {
+    return fmt::format("{} threw: {}", measurement.algorithm, thrown.what());
+  }
+}
+
+void fail(Measurement& measurement, const std::string& fault) {
+  measurement.outcome = Outcome::failed;
+  measurement.reason = fault;
+  measurement.samples_ms.clear();
+}
+
+void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls, double budget) {
+  measurement.outcome = Outcome::skipped;
+  measurement.reason = text(estimate);
+  if (calls > 1) measurement.reason += fmt::format(", for {} frames", grouped(calls));
+  measurement.reason += fmt::format("; budget {:g} s", budget);
+  measurement.estimated_ms = estimate.seconds * 1e3 / static_cast<double>(calls);
+}
+
+void count_memory(Measurement& measurement, const Algorithm& algorithm,
+                  const std::optional<Allocation>& allocation) {
+  if (!allocation || algorithm.own_allocator) return;
+  measurement.own_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->kept, 0));
+  measurement.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->peak, 0));
+}
+
+std::string unfit(const Contender& contender, int dimension, const Extremes& extremes) {
+  const Algorithm& algorithm = *contender.algorithm;
+  if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
+  if (extremes.infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
+  if (extremes.largest > algorithm.largest_coordinate)
+    return fmt::format("does not take coordinates beyond {:.3g}", algorithm.largest_coordinate);
+  if (extremes.boxes > algorithm.most_boxes)
+    return fmt::format("does not take more than {} boxes", grouped(algorithm.most_boxes));
+  try {
+    // A value may make sense in one dimension only, such as an axis.
+    dimension == 2 ? void(make_finder<2>(algorithm, contender.spec))
+                   : void(make_finder<3>(algorithm, contender.spec));
+  } catch (const InvalidSpec& unusable) {
+    return unusable.what();
+  }
+  return {};
+}
+
+template <int D, typename Real>
+void Extremes::take(std::type_identity_t<std::span<const Box<D, Real>>> some) {
+  boxes = std::max(boxes, some.size());
+  for (const Box<D, Real>& box : some) {
+    if (!is_present(box)) continue;
+    for (const auto& corner : {box.min, box.max}) {
+      for (const Real coordinate : corner) {
+        if (std::isinf(coordinate))
+          infinite = true;
+        else
+          largest = std::max(largest, std::abs(static_cast<double>(coordinate)));
+      }
+    }
+  }
+}
+
+template void Extremes::take<2, float>(std::span<const Box2>);
+template void Extremes::take<3, float>(std::span<const Box3>);
+template void Extremes::take<2, double>(std::span<const DoubleBox2>);
+template void Extremes::take<3, double>(std::span<const DoubleBox3>);
+
+}  // namespace broadside::lab

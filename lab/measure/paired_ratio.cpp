@@ -1,0 +1,125 @@
+// Ratios of times that were measured in the same rounds, with intervals by the bootstrap.
+#include "lab/measure/paired_ratio.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+#include "lab/measure/ranking.hpp"
+#include "lab/measure/samples.hpp"
+
+namespace broadside::lab {
+namespace {
+
+constexpr std::size_t replicate_count = 1'000;
+
+/// The median of numbers that may be put in another order.
+double median_in_place(std::vector<double>& numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  if (numbers.size() % 2 == 1) return *middle;
+  return (*std::max_element(numbers.begin(), middle) + *middle) / 2;
+}
+
+}  // namespace
+
+std::vector<double> round_times(const Measurement& measurement) {
+  const std::vector<double>& samples = measurement.samples_ms;
+  const std::size_t a_round = measurement.samples_a_round;
+  if (a_round <= 1) return samples;
+  std::vector<double> times;
+  for (std::size_t first = 0; first + a_round <= samples.size(); first += a_round) {
+    const auto begin = samples.begin() + static_cast<std::ptrdiff_t>(first);
+    times.push_back(std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(a_round), 0.0) /
+                    static_cast<double>(a_round));
+  }
+  return times;
+}
+
+RatiosBySeed::RatiosBySeed(std::span<const double> times, std::span<const double> others, std::size_t seeds)
+    : rounds_(std::min(times.size(), others.size())) {
+  if (rounds_ == 0 || seeds == 0)
+    throw std::invalid_argument("no round that both took part in; expected at least 1");
+  ratios_.resize(std::min(seeds, rounds_));
+  for (std::size_t round = 0; round < rounds_; ++round)
+    ratios_[round % seeds].push_back(times[round] / others[round]);
+}
+
+double RatiosBySeed::median() const {
+  std::vector<double> medians;
+  for (const std::vector<double>& of_seed : ratios_) medians.push_back(lab::median(of_seed));
+  return median_in_place(medians);
+}
+
+std::vector<double> RatiosBySeed::replicates(std::size_t count, std::uint64_t seed) const {
+  std::mt19937_64 random(seed);
+  std::vector<double> result;
+  std::vector<double> medians;
+  std::vector<double> drawn;
+  for (std::size_t i = 0; i < count; ++i) {
+    medians.clear();
+    for (std::size_t j = 0; j < ratios_.size(); ++j) {
+      const std::vector<double>& of_seed = ratios_[random() % ratios_.size()];
+      drawn.clear();
+      for (std::size_t k = 0; k < of_seed.size(); ++k) drawn.push_back(of_seed[random() % of_seed.size()]);
+      medians.push_back(median_in_place(drawn));
+    }
+    result.push_back(median_in_place(medians));
+  }
+  return result;
+}
+
+std::optional<Interval> RatiosBySeed::interval() const {
+  if (rounds_ < least_rounds_of_interval) return std::nullopt;
+  return middle_of(replicates(replicate_count, 1));
+}
+
+Interval middle_of(std::span<const double> replicates) {
+  return {percentile(replicates, 0.025), percentile(replicates, 0.975)};
+}
+
+PairedRatio paired_ratio(const Case& measured, const Measurement& entry, const Measurement& other) {
+  const RatiosBySeed ratios(round_times(entry), round_times(other),
+                            std::max<std::size_t>(measured.seeds.size(), 1));
+  return {other.algorithm, ratios.median(), ratios.interval(), ratios.rounds()};
+}
+
+void add_ratios(CaseResult& result) {
+  const Measurement* const fastest = fastest_of(result);
+  const Measurement* const own = best_own_of(result);
+  const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
+  for (Measurement& measurement : result.measurements) {
+    if (!is_timed(measurement)) continue;
+    const auto ratio_to = [&](const Measurement* other) -> std::optional<PairedRatio> {
+      if (other == nullptr) return std::nullopt;
+      return paired_ratio(result.of, measurement, *other);
+    };
+    measurement.to_fastest = ratio_to(fastest);
+    // Most often our best is the fastest of all, and a ratio takes a thousand samples.
+    measurement.to_best_own = own == fastest ? measurement.to_fastest : ratio_to(own);
+    measurement.to_fastest_peer = peer == fastest ? measurement.to_fastest : ratio_to(peer);
+  }
+}
+
+MeanRatio geometric_mean(std::span<const RatiosBySeed> pairs) {
+  std::vector<double> medians;
+  std::vector<double> sums(replicate_count, 0);
+  bool has_interval = true;
+  for (const RatiosBySeed& pair : pairs) {
+    medians.push_back(pair.median());
+    has_interval = has_interval && pair.rounds() >= least_rounds_of_interval;
+    if (!has_interval) continue;
+    // Each pair draws numbers of its own: what they have in common would not average out.
+    const std::vector<double> replicates = pair.replicates(replicate_count, medians.size());
+    for (std::size_t i = 0; i < replicate_count; ++i) sums[i] += std::log(replicates[i]);
+  }
+  MeanRatio result{geometric_mean(medians), std::nullopt};
+  if (!has_interval) return result;
+  for (double& sum : sums) sum = std::exp(sum / static_cast<double>(pairs.size()));
+  result.interval = middle_of(sums);
+  return result;
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,25 @@
+// What tables and lines say alike: ratios with their intervals, and how results were verified.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lab/measure/measurement.hpp"
+
+namespace broadside::lab {
+
+/// The interval's ends to two significant digits: "17 to 19"; "level" where it includes 1, "nearly level" where both ends
+/// are 1.0 to two digits, and "-" where there is none.
+std::string interval_text(const std::optional<Interval>& interval);
+
+/// A ratio and its interval: "18 (17 to 19)", "1.0 (level)", "5,100".
+std::string ratio_text(double ratio, const std::optional<Interval>& interval);
+
+/// What the results were compared with: "quadtree or sweep_and_prune + 200 sampled boxes"; empty where
+/// nothing was.
+std::string references_of(const CaseResult& result);
+
+/// That, or how many FAILED; "nothing verified" where everything was skipped.
+std::string verdict_of(const CaseResult& result);
+
+}  // namespace broadside::lab

@@ -1,0 +1,33 @@
+// Ratios of times with their intervals, and how they are shown.
+import type { Ratio } from "./data.ts";
+import { ratio_text } from "./numbers.ts";
+
+export type Interval = readonly [low: number, high: number];
+
+/** The interval of a ratio; undefined where there is none, as of an algorithm's ratio to itself, which is just 1. */
+export function intervalOf({ low, high }: Ratio): Interval | undefined {
+  return low === null || high === null || low === high ? undefined : [low, high];
+}
+
+/** Whether nothing tells the two apart: the interval holds 1. */
+export function isLevel(ratio: Ratio): boolean {
+  const interval = intervalOf(ratio);
+  return interval !== undefined && interval[0] <= 1 && interval[1] >= 1;
+}
+
+/** Whether the time is clearly the shorter one; without an interval, whether the ratio says so. */
+export function isFaster(ratio: Ratio): boolean {
+  return (intervalOf(ratio)?.[1] ?? ratio.median) < 1;
+}
+
+/** "19 (18 to 20)", "1.0 (level)", or the ratio alone where it has no interval. */
+export function intervalText(ratio: Ratio): string {
+  const interval = intervalOf(ratio);
+  if (interval === undefined) return ratio_text(ratio.median);
+  return `${ratio_text(ratio.median)} (${isLevel(ratio) ? "level" : interval.map(ratio_text).join(" to ")})`;
+}
+
+/** The same in short: "19", "level". */
+export function shortRatioText(ratio: Ratio): string {
+  return isLevel(ratio) ? "level" : ratio_text(ratio.median);
+}
