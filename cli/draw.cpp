@@ -111,8 +111,6 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
   arguments.scene = only_one_of(arguments.scenes);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);
-  check_writable("-o", arguments.output);
-  check_is_other_file("-o", arguments.output, arguments.scene);
   check_is_svg(arguments.output);
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
