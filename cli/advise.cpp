@@ -129,9 +129,9 @@ void check(const AdviseArguments& arguments) {
         fmt::format("--budget is {}; expected a number of seconds above 0, at most 3600", *arguments.budget));
   if (arguments.json.empty()) return;
   check_is_no_output("--json", arguments.json);
-  check_extension("--json", arguments.json, {".json"});
   check_writable("--json", arguments.json);
   check_is_other_file("--json", arguments.json, arguments.input);
+  check_extension("--json", arguments.json, {".json"});
 }
 
 Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
@@ -140,7 +140,8 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
   arguments.input = only_one_of(arguments.inputs);
   check(arguments);
   const bool reads = is_file(arguments.input);
-  const lab::NamedScene named = reads ? unread_file(arguments.input) : lab::find_scene(arguments.input);
+  const lab::NamedScene named =
+      reads ? unread_file(arguments.input) : lab::find_scene(arguments.input, read_options(arguments.read));
   check_options(verb, {&named, 1});
   check_moves(verb, {&named, 1});
   ProgressLine progress;

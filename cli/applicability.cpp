@@ -37,6 +37,7 @@ constexpr std::array rules = {
     Rule{"--boxes", is_file, no_file, no_files},
     Rule{"--layer", is_file, no_file, no_files},
     Rule{"--columns", is_file, no_file, no_files},
+    Rule{"--skip-invalid", is_file, no_file, no_files},
     Rule{"--precision", is_file, "is of floats and no file", "are of floats and no files"},
     Rule{"-n", has_count, "has a number of boxes of its own", "have numbers of boxes of their own"},
     Rule{"--seed", has_seed, "is the same for every seed", "are the same for every seed"},
@@ -50,6 +51,10 @@ std::optional<std::string> value_of(const CLI::App& verb, std::string_view optio
   const CLI::Option* const found = verb.get_option_no_throw(std::string(option));
   if (found == nullptr || found->count() == 0) return std::nullopt;
   return fmt::format("{}", fmt::join(found->results(), ","));
+}
+
+bool is_flag(const CLI::App& verb, std::string_view option) {
+  return verb.get_option(std::string(option))->get_expected_max() == 0;
 }
 
 /// "scene 'a'", "scenes 'a', 'b' and 'c'", "scenes 'a', 'b', 'c' and 9 others".
@@ -97,7 +102,8 @@ std::vector<std::string> check_options(const CLI::App& verb, std::span<const lab
     if (!value || std::ranges::find(taken, rule.option) != taken.end()) continue;
     const auto applies = [&rule](const lab::NamedScene& named) { return rule.applies(named.scene); };
     if (std::ranges::none_of(scenes, applies))
-      throw Unusable(fmt::format("{} is '{}' for {}, which {}; expected {}", rule.option, *value,
+      throw Unusable(fmt::format("{}{} for {}, which {}; expected {}", rule.option,
+                                 is_flag(verb, rule.option) ? "" : fmt::format(" is '{}'", *value),
                                  names_of(scenes), scenes.size() == 1 ? rule.one : rule.several,
                                  expected_for(verb, rule, *value)));
     if (rule.applies == is_file) continue;
@@ -128,8 +134,7 @@ void check_alone(const CLI::App& verb, const std::string& option, std::initializ
   const std::optional<std::string> value = value_of(verb, option);
   if (!value) return;
   const auto shown = [&verb](const std::string& name, const std::string& text) {
-    const bool is_flag = verb.get_option(name)->get_expected_max() == 0;
-    return is_flag ? name : fmt::format("{} {}", name, text);
+    return is_flag(verb, name) ? name : fmt::format("{} {}", name, text);
   };
   for (const char* const other : others) {
     if (const std::optional<std::string> found = value_of(verb, other))

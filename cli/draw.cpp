@@ -109,9 +109,9 @@ void check_is_svg(const std::string& path) {
 Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   on_signal(OnSignal::end);
   arguments.scene = only_one_of(arguments.scenes);
-  check_is_svg(arguments.output);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);
+  check_is_svg(arguments.output);
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
   check_options(verb, {&named, 1}, {"-n"});

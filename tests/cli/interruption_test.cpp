@@ -1,13 +1,20 @@
 // What a signal, or a pipe that nothing reads any more, leaves of a file that is being written.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "process.hpp"
 
@@ -15,6 +22,35 @@ namespace broadside::cli {
 namespace {
 
 using testing::ElementsAre;
+
+/// A pipe with a name that nothing reads: what is written to it waits once it is full.
+class UnreadPipe {
+ public:
+  explicit UnreadPipe(std::string path) : path_(std::move(path)) {
+    if (mkfifo(path_.c_str(), 0600) != 0) throw std::runtime_error(path_ + ": no pipe can be made");
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CLOEXEC);
+  }
+  ~UnreadPipe() { shut(); }
+  UnreadPipe(const UnreadPipe&) = delete;
+  UnreadPipe& operator=(const UnreadPipe&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  bool is_full() const {
+    constexpr int most = 65536;
+    int bytes = 0;
+    return ioctl(descriptor_, FIONREAD, &bytes) == 0 && bytes >= most;
+  }
+
+  /// From here on, a write to it fails.
+  void shut() {
+    if (const int descriptor = descriptor_.exchange(-1); descriptor >= 0) close(descriptor);
+  }
+
+ private:
+  std::string path_;
+  std::atomic<int> descriptor_ = -1;
+};
 
 bool is_being_written(const TemporaryFolder& folder) {
   return std::ranges::any_of(folder.names(), [](const std::string& name) { return name.ends_with(".part"); });
@@ -39,6 +75,26 @@ TEST(Interruption, EndsTheWritingOfOneLargeFrameAndKeepsTheOldFile) {
     EXPECT_THAT(folder.names(), ElementsAre("boxes.npy", "out.csv")) << arguments[0];
     EXPECT_EQ(text_of(output), "old\n") << arguments[0];
   }
+}
+
+TEST(Interruption, DoesNotWaitForTheEndOfAFrame) {
+  const TemporaryFolder folder;
+  UnreadPipe pipe(folder.file("pipe"));
+  Process process({"scene", "uniform", "-n", "100k", "--to", "csv", "-o", pipe.path()});
+  for (int i = 0; i < 60'000 && !pipe.is_full(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  process.signal(SIGINT);
+  // A program that waits for the end of its write is let go, with another status.
+  std::atomic<bool> has_ended = false;
+  std::thread watch([&] {
+    for (int i = 0; i < 500 && !has_ended; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    pipe.shut();
+  });
+  const Ended ended = process.wait();
+  has_ended = true;
+  watch.join();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_EQ(ended.errors, "broadside: interrupted\n");
 }
 
 TEST(ClosedPipe, EndsTheProgramWithoutAMessage) {
