@@ -39,7 +39,7 @@ void Participation::add(double milliseconds) {
 
 bool Participation::goes_on(const Effort& effort) const noexcept {
   if (has_ended_ || rounds_ >= effort.most_rounds) return false;
-  if (is_slow_) return rounds_ < effort.slow_rounds;
+  if (limit_) return rounds_ < *limit_;
   return rounds_ < effort.least_rounds || spent_ms_ < effort.share_seconds * 1e3;
 }
 

@@ -69,8 +69,8 @@ class Participation {
   /// Adds a round that took so long.
   void add(double milliseconds);
 
-  /// Its rounds take too long for more than a few.
-  void set_slow() noexcept { is_slow_ = true; }
+  /// Takes part in at most so many rounds, however short they are.
+  void limit(std::size_t rounds) noexcept { limit_ = rounds; }
 
   /// It failed.
   void end() noexcept { has_ended_ = true; }
@@ -81,24 +81,25 @@ class Participation {
  private:
   std::size_t rounds_ = 0;
   double spent_ms_ = 0;
-  bool is_slow_ = false;
+  std::optional<std::size_t> limit_{};
   bool has_ended_ = false;
 };
 
-/// Lets those entries take part in few rounds that took too long to warm up: longer than `slow_seconds`, or
-/// than effort.slow_ratio times the fastest other library. Readers need the ratio of what is close, and the
-/// rounds are for that. An Entry has `measurement`, `warm_up_ms` and `participation`.
+/// Limits the rounds of the entries that took long to warm up: longer than `slow_seconds`, or than
+/// effort.far_ratio times the fastest other library. Readers need the ratio of what is close, and the rounds
+/// are for that. An Entry has `measurement`, `warm_up_ms` and `participation`.
 template <typename Entry>
-void leave_slow_ones_behind(std::vector<Entry>& entries, const Effort& effort, double slow_seconds) {
+void limit_rounds(std::vector<Entry>& entries, const Effort& effort, double slow_seconds) {
   double fastest_peer_ms = std::numeric_limits<double>::infinity();
   for (const Entry& entry : entries) {
     if (entry.measurement->kind == AlgorithmKind::peer && entry.measurement->outcome == Outcome::verified)
       fastest_peer_ms = std::min(fastest_peer_ms, entry.warm_up_ms);
   }
   for (Entry& entry : entries) {
-    const bool is_far =
-        entry.warm_up_ms > slow_from_seconds * 1e3 && entry.warm_up_ms > effort.slow_ratio * fastest_peer_ms;
-    if (is_far || entry.warm_up_ms > slow_seconds * 1e3) entry.participation.set_slow();
+    if (entry.warm_up_ms > std::max(far_from_seconds * 1e3, effort.far_ratio * fastest_peer_ms))
+      entry.participation.limit(effort.far_rounds);
+    else if (entry.warm_up_ms > slow_seconds * 1e3)
+      entry.participation.limit(effort.slow_rounds);
   }
 }
 

@@ -66,7 +66,7 @@ class FindCase {
         entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
     for (Entry<D, Real>& entry : entries_) warm_up(entry);
-    leave_slow_ones_behind<Entry<D, Real>>(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
+    limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory

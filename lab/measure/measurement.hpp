@@ -98,15 +98,16 @@ struct Effort {
   std::size_t least_rounds = 8;       ///< ... and in at least so many rounds ...
   std::size_t most_rounds = 100;      ///< ... and at most so many ...
   double slow_seconds = 0.1;          ///< ... but if one search takes longer than this,
-  double slow_history_seconds = 0.5;  ///< or one history longer than this,
-  double slow_ratio = 1.5;      ///< or either longer than this many times the fastest other library's (and
-                                ///< than slow_from_seconds),
-  std::size_t slow_rounds = 1;  ///< it takes part in the first few only
+  double slow_history_seconds = 0.8;  ///< or one history longer than this,
+  std::size_t slow_rounds = 5;        ///< in the first so many only,
+  double far_ratio = 1.5;             ///< and if either takes longer than this many times the fastest other
+                                      ///< library's (and than far_from_seconds),
+  std::size_t far_rounds = 1;         ///< in the first so many only
   double case_seconds = std::numeric_limits<double>::infinity();  ///< for all algorithms and checks together:
                                                                   ///< once over, no round follows the second
 };
 
-/// Below this nothing is slow: rounds cost next to nothing.
-inline constexpr double slow_from_seconds = 0.002;
+/// Up to this nothing is too far behind: rounds cost next to nothing.
+inline constexpr double far_from_seconds = 0.002;
 
 }  // namespace broadside::lab

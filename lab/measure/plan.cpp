@@ -105,7 +105,7 @@ Effort long_effort() {
           .most_rounds = 400,
           .slow_seconds = 5,
           .slow_history_seconds = 5,
-          .slow_rounds = 2};
+          .slow_rounds = 5};
 }
 
 std::vector<CaseRequest> plan_of(const Wishes& wishes) {

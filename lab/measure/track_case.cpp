@@ -168,8 +168,7 @@ class TrackCase {
       entry.warm_up_ms = entry.pass_ms;
       entry.builds_ms.clear();
     }
-    leave_slow_ones_behind<Entry<D, Real>>(entries_, benchmark_.effort,
-                                           benchmark_.effort.slow_history_seconds);
+    limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_history_seconds);
   }
 
   /// Lets every entry that takes part in this round follow the same input; false where none does.

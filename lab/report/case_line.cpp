@@ -16,7 +16,7 @@ namespace {
 /// Lines are printed one by one, as cases end: their columns have widths of their own.
 std::string line(std::string_view name, std::string_view own, std::string_view chosen, std::string_view peer,
                  std::string_view lead, std::string_view verified) {
-  return fmt::format("{:<44}  {:<23}  {:<18}  {:<29}  {:<18}  {}\n", name, own, chosen, peer, lead, verified);
+  return fmt::format("{:<48}  {:<25}  {:<19}  {:<30}  {:<19}  {}\n", name, own, chosen, peer, lead, verified);
 }
 
 std::string name_and_time(const Measurement* measurement) {
