@@ -14,10 +14,10 @@
 #include "lab/advise/advise.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/measure/compare.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/measure/ranking.hpp"
 
 namespace broadside::bench {
 namespace {

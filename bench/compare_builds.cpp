@@ -93,9 +93,8 @@ void run(const std::vector<std::string>& programs, std::size_t rounds,
   }
   if (pairs.empty()) throw std::runtime_error("no algorithm was timed by both builds; expected at least one");
   const lab::MeanRatio mean = lab::geometric_mean(pairs);
-  fmt::print("{}geometric mean of {}: {:.3f}", columns.text(""), pairs.size(), mean.mean);
-  if (mean.interval) fmt::print(" ({:.3f} to {:.3f})", mean.interval->low, mean.interval->high);
-  fmt::print("\n");
+  fmt::print("{}geometric mean of {}: {:.3f} ({:.3f} to {:.3f})\n", columns.text(""), pairs.size(), mean.mean,
+             mean.interval.low, mean.interval.high);
 }
 
 }  // namespace

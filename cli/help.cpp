@@ -11,6 +11,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cli/message.hpp"
+
 namespace broadside::cli {
 namespace {
 
@@ -111,7 +113,7 @@ std::string HelpFormatter::entry(const std::string& name, const std::string& tex
 void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
   std::string footer = "Examples:";
   for (const Example& example : examples)
-    footer += fmt::format("\n  broadside {}\n      {}", example.command, example.what);
+    footer += fmt::format("\n  {} {}\n      {}", program_name(), example.command, example.what);
   // What the program says of all its verbs comes last.
   verb.footer(footer + "\n\n" + verb.get_footer());
 }

@@ -130,13 +130,16 @@ class Join {
     const std::string_view precision = name(lab::precision(sets_[0].boxes));
     const auto imported =
         std::ranges::find_if(sets_, [](const lab::FrameOfFile& set) { return !set.importer.empty(); });
-    if (imported == sets_.end() && rounding_.rounded == 0) return fmt::format("exact in {}", precision);
+    const bool is_computed = std::ranges::any_of(sets_, &lab::FrameOfFile::is_computed);
+    if (imported == sets_.end() && rounding_.rounded == 0 && !is_computed)
+      return fmt::format("exact in {}", precision);
     std::string text = fmt::format("in {}", precision);
     if (rounding_.rounded > 0)
       text += fmt::format(", to which {} of {} were rounded", lab::grouped(rounding_.rounded),
                           lab::counted(rounding_.coordinates, "coordinate", "coordinates"));
     if (imported != sets_.end())
       text += fmt::format(", of coordinates that {} reads as floats", imported->importer);
+    if (is_computed) text += ", of bounds computed from centres or sizes";
     return text;
   }
 

@@ -7,6 +7,8 @@
 
 #include "broadside/suggestion.hpp"
 
+#include "cli/message.hpp"
+
 namespace broadside::cli {
 namespace {
 
@@ -19,7 +21,7 @@ const CLI::App& called(const CLI::App& program) {
 std::string help_of(const CLI::App& program) {
   const CLI::App& verb = called(program);
   const std::string name = &verb == &program ? "" : verb.get_name() + " ";
-  return fmt::format("`broadside {}--help` tells more", name);
+  return fmt::format("`{} {}--help` tells more", program_name(), name);
 }
 
 std::vector<std::string> names_of_options(const CLI::App& verb) {

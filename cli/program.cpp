@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "broadside/version.hpp"
 
@@ -48,7 +49,8 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
       {"draw", broadside::cli::add_draw(program, catalogue)},
       {"list", broadside::cli::add_list(program, catalogue)},
   };
-  program.add_subcommand("help", "Shows this help, or a verb's: broadside help pairs.");
+  program.add_subcommand(
+      "help", fmt::format("Shows this help, or a verb's: {} help pairs.", broadside::cli::program_name()));
   for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
   broadside::cli::check_verb(arguments, program);
   try {

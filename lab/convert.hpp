@@ -20,7 +20,7 @@ struct Converted {
   Rounding rounding{};                  ///< of all boxes written as floats, in all frames
   std::vector<std::string> left_out{};  ///< the names of a table's columns that were not written
   std::string warning{};                ///< what had to be left out of a damaged input; empty otherwise
-  std::string importer{};               ///< the library that may have rounded its numbers to float; empty if none did
+  std::string importer{};  ///< the library that may have rounded its numbers to float; empty if none did
 };
 
 /// Writes what is left of `from` to `path`, as write_frames does: in the precision asked for, or that of

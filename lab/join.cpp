@@ -28,8 +28,9 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
     throw FileError(fmt::format("{}: --frame is {}; expected 0{}, as the file has {}", name, frame,
                                 at == 0 ? "" : fmt::format(" to {}", at),
                                 counted(at + 1, "frame", "frames")));
-  return {std::move(name),  std::move(boxes), has_more || frame > 0,
-          frames.labels(), frames.warning(), std::string(frames.importer())};
+  return {std::move(name),     std::move(boxes), has_more || frame > 0,
+          frames.labels(),     frames.warning(), std::string(frames.importer()),
+          frames.is_computed()};
 }
 
 template <typename Real, int D, typename OldReal>

@@ -31,7 +31,8 @@ struct FrameOfFile {
   bool is_moving = false;                     ///< whether the file has other frames
   std::shared_ptr<const BoxLabels> labels{};  ///< null where the file has none
   std::string warning{};                      ///< what had to be left out of a damaged file; empty otherwise
-  std::string importer{};  ///< the library that may have rounded its numbers to float; empty if none did
+  std::string importer{};    ///< the library that may have rounded its numbers to float; empty if none did
+  bool is_computed = false;  ///< whether bounds were computed from a centre and a size
 };
 
 /// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,

@@ -36,7 +36,7 @@ class FirstAxisSweep final : public broadside::PairFinder<D> {
     this->count(done);
   }
 
-  const bool touching_counts_;
+  bool touching_counts_;
   std::vector<std::uint32_t> order_;  // kept between calls for its memory
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -176,6 +177,7 @@ class Adviser {
             .slow_seconds = budget / 20,
             .slow_history_seconds = budget / 20,
             .slow_rounds = 1,
+            .far_ratio = std::numeric_limits<double>::infinity(),
             .case_seconds = 0.4 * budget};
   }
 
@@ -188,7 +190,8 @@ class Adviser {
             .most_rounds = 400,
             .slow_seconds = budget / 8,
             .slow_history_seconds = budget / 8,
-            .slow_rounds = 1,
+            .slow_rounds = 3,
+            .far_ratio = std::numeric_limits<double>::infinity(),
             .case_seconds = std::max(budget - watch_.milliseconds() / 1e3, 0.0)};
   }
 

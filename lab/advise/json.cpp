@@ -8,8 +8,8 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/advise/advise.hpp"
-#include "lab/measure/ranking.hpp"
 #include "lab/measure/processor_share.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/report/machine_json.hpp"
 

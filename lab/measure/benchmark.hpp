@@ -1,14 +1,16 @@
 // What measuring a search and measuring a history have in common: which algorithms take part, in which
-// rounds, and who follows it.
+// rounds, and what is called on the way.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +22,7 @@
 #include "lab/measure/allocation.hpp"
 #include "lab/measure/estimate.hpp"
 #include "lab/measure/measurement.hpp"
+#include "lab/measure/paired_ratio.hpp"
 
 namespace broadside::lab {
 
@@ -32,7 +35,7 @@ class Stopped : public std::exception {
 /// Who follows a comparison while it runs. Both are called between samples, in the caller's thread.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
-  std::function<void(std::string_view what)> progress{};  ///< what is going on; empty: nobody asks
+  std::function<void(std::string_view what)> progress{};  ///< what is going on; empty: nothing is called
 
   /// Reports and asks. Throws Stopped.
   void at(std::string_view what) const;
@@ -85,20 +88,29 @@ class Participation {
   bool has_ended_ = false;
 };
 
-/// Limits the rounds of the entries that took long to warm up: longer than `slow_seconds`, or than
-/// effort.far_ratio times the fastest other library. Readers need the ratio of what is close, and the rounds
-/// are for that. An Entry has `measurement`, `warm_up_ms` and `participation`.
+/// After the first round: limits the rounds of the entries whose round took longer than `slow_seconds`, or
+/// than effort.far_ratio times the fastest other library's and our fastest. Readers need the ratio of what is
+/// close, and the rounds are for that. An Entry has `measurement` and `participation`.
 template <typename Entry>
 void limit_rounds(std::vector<Entry>& entries, const Effort& effort, double slow_seconds) {
-  double fastest_peer_ms = std::numeric_limits<double>::infinity();
-  for (const Entry& entry : entries) {
-    if (entry.measurement->kind == AlgorithmKind::peer && entry.measurement->outcome == Outcome::verified)
-      fastest_peer_ms = std::min(fastest_peer_ms, entry.warm_up_ms);
-  }
+  const auto fastest_of_kind = [&](AlgorithmKind kind) {
+    double fastest = std::numeric_limits<double>::infinity();
+    for (const Entry& entry : entries) {
+      if (entry.measurement->kind == kind && !entry.measurement->samples_ms.empty())
+        fastest = std::min(fastest, round_times(*entry.measurement)[0]);
+    }
+    return fastest;
+  };
+  // Where there are no peers nothing is far behind them.
+  double close = std::max(far_from_seconds * 1e3, effort.far_ratio * fastest_of_kind(AlgorithmKind::peer));
+  if (const double own = fastest_of_kind(AlgorithmKind::own); std::isfinite(own))
+    close = std::max(close, effort.far_ratio * own);
   for (Entry& entry : entries) {
-    if (entry.warm_up_ms > std::max(far_from_seconds * 1e3, effort.far_ratio * fastest_peer_ms))
+    if (entry.measurement->samples_ms.empty()) continue;
+    const std::vector<double>& samples = entry.measurement->samples_ms;
+    if (round_times(*entry.measurement)[0] > close)
       entry.participation.limit(effort.far_rounds);
-    else if (entry.warm_up_ms > slow_seconds * 1e3)
+    else if (std::accumulate(samples.begin(), samples.end(), 0.0) > slow_seconds * 1e3)
       entry.participation.limit(effort.slow_rounds);
   }
 }

@@ -14,7 +14,7 @@
 
 namespace broadside::lab {
 
-/// What to compare, and who follows it.
+/// What to compare, and what is called on the way.
 struct CompareOptions {
   std::string algorithms = "all";          ///< as Catalogue::select reads it
   std::vector<std::size_t> threads = {1};  ///< that algorithms search with, as with_threads() takes them
@@ -23,7 +23,7 @@ struct CompareOptions {
   FindScene find = [](std::string_view text) { return find_scene(text); };
   Effort effort{};
   Watch watch{};
-  std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nobody asks
+  std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nothing is called
 };
 
 /// A case that could not be made.

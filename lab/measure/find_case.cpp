@@ -44,7 +44,6 @@ struct Entry {
   Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
-  double warm_up_ms = 0;
   Participation participation{};
 };
 
@@ -66,7 +65,6 @@ class FindCase {
         entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
     }
     for (Entry<D, Real>& entry : entries_) warm_up(entry);
-    limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
@@ -104,10 +102,11 @@ class FindCase {
     return measurement.reason.empty();
   }
 
-  /// Makes room for so many pairs and writes to it, so that nobody pays for the system's handing out of
-  /// pages.
+  /// Makes room for so many pairs and writes to it, so that no timed call pays for pages.
   void touch(std::size_t pairs) {
-    if (pairs > pairs_.capacity()) pairs_.resize(pairs + pairs / 8);
+    if (pairs <= touched_) return;
+    touched_ = pairs + pairs / 8;
+    pairs_.resize(touched_);
   }
 
   /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
@@ -119,7 +118,7 @@ class FindCase {
     settle(entry, fault_of(measurement, [&] {
              const AllocationMeter meter;
              entry.finder = make_finder<D, Real>(*entry.contender->algorithm, entry.contender->spec);
-             entry.warm_up_ms = call(*entry.finder, boxes_of(0));
+             call(*entry.finder, boxes_of(0));
              count_memory(measurement, *entry.contender->algorithm, meter.read());
              measurement.pairs = pairs_.size();
              measurement.pair_hash = hash_of(pairs_);
@@ -150,6 +149,7 @@ class FindCase {
         floor_ms_.push_back(call_floor(input));
       }
     }
+    if (round == 0) limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
   }
 
   void sample(Entry<D, Real>& entry, std::size_t input, std::size_t round) {
@@ -232,6 +232,7 @@ class FindCase {
   std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
+  std::size_t touched_ = 0;  // how many pairs of that memory were written to
   CacheState caches_;
   Stopwatch watch_;
   std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;

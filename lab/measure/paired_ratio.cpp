@@ -106,20 +106,18 @@ void add_ratios(CaseResult& result) {
 MeanRatio geometric_mean(std::span<const RatiosBySeed> pairs) {
   std::vector<double> medians;
   std::vector<double> sums(replicate_count, 0);
-  bool has_interval = true;
   for (const RatiosBySeed& pair : pairs) {
     medians.push_back(pair.median());
-    has_interval = has_interval && pair.rounds() >= least_rounds_of_interval;
-    if (!has_interval) continue;
+    if (pair.rounds() < least_rounds_of_interval) {
+      for (double& sum : sums) sum += std::log(medians.back());
+      continue;
+    }
     // Each pair draws numbers of its own: what they have in common would not average out.
     const std::vector<double> replicates = pair.replicates(replicate_count, medians.size());
     for (std::size_t i = 0; i < replicate_count; ++i) sums[i] += std::log(replicates[i]);
   }
-  MeanRatio result{geometric_mean(medians), std::nullopt};
-  if (!has_interval) return result;
-  for (double& sum : sums) sum = std::exp(sum / static_cast<double>(pairs.size()));
-  result.interval = middle_of(sums);
-  return result;
+  for (double& sum : sums) sum = std::exp(sum / static_cast<double>(std::max<std::size_t>(pairs.size(), 1)));
+  return {geometric_mean(medians), middle_of(sums)};
 }
 
 }  // namespace broadside::lab

@@ -50,10 +50,11 @@ PairedRatio paired_ratio(const Case& measured, const Measurement& entry, const M
 /// Fills in each measurement's ratios.
 void add_ratios(CaseResult& result);
 
-/// The geometric mean of several pairs' ratios with its interval, where each has one.
+/// The geometric mean of several pairs' ratios, and where it would lie if all were measured again. A ratio of
+/// too few rounds for an interval counts as if it were exact.
 struct MeanRatio {
   double mean;
-  std::optional<Interval> interval;
+  Interval interval;
 };
 
 /// Throws std::invalid_argument if there is none.

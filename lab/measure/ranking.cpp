@@ -1,6 +1,7 @@
 // Which measurements of a case are how fast.
 #include "lab/measure/ranking.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,13 +13,18 @@
 namespace broadside::lab {
 namespace {
 
-/// The fastest of those that `eligible` lets through.
+RatiosBySeed paired(const Measurement& entry, const Measurement& other, const CaseResult& result) {
+  return {round_times(entry), round_times(other), std::max<std::size_t>(result.of.seeds.size(), 1)};
+}
+
+/// The fastest of those that `eligible` lets through: of two, the one that is faster in the rounds that both
+/// took part in, as ratios have it.
 template <typename Eligible>
 const Measurement* fastest_among(const CaseResult& result, const Eligible& eligible) {
   const Measurement* fastest = nullptr;
   for (const Measurement& measurement : result.measurements) {
     if (!is_timed(measurement) || !eligible(measurement)) continue;
-    if (fastest == nullptr || time_of(measurement) < time_of(*fastest)) fastest = &measurement;
+    if (fastest == nullptr || paired(measurement, *fastest, result).median() < 1) fastest = &measurement;
   }
   return fastest;
 }

@@ -38,7 +38,6 @@ struct Entry {
   std::uint64_t references = 0;
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
-  double warm_up_ms = 0;
   Participation participation{};
   bool plays = false;  // in the pass that is going on
 };
@@ -165,10 +164,8 @@ class TrackCase {
       measurement.pairs = static_cast<std::uint64_t>(entry.pairs);
       measurement.pair_hash = entry.hasher.hash();
       measurement.explanation = entry.tracker->explanation();
-      entry.warm_up_ms = entry.pass_ms;
       entry.builds_ms.clear();
     }
-    limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_history_seconds);
   }
 
   /// Lets every entry that takes part in this round follow the same input; false where none does.
@@ -184,6 +181,7 @@ class TrackCase {
       measurement.build_ms = median(entry.builds_ms);
       entry.participation.add(entry.pass_ms);
     }
+    if (round == 0) limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_history_seconds);
     return true;
   }
 
@@ -222,8 +220,7 @@ class TrackCase {
   std::string take(Entry<D, Real>& entry, const Frame<D, Real>& now, std::size_t frame, bool counts_memory) {
     const ExpectedEvents& expected = *entry.expected;
     if (!expected.fault.empty()) return expected.fault;
-    touch(events_.begun, expected.frames[frame].begun.size());
-    touch(events_.ended, expected.frames[frame].ended.size());
+    touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
     const auto make_and_update = [&] {
       if (!entry.tracker)
         entry.tracker = make_tracker<D, Real>(*entry.contender->algorithm, entry.contender->spec);
@@ -237,9 +234,12 @@ class TrackCase {
                                now.boxes);
   }
 
-  /// Makes room for so many events and writes to it, so that no entry pays for pages.
-  static void touch(std::vector<Pair>& events, std::size_t count) {
-    if (count > events.capacity()) events.resize(count + count / 8);
+  /// Makes room for so many events in both lists and writes to it, so that no timed update pays for pages.
+  void touch(std::size_t count) {
+    if (count <= touched_) return;
+    touched_ = count + count / 8;
+    events_.begun.resize(touched_);
+    events_.ended.resize(touched_);
   }
 
   /// Runs one frame and adds the memory it takes to the entry's.
@@ -287,7 +287,8 @@ class TrackCase {
   Extremes extremes_;
   std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
-  Events events_;  // of the last update; its memory serves all
+  Events events_;            // of the last update; its memory serves all
+  std::size_t touched_ = 0;  // how many events of that memory were written to
   CacheState caches_;
   Stopwatch watch_;
 };

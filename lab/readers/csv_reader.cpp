@@ -47,6 +47,8 @@ class PlainCsv final : public FrameReader<D, Real> {
 
   std::shared_ptr<const BoxLabels> labels() const override { return rows_.labels(); }
 
+  bool is_computed() const override { return rows_.is_computed(); }
+
  private:
   CsvRows<D, Real> rows_;
 };
@@ -79,6 +81,8 @@ class FramedCsv final : public FrameReader<D, Real> {
 
   std::shared_ptr<const BoxLabels> labels() const override { return rows_.labels(); }
 
+  bool is_computed() const override { return rows_.is_computed(); }
+
  private:
   enum class Row { empty, change, of_next_frame };
 
@@ -89,8 +93,10 @@ class FramedCsv final : public FrameReader<D, Real> {
         if (!rows_.next()) return false;
         if (!rows_.read()) continue;
       }
-      Row row = Row::empty;
-      if (!rows_.holds([&] { row = check_row(place); }) || row == Row::empty) continue;
+      // What frame and box a row is of must be right even where invalid boxes are skipped: others are
+      // numbered by it.
+      const Row row = check_row(place);
+      if (row == Row::empty) continue;
       if (row == Row::of_next_frame) {
         has_row_ = true;
         return false;

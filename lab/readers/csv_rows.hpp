@@ -54,6 +54,9 @@ class CsvRows {
 
   const CsvLines& lines() const noexcept { return table_.lines; }
 
+  /// Whether bounds are computed from other numbers.
+  bool is_computed() const noexcept { return is_computed_; }
+
   std::shared_ptr<const BoxLabels> labels() const { return table_.labels; }
 
   std::string warning() const { return table_.quarantine.warning(table_.input->name()); }
@@ -121,7 +124,8 @@ class CsvRows {
     }
     if (is_absent(box)) return box;
     if (!is_present(box)) refuse_inverted(box);
-    if (table_.needs_ids && id_.empty() && track_.empty()) refuse(CsvColumns::id, "an id");
+    if (table_.needs_ids && id_.empty() && (has_id_column() || track_.empty()))
+      refuse(CsvColumns::id, "an id");
     return box;
   }
 
@@ -207,7 +211,7 @@ class CsvRows {
   }
 
   /// Whether `value` is what `text` says, if that is a whole number without exponent: so are identifiers and
-  /// fixed-point coordinates written, in which nobody expects digits to be lost.
+  /// fixed-point coordinates written, which must not lose digits.
   bool is_held(std::string_view text, double value) const {
     constexpr double exact = 9007199254740992;  // 2^53: up to there every whole number is held
     if ((value < exact && value > -exact) || (std::is_same_v<Real, float> && !is_computed_)) return true;

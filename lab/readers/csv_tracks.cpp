@@ -51,6 +51,8 @@ class TracksCsv final : public FrameReader<D, Real> {
 
   std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
 
+  bool is_computed() const override { return rows_.is_computed(); }
+
  private:
   static constexpr std::uint32_t no_track = UINT32_MAX;
 
@@ -75,7 +77,11 @@ class TracksCsv final : public FrameReader<D, Real> {
             names_.push_back(rows_.track());
             ids_.emplace_back();
           }
-          if (!rows_.id().empty()) ids_[listed.track] = rows_.id();
+          std::string& id = ids_[listed.track];
+          if (!id.empty() && id != rows_.id())
+            rows_.refuse(CsvColumns::id,
+                         fmt::format("{}, as {} has elsewhere", shown(id), shown(rows_.track())));
+          id = rows_.id();
         }
         listed_.push_back(listed);
       });

@@ -26,11 +26,11 @@ class FileError : public std::runtime_error {
 
 /// How a file is to be read; what is left empty, the file and its format decide.
 struct ReadOptions {
-  std::string format{};    ///< the name of a format; empty: told by the file's content and name
-  std::string boxes{};     ///< of what the boxes are to be, one of the format's Format::parts
-  std::string columns{};   ///< the names of a table's columns, from left to right, with commas between
-  std::string layer{};     ///< of a map with several layers, the one to read (empty: all), or an array of .npz
-  std::string ids{};       ///< a table's column or a map's property of ids, as --ids; empty: not read
+  std::string format{};   ///< the name of a format; empty: told by the file's content and name
+  std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
+  std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
+  std::string layer{};    ///< of a map with several layers, the one to read (empty: all), or an array of .npz
+  std::string ids{};      ///< a table's column or a map's property of ids, as --ids; empty: not read
   bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
   int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};

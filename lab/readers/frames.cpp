@@ -38,12 +38,14 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   }
 
   std::string warning() const override {
-    const std::string warning = frames_->warning();
+    std::string warning = frames_->warning();
     if (rounding_.rounded == 0) return warning;
     return fmt::format("{}{}{}: {}", warning, warning.empty() ? "" : "\n", name_, rounding_.text());
   }
 
   std::string_view importer() const override { return frames_->importer(); }
+
+  bool is_computed() const override { return frames_->is_computed(); }
 
   std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 

@@ -87,6 +87,10 @@ class FrameReader {
   /// The library that read the file, where it may have rounded the file's numbers to float: pairs of these
   /// boxes are not exact. Empty otherwise.
   virtual std::string_view importer() const { return {}; }
+
+  /// Whether bounds are computed, in double, from a centre and a size: pairs of these boxes are not exact
+  /// either.
+  virtual bool is_computed() const { return false; }
 };
 
 /// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.

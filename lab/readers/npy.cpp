@@ -40,6 +40,12 @@ class NpyFrame final : public FrameReader<D, Real> {
 
   bool next(Step<D, Real>&) override { return false; }
 
+  bool is_computed() const override {
+    return std::ranges::any_of(layout_.forms, [](BoundsForm form) {
+      return form != BoundsForm::min_max && form != BoundsForm::point;
+    });
+  }
+
  private:
   double number(std::size_t row, const NpyColumn& column) const {
     const char* const bytes = input_->bytes().data() + begin_ + row * layout_.row_step + column.offset;

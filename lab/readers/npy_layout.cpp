@@ -20,7 +20,7 @@ constexpr std::string_view known_types =
 void check_size(std::uint64_t rows, std::size_t columns, std::size_t row_bytes, std::size_t bytes,
                 const std::string& name) {
   // Compared as numbers of rows: in bytes, the claim may be more than 64 bits can say.
-  if (bytes % row_bytes == 0 && bytes / row_bytes == rows) return;
+  if (row_bytes > 0 && bytes % row_bytes == 0 && bytes / row_bytes == rows) return;
   throw FileError(
       fmt::format("{}: has {} bytes behind its header and claims {} rows of {}; expected {} bytes a row",
                   name, bytes, rows, columns, row_bytes));
@@ -104,7 +104,8 @@ NpyLayout layout_of_fields(const NpyHeader& header, std::size_t bytes, const std
   CsvColumns columns;
   const std::string problem =
       resolve(std::vector<std::string_view>(named.names.begin(), named.names.end()), columns);
-  if (columns.has_frames || columns.has_tracks) refuse("several frames", "one; as CSV or as a trace, boxes can move");
+  if (columns.has_frames || columns.has_tracks)
+    refuse("several frames", "one; as CSV or as a trace, boxes can move");
   if (columns.has_geometry) refuse("a geometry as text", "bounds in numbers");
   if (!problem.empty()) refuse(problem, "names such as min_x, min_y, max_x and max_y");
   check_size(header.shape[0], named.names.size(), named.row_bytes, bytes, name);

@@ -21,9 +21,7 @@ namespace {
 
 /// "1.04 (1.03 to 1.05)": of many cases, a third digit means something.
 std::string mean_text(const MeanRatio& ratio) {
-  const std::string mean = fmt::format("{:.3g}", ratio.mean);
-  if (!ratio.interval) return mean;
-  return fmt::format("{} ({:.3g} to {:.3g})", mean, ratio.interval->low, ratio.interval->high);
+  return fmt::format("{:.3g} ({:.3g} to {:.3g})", ratio.mean, ratio.interval.low, ratio.interval.high);
 }
 
 /// The ratios of two entries over all cases that have both.

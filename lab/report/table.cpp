@@ -36,7 +36,7 @@ std::vector<const Measurement*> in_order(const CaseResult& result) {
   for (const Measurement& measurement : result.measurements) order.push_back(&measurement);
   std::ranges::stable_sort(order, {}, [](const Measurement* measurement) {
     return std::tuple(!is_timed(*measurement), measurement->outcome == Outcome::skipped,
-                      time_of(*measurement));
+                      measurement->to_fastest ? measurement->to_fastest->median : time_of(*measurement));
   });
   return order;
 }

@@ -35,11 +35,10 @@ std::vector<std::string> with(std::vector<std::string> arguments, const std::vec
 TEST(CompareVerb, PrintsALineForEachCaseAndASummary) {
   const Ended ended = run(small);
   EXPECT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output,
-              AllOf(testing::StartsWith("case "), HasSubstr("\nuniform, 2D, 200 boxes  "),
-                    HasSubstr("\nlattice, 3D, 300 boxes  "), HasSubstr("  the definition\n"),
-                    HasSubstr("All 8 cases"), HasSubstr("measurements, all verified\n"),
-                    HasSubstr("\ndetails: --details prints each case's table; ")));
+  EXPECT_THAT(ended.output, AllOf(testing::StartsWith("case "), HasSubstr("\nuniform, 2D, 200 boxes  "),
+                                  HasSubstr("\nlattice, 3D, 300 boxes  "), HasSubstr("  the definition\n"),
+                                  HasSubstr("All 8 cases"), HasSubstr("measurements, all verified\n"),
+                                  HasSubstr("\ndetails: --details prints each case's table; ")));
   EXPECT_THAT(ended.output, Not(HasSubstr("ns a box")));
 }
 

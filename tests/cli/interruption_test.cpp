@@ -116,11 +116,13 @@ TEST(ClosedPipe, EndsEveryVerbThatPrints) {
   const TemporaryFolder folder;
   const std::string status = folder.file("status");
   const std::string boxes = folder.put("boxes.csv", "0,0,1,1\n1,1,2,2\n");
-  // `true` has gone before anything is written.
+  const std::string gone = folder.file("gone");
+  // The reader has closed the pipe before anything is written.
   for (const std::string& arguments : {std::string("list"), std::string("--help"), "info " + boxes,
                                        "pairs --count " + boxes, "verify " + boxes}) {
     const Ended ended =
-        shell("{ sleep 0.2; $BROADSIDE " + arguments + "; echo $? > " + status + "; } | true");
+        shell("rm -f " + gone + "; { while [ ! -e " + gone + " ]; do sleep 0.01; done; $BROADSIDE " +
+              arguments + "; echo $? > " + status + "; } | { exec <&-; touch " + gone + "; }");
     EXPECT_EQ(text_of(status), "141\n") << arguments;
     EXPECT_EQ(ended.errors, "") << arguments;
   }

@@ -47,7 +47,8 @@ TEST(VerifyVerb, EndsWithStatusOneWhereNothingIsVerified) {
   EXPECT_THAT(ended.output, AllOf(HasSubstr("1 frame\n"), HasSubstr("nothing was verified")));
   const Ended compared = run({"compare", "--scenes", file, "--dimension", "3", "--algorithms", "paper_grid"});
   EXPECT_EQ(compared.status, 1);
-  EXPECT_THAT(compared.output, HasSubstr("nothing was verified\nleft out: 1 measurement (1 'does not do 3D')\n"));
+  EXPECT_THAT(compared.output,
+              HasSubstr("nothing was verified\nleft out: 1 measurement (1 'does not do 3D')\n"));
 }
 
 TEST(VerifyVerb, SaysWhatItDidNotRead) {

@@ -102,8 +102,8 @@ TEST(GeometricMean, AveragesNoiseOutOverCases) {
   const MeanRatio mean = geometric_mean(pairs);
   const Interval one = pairs[0].interval().value();
   EXPECT_NEAR(mean.mean, 2, 0.1);
-  EXPECT_LT(mean.interval->high - mean.interval->low, (one.high - one.low) / 2);
-  EXPECT_TRUE(mean.interval->includes(2));
+  EXPECT_LT(mean.interval.high - mean.interval.low, (one.high - one.low) / 2);
+  EXPECT_TRUE(mean.interval.includes(2));
 }
 
 TEST(AddRatios, ComparesWithTheFastestOurBestAndTheFastestPeer) {

@@ -100,8 +100,9 @@ TEST(Settings, TakeAutoOnlyWhereItIsTheStandard) {
 }
 
 TEST(Settings, RefuseAnUnknownTunableAndNameTheKnownOnes) {
-  EXPECT_EQ(refusal_of("grid:cells=2"),
-            "grid: unknown tunable 'cells' (did you mean 'cell'?); expected one of: cell, capacity, axis, margin");
+  EXPECT_EQ(
+      refusal_of("grid:cells=2"),
+      "grid: unknown tunable 'cells' (did you mean 'cell'?); expected one of: cell, capacity, axis, margin");
   EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec::parse("a:b=1"), {}); }),
             "a: unknown tunable 'b'; expected none");
 }

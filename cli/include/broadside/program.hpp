@@ -14,8 +14,8 @@ namespace broadside {
 /// which is the default, belong to the group "own". A name that is taken is refused, as an unusable argument
 /// is. Messages begin with the file name in values[0].
 ///
-/// Call it once, as all that main() does: it handles SIGINT, SIGTERM and SIGHUP, and ignores SIGPIPE and
-/// SIGXFSZ. Throws nothing: whatever goes wrong is said on stderr.
+/// Call it once, as all that main() does: it handles SIGINT, SIGTERM, SIGHUP and SIGPIPE, which end the
+/// process, and ignores SIGXFSZ. Throws nothing: whatever goes wrong is said on stderr.
 int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms = {});
 
 }  // namespace broadside
