@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "broadside/cpp_version.hpp"
+
 namespace broadside {
 
 /// " (did you mean 'grid'?)" for the one of `known` that is closest to `found`: at most two letters are
