@@ -63,11 +63,11 @@ std::string digits(const char* bytes) {
 }
 
 template <typename Number>
-NpyType type_of(bool IsSwapped) {
+NpyType type_of(bool is_swapped) {
   return {.bytes = sizeof(Number),
           .is_held_by_float = std::is_same_v<Number, float> || std::is_same_v<Number, Half>,
-          .load = IsSwapped ? load<Number, true> : load<Number, false>,
-          .digits = IsSwapped ? digits<Number, true> : digits<Number, false>};
+          .load = is_swapped ? load<Number, true> : load<Number, false>,
+          .digits = is_swapped ? digits<Number, true> : digits<Number, false>};
 }
 
 }  // namespace
@@ -76,21 +76,21 @@ std::optional<NpyType> npy_type_of(std::string_view name) {
   const char order = name.empty() ? '\0' : name.front();
   if (name.size() < 3 || std::string_view("<>=|").find(order) == std::string_view::npos) return std::nullopt;
   name.remove_prefix(1);
-  const bool IsSwapped = order == (std::endian::native == std::endian::little ? '>' : '<');
+  const bool is_swapped = order == (std::endian::native == std::endian::little ? '>' : '<');
   // NumPy gives no order to a single byte, and only to that.
   if (order != '|') {
-    if (name == "f2") return type_of<Half>(IsSwapped);
-    if (name == "f4") return type_of<float>(IsSwapped);
-    if (name == "f8") return type_of<double>(IsSwapped);
-    if (name == "i2") return type_of<std::int16_t>(IsSwapped);
-    if (name == "i4") return type_of<std::int32_t>(IsSwapped);
-    if (name == "i8") return type_of<std::int64_t>(IsSwapped);
-    if (name == "u2") return type_of<std::uint16_t>(IsSwapped);
-    if (name == "u4") return type_of<std::uint32_t>(IsSwapped);
-    if (name == "u8") return type_of<std::uint64_t>(IsSwapped);
+    if (name == "f2") return type_of<Half>(is_swapped);
+    if (name == "f4") return type_of<float>(is_swapped);
+    if (name == "f8") return type_of<double>(is_swapped);
+    if (name == "i2") return type_of<std::int16_t>(is_swapped);
+    if (name == "i4") return type_of<std::int32_t>(is_swapped);
+    if (name == "i8") return type_of<std::int64_t>(is_swapped);
+    if (name == "u2") return type_of<std::uint16_t>(is_swapped);
+    if (name == "u4") return type_of<std::uint32_t>(is_swapped);
+    if (name == "u8") return type_of<std::uint64_t>(is_swapped);
   }
-  if (name == "i1") return type_of<std::int8_t>(IsSwapped);
-  if (name == "u1") return type_of<std::uint8_t>(IsSwapped);
+  if (name == "i1") return type_of<std::int8_t>(is_swapped);
+  if (name == "u1") return type_of<std::uint8_t>(is_swapped);
   // No numbers here, but of a known size: truth, complex numbers, times, bytes, text (of 4 bytes a
   // character).
   const char kind = name.front();
