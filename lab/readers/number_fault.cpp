@@ -74,6 +74,7 @@ NumberFault number_fault(std::string_view text) {
   if (text.empty()) return {"empty", {}};
   std::string_view digits = text;
   if (digits.front() == '+' || digits.front() == '-') digits.remove_prefix(1);
+  if (digits.empty()) return {"text", {}};
   const std::string word = lower(digits);
   if (word.starts_with("nan") || word == "na" || word == "n/a" || word == "null" || word == "none")
     return {word.starts_with("nan") ? "NaN" : "no value", {}};
