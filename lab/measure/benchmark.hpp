@@ -69,10 +69,10 @@ std::vector<std::size_t> turns(std::size_t entries, std::size_t round);
 /// two entries is on the same boxes.
 class Participation {
  public:
-  /// Adds a round that took so long.
+  /// Counts a round and the time it took.
   void add(double milliseconds);
 
-  /// Takes part in at most so many rounds, however short they are.
+  /// Sets the number of rounds, whatever time they take.
   void limit(std::size_t rounds) noexcept { limit_ = rounds; }
 
   /// It failed.

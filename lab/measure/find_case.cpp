@@ -102,7 +102,7 @@ class FindCase {
     return measurement.reason.empty();
   }
 
-  /// Makes room for so many pairs and writes to it, so that no timed call pays for pages.
+  /// Writes to the memory for `pairs` pairs, so that no timed call has page faults there.
   void touch(std::size_t pairs) {
     if (pairs <= touched_) return;
     touched_ = pairs + pairs / 8;

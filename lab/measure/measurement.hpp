@@ -90,24 +90,25 @@ struct CaseResult {
   std::vector<double> floor_ms{};  ///< of the floor (floor.hpp) in each round; none where it makes no sense
 };
 
-/// How much time an algorithm may take in a case.
+/// How much time an algorithm may take in a case. Each takes part in the first rounds of the case, without a
+/// gap.
 struct Effort {
   double budget_seconds = 0.25;       ///< for one search; a slower algorithm is skipped
-  double history_seconds = 0.6;       ///< likewise for a whole history, from its first frame to its last
-  double share_seconds = 0.1;         ///< an algorithm takes part in rounds until it was timed this long ...
-  std::size_t least_rounds = 8;       ///< ... and in at least so many rounds ...
-  std::size_t most_rounds = 100;      ///< ... and at most so many ...
-  double slow_seconds = 0.1;          ///< ... but if one search takes longer than this,
-  double slow_history_seconds = 0.8;  ///< or one history longer than this,
-  std::size_t slow_rounds = 5;        ///< in the first so many only,
-  double far_ratio = 1.5;             ///< and if either takes longer than this many times the fastest other
-                                      ///< library's (and than far_from_seconds),
-  std::size_t far_rounds = 1;         ///< in the first so many only
-  double case_seconds = std::numeric_limits<double>::infinity();  ///< for all algorithms and checks together:
-                                                                  ///< once over, no round follows the second
+  double history_seconds = 0.6;       ///< for a whole history, from its first frame to its last; likewise
+  double share_seconds = 0.1;         ///< timed calls of an algorithm end once they sum to this
+  std::size_t least_rounds = 8;       ///< even if that takes longer
+  std::size_t most_rounds = 100;      ///< even if that takes less time
+  double slow_seconds = 0.1;          ///< a search that takes longer has slow_rounds rounds
+  double slow_history_seconds = 0.8;  ///< a history that takes longer has slow_rounds rounds
+  std::size_t slow_rounds = 5;
+  double far_ratio = 1.5;  ///< an algorithm that takes this many times the time of both the fastest other
+                           ///< library and our fastest (and over far_from_seconds) has far_rounds rounds
+  std::size_t far_rounds = 1;
+  double case_seconds =
+      std::numeric_limits<double>::infinity();  ///< no round begins after this, but for the first two
 };
 
-/// Up to this nothing is too far behind: rounds cost next to nothing.
+/// A round that takes less costs next to nothing, so no algorithm is far behind.
 inline constexpr double far_from_seconds = 0.002;
 
 }  // namespace broadside::lab

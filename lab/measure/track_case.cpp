@@ -234,7 +234,7 @@ class TrackCase {
                                now.boxes);
   }
 
-  /// Makes room for so many events in both lists and writes to it, so that no timed update pays for pages.
+  /// Writes to the memory for `count` events of each kind, so that no timed update has page faults there.
   void touch(std::size_t count) {
     if (count <= touched_) return;
     touched_ = count + count / 8;

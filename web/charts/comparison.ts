@@ -1,4 +1,4 @@
-// A comparison's cases: who is how fast in each, and over all. The rules are those of lab/measure/ranking.cpp.
+// How algorithms rank in each case and over all cases, by the rules of lab/measure/ranking.cpp.
 import type { Measurement, Ratio } from "./data.ts";
 import { geometric_mean, grouped } from "./numbers.ts";
 
