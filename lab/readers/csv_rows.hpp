@@ -37,6 +37,9 @@ class CsvRows {
     do {
       if (!table_.lines.next()) return false;
     } while (is_blank(table_.lines.line()));
+    // Here, since no row to be skipped may hide that the rows after it are counted wrong.
+    if (has_open_quote(table_.lines.line(), table_.separator))
+      table_.lines.refuse("a quoted field that goes on in the next line", "each row on one line");
     return true;
   }
 
@@ -131,21 +134,13 @@ class CsvRows {
 
   /// Reads what the row has besides its box, as far as it has columns. Whether that is right.
   bool take_labels() {
-    const std::vector<int>& places = table_.columns.places;
-    const std::string_view line = table_.lines.line();
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    bool more = true;
-    filled_ = 0;
-    id_.clear();
-    track_.clear();
+    const auto take_label = [this](int place, const char*& at, const char* end, bool& more) {
+      const bool is_label =
+          place != CsvColumns::geometry && (place < CsvColumns::first || place >= CsvColumns::id);
+      take_field(is_label ? place : CsvColumns::ignored, at, end, more);
+    };
     try {
-      for (std::size_t column = 0; column < places.size() && more; ++column) {
-        const int place = places[column];
-        const bool is_label =
-            place != CsvColumns::geometry && (place < CsvColumns::first || place >= CsvColumns::id);
-        take_field(is_label ? place : CsvColumns::ignored, at, end, more);
-      }
+      take_columns(take_label);
     } catch (const FileError&) {
       return false;
     }
@@ -153,7 +148,18 @@ class CsvRows {
   }
 
   void take() {
-    const std::vector<int>& places = table_.columns.places;
+    const auto take_value = [this](int place, const char*& at, const char* end, bool& more) {
+      if (!is_value(place) || !take_number(at, end, more, values_[static_cast<std::size_t>(place)]))
+        take_field(place, at, end, more);
+      else
+        filled_ |= 1U << place;
+    };
+    if (!take_columns(take_value)) refuse_count();
+  }
+
+  /// Takes the line's fields by `take(place, at, end, more)`. Whether there are as many as columns.
+  template <typename Take>
+  bool take_columns(const Take& take) {
     const std::string_view line = table_.lines.line();
     const char* at = line.data();
     const char* const end = at + line.size();
@@ -161,15 +167,11 @@ class CsvRows {
     filled_ = 0;
     id_.clear();
     track_.clear();
-    for (std::size_t column = 0; column < places.size(); ++column) {
-      if (!more) refuse_count();
-      const int place = places[column];
-      if (!is_value(place) || !take_number(at, end, more, values_[static_cast<std::size_t>(place)]))
-        take_field(place, at, end, more);
-      else
-        filled_ |= 1U << place;
+    for (const int place : table_.columns.places) {
+      if (!more) return false;
+      take(place, at, end, more);
     }
-    if (more) refuse_count();
+    return !more;
   }
 
   /// Whether a place is one of a number of a box.

@@ -120,6 +120,17 @@ void append_csv_field(std::string& line, std::string_view field) {
   line += '"';
 }
 
+bool has_open_quote(std::string_view line, Separator separator) {
+  // Most lines have no quotes.
+  if (line.find('"') == std::string_view::npos) return false;
+  CsvFields fields(line, separator);
+  for (std::string_view field; fields.next(field);) {
+    const std::string_view rest(field.data(), line.data() + line.size());
+    if (!fields.is_quoted() && field.starts_with('"') && std::ranges::count(rest, '"') % 2 == 1) return true;
+  }
+  return false;
+}
+
 std::vector<std::string_view> fields_of(std::string_view line, Separator separator) {
   std::vector<std::string_view> list;
   CsvFields fields(line, separator);

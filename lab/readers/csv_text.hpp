@@ -36,6 +36,9 @@ class CsvFields {
   /// What the field taken last says: two quotes in one that stood in quotes are one.
   void read_text(std::string_view field, std::string& text) const;
 
+  /// Whether the field taken last stood in quotes.
+  bool is_quoted() const noexcept { return is_quoted_; }
+
   /// Where the next field begins.
   const char* at() const noexcept { return at_; }
 
@@ -51,11 +54,14 @@ class CsvFields {
   const char* end_;
   Separator separator_;
   bool more_ = true;
-  bool is_quoted_ = false;  // the field taken last
+  bool is_quoted_ = false;
 };
 
 /// Appends a field to a line with commas: in quotes where it could be read as anything else.
 void append_csv_field(std::string& line, std::string_view field);
+
+/// Whether a quoted field of the line goes on in the next line.
+bool has_open_quote(std::string_view line, Separator separator);
 
 /// All fields of a line.
 std::vector<std::string_view> fields_of(std::string_view line, Separator separator);

@@ -323,6 +323,19 @@ TEST_F(CsvTable, LeavesOutInvalidRowsWhereThatIsAsked) {
   EXPECT_EQ(said.size(), 20u);
 }
 
+TEST_F(CsvTable, RefusesAQuotedFieldThatGoesOnInTheNextLine) {
+  const std::string table = "name,min_x,min_y,max_x,max_y\n\"one\nbox\",0,0,1,1\n";
+  const std::string expected_refusal = "bad.csv:2: a quoted field that goes on in the next line; expected";
+  EXPECT_THAT(refusal_of(table), HasSubstr(expected_refusal));
+  // Skipped as invalid, its two halves would be two rows.
+  ReadOptions options;
+  options.say_invalid = [](std::string_view) {};
+  EXPECT_THROW(boxes_of(table, options), FileError);
+  EXPECT_EQ(boxes_of("name,min_x,min_y,max_x,max_y\n\"a \"\"b, c\"\"\",1,2,5,8\n\"a\" b,-1,-2,0,1e10\n"),
+            expected)
+      << "quotes that do not go on";
+}
+
 TEST_F(CsvTable, ReadsTracksWhoseRowsListWhatIsThere) {
   const DoubleBox2 absent = absent_box<2, double>();
   ReadOptions options;
