@@ -150,9 +150,10 @@ std::string AutoTracker<D, Real>::explanation() const {
   if (were_few_) return "brute_force, since so few boxes need no cells; " + for_few_->explanation();
   const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
   if (was_incremental_) {
-    const std::string why = way_ == Way::incremental ? std::string(", as asked for")
-                                                     : ", and up to " + std::to_string(break_even_) +
-                                                           " that costs less than finding all pairs anew";
+    const std::string why = way_ == Way::incremental
+                                ? std::string(", as asked for")
+                                : ", and up to " + std::to_string(std::max(break_even_, few)) +
+                                      " that costs less than finding all pairs anew";
     return "followed by hierarchical_grid, since " + changed + why;
   }
   std::string found = "all pairs found anew by " + finder_->explanation();
