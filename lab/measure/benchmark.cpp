@@ -3,13 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <random>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <fmt/format.h>
 
@@ -23,49 +16,6 @@ namespace broadside::lab {
 void Watch::at(std::string_view what) const {
   if (stop && stop()) throw Stopped();
   if (progress) progress(what);
-}
-
-std::vector<std::size_t> turns(std::size_t entries, std::size_t round) {
-  std::vector<std::size_t> order(entries);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::shuffle(order.begin(), order.end(), std::mt19937_64(round));
-  return order;
-}
-
-void Participation::add(double milliseconds) {
-  ++rounds_;
-  spent_ms_ += milliseconds;
-}
-
-bool Participation::goes_on(const Effort& effort) const noexcept {
-  if (has_ended_ || rounds_ >= effort.most_rounds) return false;
-  if (limit_) return rounds_ < *limit_;
-  return rounds_ < effort.least_rounds || spent_ms_ < effort.share_seconds * 1e3;
-}
-
-bool has_time(const Effort& effort, std::size_t round, const Stopwatch& of_case) {
-  constexpr std::size_t always = 2;
-  return round < always || of_case.milliseconds() < effort.case_seconds * 1e3;
-}
-
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  // Nothing goes back to the system at the heap's end, and large blocks come from the heap as well, where
-  // they are used again.
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-  mallopt(M_MMAP_MAX, 0);
-#endif
-}
-
-CacheState::CacheState() : memory_((std::size_t{4} << 20) / sizeof(std::uint64_t), 1) {}
-
-void CacheState::settle(std::span<const std::byte> input) {
-  constexpr std::size_t line = 64;
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < memory_.size(); i += line / sizeof(std::uint64_t)) sum += ++memory_[i];
-  for (std::size_t i = 0; i < input.size(); i += line) sum += std::to_integer<std::uint64_t>(input[i]);
-  // Kept, so that no compiler leaves the reading out.
-  memory_[1] = sum;
 }
 
 Measurement measurement_of(const Contender& contender) {

@@ -12,7 +12,9 @@
 
 #include "lab/measure/allocation.hpp"
 #include "lab/measure/floor.hpp"
+#include "lab/measure/memory_state.hpp"
 #include "lab/measure/reference.hpp"
+#include "lab/measure/rounds.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -44,7 +46,7 @@ struct Entry {
   Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
-  Participation participation{};
+  std::size_t most_rounds = no_limit;
 };
 
 template <int D, typename Real>
@@ -57,19 +59,20 @@ class FindCase {
 
   CaseResult run() {
     keep_freed_memory();
-    std::vector<Measurement> measurements;
     for (const Contender& contender : benchmark_.contenders)
-      measurements.push_back(measurement_of(contender));
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-      if (is_eligible(benchmark_.contenders[i], measurements[i]))
-        entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
+      measurements_.push_back(measurement_of(contender));
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+      if (is_eligible(benchmark_.contenders[i], measurements_[i]))
+        entries_.push_back({&benchmark_.contenders[i], &measurements_[i]});
     }
     for (Entry<D, Real>& entry : entries_) warm_up(entry);
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
-    for (std::size_t round = 0; goes_on() && has_time(benchmark_.effort, round, watch_); ++round) play(round);
-    return {case_, std::move(measurements), std::move(floor_ms_)};
+    for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
+         ++round) {
+    }
+    return {case_, std::move(measurements_), std::move(floor_ms_)};
   }
 
  private:
@@ -128,37 +131,39 @@ class FindCase {
            }));
   }
 
-  bool goes_on() const {
-    return std::ranges::any_of(
-        entries_, [&](const auto& entry) { return entry.participation.goes_on(benchmark_.effort); });
-  }
-
-  /// One timed call of each entry that takes part in this round, all on the same boxes. The floor comes
-  /// behind the last entry in the list of turns, and takes part in every round.
-  void play(std::size_t round) {
+  /// One timed call of each entry that takes part in this round, all on the same boxes; false where none
+  /// does. The floor comes behind the last entry in the list of turns, and takes part in every round.
+  bool play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
-    for (const Entry<D, Real>& entry : entries_) {
-      if (entry.participation.goes_on(benchmark_.effort))
-        touch(expectation(*entry.contender->algorithm, input).count);
+    std::vector<Entry<D, Real>*> players;
+    for (Entry<D, Real>& entry : entries_) {
+      if (has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds))
+        players.push_back(&entry);
     }
-    for (const std::size_t turn : turns(entries_.size() + (has_floor_ ? 1 : 0), round)) {
-      if (turn < entries_.size()) {
-        if (entries_[turn].participation.goes_on(benchmark_.effort)) sample(entries_[turn], input, round);
+    if (players.empty()) return false;
+    for (const Entry<D, Real>* const entry : players)
+      touch(expectation(*entry->contender->algorithm, input).count);
+    for (const std::size_t turn : turns(players.size() + (has_floor_ ? 1 : 0), round)) {
+      if (turn < players.size()) {
+        sample(*players[turn], input, round);
       } else {
         benchmark_.watch.at("the floor");
         floor_ms_.push_back(call_floor(input));
       }
     }
-    if (round == 0) limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_seconds);
+    if (round > 0) return true;
+    for (Entry<D, Real>& entry : entries_) {
+      entry.most_rounds =
+          round_limit(*entry.measurement, measurements_, benchmark_.effort, benchmark_.effort.slow_seconds);
+    }
+    return true;
   }
 
   void sample(Entry<D, Real>& entry, std::size_t input, std::size_t round) {
     Measurement& measurement = *entry.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
     settle(entry, fault_of(measurement, [&] {
-             const double milliseconds = call(*entry.finder, boxes_of(input));
-             measurement.samples_ms.push_back(milliseconds);
-             entry.participation.add(milliseconds);
+             measurement.samples_ms.push_back(call(*entry.finder, boxes_of(input)));
              return check(entry, input);
            }));
   }
@@ -184,9 +189,7 @@ class FindCase {
 
   void settle(Entry<D, Real>& entry, const std::string& fault) {
     entry.measurement->outcome = Outcome::verified;
-    if (fault.empty()) return;
-    fail(*entry.measurement, fault);
-    entry.participation.end();
+    if (!fault.empty()) fail(*entry.measurement, fault);
   }
 
   /// What is wrong with pairs_; empty if nothing is.
@@ -229,6 +232,7 @@ class FindCase {
   Histories<D, Real> inputs_;
   const Benchmark& benchmark_;
   Extremes extremes_;
+  std::vector<Measurement> measurements_;  // of the contenders, in their order
   std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all

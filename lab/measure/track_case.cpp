@@ -11,6 +11,8 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/expected_events.hpp"
+#include "lab/measure/memory_state.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/measure/samples.hpp"
 
 namespace broadside::lab {
@@ -33,40 +35,13 @@ struct Entry {
   EventHasher hasher{};
   std::vector<double> frames_ms{};  // of this pass
   std::vector<double> builds_ms{};  // the first frames of all timed passes
-  double pass_ms = 0;               // of this pass, the first frame too
   std::uint64_t tests = 0;
   std::uint64_t references = 0;
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
-  Participation participation{};
+  std::size_t most_rounds = no_limit;
   bool plays = false;  // in the pass that is going on
 };
-
-/// Some of the boxes of a history and its first steps, as a history of their own.
-template <int D, typename Real>
-History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std::size_t most_steps) {
-  constexpr std::size_t left_out = static_cast<std::size_t>(-1);
-  std::size_t size = history.boxes.size();
-  for (const Step<D, Real>& step : history.steps) size = std::max(size, step.size);
-  std::vector<std::size_t> place(size, left_out);
-  History<D, Real> thin;
-  std::size_t next = 0;
-  for (const std::size_t i : sample_of(size, count)) {
-    place[i] = next++;
-    thin.boxes.push_back(i < history.boxes.size() ? history.boxes[i] : absent_box<D, Real>());
-  }
-  for (std::size_t s = 0; s < std::min(most_steps, history.steps.size()); ++s) {
-    const Step<D, Real>& step = history.steps[s];
-    Step<D, Real> few{thin.boxes.size(), {}, {}};
-    for (std::size_t i = 0; i < step.changed.size(); ++i) {
-      if (place[index(step.changed[i])] == left_out) continue;
-      few.changed.push_back(BoxId(place[index(step.changed[i])]));
-      few.boxes.push_back(step.boxes[i]);
-    }
-    thin.steps.push_back(std::move(few));
-  }
-  return thin;
-}
 
 template <int D, typename Real>
 class TrackCase {
@@ -84,18 +59,18 @@ class TrackCase {
 
   std::vector<Measurement> run() {
     keep_freed_memory();
-    std::vector<Measurement> measurements;
     for (const Contender& contender : benchmark_.contenders)
-      measurements.push_back(measurement_of(contender));
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-      measurements[i].samples_a_round = inputs_[0].steps.size();
-      if (is_eligible(benchmark_.contenders[i], measurements[i]))
-        entries_.push_back({&benchmark_.contenders[i], &measurements[i]});
+      measurements_.push_back(measurement_of(contender));
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+      measurements_[i].samples_a_round = inputs_[0].steps.size();
+      if (is_eligible(benchmark_.contenders[i], measurements_[i]))
+        entries_.push_back({&benchmark_.contenders[i], &measurements_[i]});
     }
     warm_up();
-    for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_) && play(round); ++round) {
+    for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
+         ++round) {
     }
-    return measurements;
+    return std::move(measurements_);
   }
 
  private:
@@ -170,7 +145,8 @@ class TrackCase {
 
   /// Lets every entry that takes part in this round follow the same input; false where none does.
   bool play(std::size_t round) {
-    for (Entry<D, Real>& entry : entries_) entry.plays = entry.participation.goes_on(benchmark_.effort);
+    for (Entry<D, Real>& entry : entries_)
+      entry.plays = has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds);
     if (std::ranges::none_of(entries_, &Entry<D, Real>::plays)) return false;
     pass(round % inputs_.size(), round + 1, false);
     for (Entry<D, Real>& entry : entries_) {
@@ -179,9 +155,12 @@ class TrackCase {
       measurement.samples_ms.insert(measurement.samples_ms.end(), entry.frames_ms.begin(),
                                     entry.frames_ms.end());
       measurement.build_ms = median(entry.builds_ms);
-      entry.participation.add(entry.pass_ms);
     }
-    if (round == 0) limit_rounds(entries_, benchmark_.effort, benchmark_.effort.slow_history_seconds);
+    if (round > 0) return true;
+    for (Entry<D, Real>& entry : entries_) {
+      entry.most_rounds = round_limit(*entry.measurement, measurements_, benchmark_.effort,
+                                      benchmark_.effort.slow_history_seconds);
+    }
     return true;
   }
 
@@ -196,7 +175,6 @@ class TrackCase {
       entry.expected = &expectation(entry, input);
       entry.tracker.reset();
       entry.frames_ms.clear();
-      entry.pass_ms = 0;
     }
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
@@ -210,7 +188,6 @@ class TrackCase {
             fault_of(*entry.measurement, [&] { return take(entry, now, frame, counts_memory); });
         if (fault.empty()) continue;
         fail(*entry.measurement, fault);
-        entry.participation.end();
         entry.plays = false;
       }
     }
@@ -227,7 +204,6 @@ class TrackCase {
       return update(*entry.tracker, now);
     };
     const double milliseconds = counts_memory ? counted(entry, make_and_update) : make_and_update();
-    entry.pass_ms += milliseconds;
     (frame > 0 ? entry.frames_ms : entry.builds_ms).push_back(milliseconds);
     if (counts_memory) note(entry, frame);
     return difference<D, Real>(events_, expected.frames[frame], entry.measurement->algorithm, frame,
@@ -285,6 +261,7 @@ class TrackCase {
   Histories<D, Real> inputs_;
   const Benchmark& benchmark_;
   Extremes extremes_;
+  std::vector<Measurement> measurements_;  // of the contenders, in their order
   std::vector<Entry<D, Real>> entries_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
   Events events_;            // of the last update; its memory serves all

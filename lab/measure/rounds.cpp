@@ -1,0 +1,61 @@
+// In which rounds of a case an algorithm takes part.
+#include "lab/measure/rounds.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "lab/measure/paired_ratio.hpp"
+
+namespace broadside::lab {
+namespace {
+
+double sum_of(const std::vector<double>& samples) {
+  return std::accumulate(samples.begin(), samples.end(), 0.0);
+}
+
+/// The least time of a first round among the algorithms of a kind, in milliseconds; infinite where there is
+/// none.
+double least_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Measurement& measurement : all) {
+    if (measurement.kind == kind && !measurement.samples_ms.empty())
+      least = std::min(least, round_times(measurement).front());
+  }
+  return least;
+}
+
+}  // namespace
+
+std::vector<std::size_t> turns(std::size_t entries, std::size_t round) {
+  std::vector<std::size_t> order(entries);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(round));
+  return order;
+}
+
+bool has_time(const Effort& effort, std::size_t round, double milliseconds) {
+  constexpr std::size_t always = 2;
+  return round < always || milliseconds < effort.case_seconds * 1e3;
+}
+
+bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit) {
+  const std::size_t rounds = measurement.samples_ms.size() / measurement.samples_a_round;
+  if (measurement.outcome == Outcome::failed || rounds >= std::min(limit, effort.most_rounds)) return false;
+  return limit != no_limit || rounds < effort.least_rounds ||
+         sum_of(measurement.samples_ms) < effort.share_seconds * 1e3;
+}
+
+std::size_t round_limit(const Measurement& measurement, std::span<const Measurement> all,
+                        const Effort& effort, double slow_seconds) {
+  if (measurement.samples_ms.empty()) return no_limit;
+  const double own = least_first_round(all, AlgorithmKind::own);
+  const double peer = least_first_round(all, AlgorithmKind::peer);
+  // Where no peer takes part nothing is far behind it, and where nothing of ours does, peers alone count.
+  const double close = std::max({far_from_seconds * 1e3, effort.far_ratio * peer,
+                                 own < std::numeric_limits<double>::infinity() ? effort.far_ratio * own : 0});
+  if (round_times(measurement).front() > close) return effort.far_rounds;
+  return sum_of(measurement.samples_ms) > slow_seconds * 1e3 ? effort.slow_rounds : no_limit;
+}
+
+}  // namespace broadside::lab
