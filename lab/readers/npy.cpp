@@ -40,6 +40,11 @@ class NpyFrame final : public FrameReader<D, Real> {
 
   bool next(Step<D, Real>&) override { return false; }
 
+  std::shared_ptr<const BoxLabels> labels() const override {
+    return layout_.unread.empty() ? nullptr
+                                  : std::make_shared<BoxLabels>(BoxLabels{.unread = layout_.unread});
+  }
+
   bool is_computed() const override {
     return std::ranges::any_of(layout_.forms, [](BoundsForm form) {
       return form != BoundsForm::min_max && form != BoundsForm::point;

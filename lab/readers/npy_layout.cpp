@@ -60,6 +60,7 @@ NpyLayout layout_of_numbers(const NpyHeader& header, std::size_t bytes, const st
 struct NamedColumns {
   std::vector<std::string> names;
   std::vector<NpyColumn> columns;
+  std::vector<std::string> unread;  // fields of other shapes
   std::size_t row_bytes = 0;
 };
 
@@ -87,6 +88,8 @@ NamedColumns named_columns(const NpyHeader& header, const std::string& name) {
     } else if (field.shape.size() == 1 && (count == 2 || count == 3)) {
       for (std::size_t axis = 0; axis < count; ++axis)
         add(fmt::format("{}_{}", field.name, "xyz"[axis]), named.row_bytes + axis * type->bytes);
+    } else {
+      named.unread.push_back(field.name);
     }
     named.row_bytes += count * type->bytes;
   }
@@ -113,10 +116,14 @@ NpyLayout layout_of_fields(const NpyHeader& header, std::size_t bytes, const std
                    .precision = columns.is_computed() ? Precision::float64 : Precision::float32,
                    .rows = static_cast<std::size_t>(header.shape[0]),
                    .row_step = named.row_bytes,
-                   .forms = columns.forms};
+                   .forms = columns.forms,
+                   .unread = named.unread};
   for (std::size_t i = 0; i < named.columns.size(); ++i) {
     const int place = columns.places[i];
-    if (place == CsvColumns::ignored || place == CsvColumns::id) continue;
+    if (place == CsvColumns::ignored || place == CsvColumns::id) {
+      layout.unread.push_back(named.names[i]);
+      continue;
+    }
     const NpyColumn& column = named.columns[i];
     if (column.type.load == nullptr)
       refuse(fmt::format("{} is no number", shown(named.names[i], 40)), known_types);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "lab/readers/csv_columns.hpp"
 #include "lab/readers/frames.hpp"
@@ -27,6 +28,7 @@ struct NpyLayout {
   std::array<BoundsForm, 3> forms{};
   std::array<NpyColumn, 3> first{};  ///< on each axis, the first and second value of its form
   std::array<NpyColumn, 3> second{};
+  std::vector<std::string> unread{};  ///< the names of the fields that nothing is read from
 };
 
 /// The layout of an array of numbers, or of a structured array whose fields have the names that a table's

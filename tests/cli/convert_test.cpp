@@ -150,6 +150,10 @@ TEST(ConvertVerb, KeepsIdsAndNamesTheColumnsItLeavesOut) {
               HasSubstr("left out the columns 'ID', 'name', 'area': format npy holds bounds"));
   EXPECT_THAT(run({"convert", folder.put("plain.csv", tenths), "-o", folder.file("a.csv")}).errors,
               Not(HasSubstr("left out")));
+  EXPECT_THAT(
+      run({"convert", BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/npy/fields.npy", "--to", "csv", "-o", "-"})
+          .errors,
+      HasSubstr("left out the columns 'id', 'name': format csv"));
   expect_refused("convert", {{{file, "--ids", "id", "-o", folder.file("b.npy")},
                               {"--ids with format npy", "expected csv"}}});
 }
