@@ -17,6 +17,9 @@ constexpr double flattest = 0.25;
 /// Room around what is shown, of the window's width.
 constexpr double margin = 0.01;
 
+/// The side of the square that shows a point, in tenths.
+constexpr long dot = 40;
+
 /// Of the boxes' middles, those beyond this quantile at either end may be outliers.
 constexpr double outlying = 0.01;
 
@@ -118,10 +121,19 @@ Window window_on(std::span<const Rectangle> rectangles) {
 
 void append_rectangle(std::string& path, const Rectangle& rectangle, const Window& window) {
   if (!is_seen(rectangle, window)) return;
-  const long left = in_tenths(window.x(rectangle.min[0]));
-  const long top = in_tenths(window.y(rectangle.max[1]));
-  const std::string width = tenths(in_tenths(window.x(rectangle.max[0])) - left);
-  const std::string height = tenths(in_tenths(window.y(rectangle.min[1])) - top);
+  long left = in_tenths(window.x(rectangle.min[0]));
+  long top = in_tenths(window.y(rectangle.max[1]));
+  long right = in_tenths(window.x(rectangle.max[0]));
+  long bottom = in_tenths(window.y(rectangle.min[1]));
+  if (left == right && top == bottom) {
+    // A path without length is not drawn at all.
+    left -= dot / 2;
+    right += dot / 2;
+    top -= dot / 2;
+    bottom += dot / 2;
+  }
+  const std::string width = tenths(right - left);
+  const std::string height = tenths(bottom - top);
   path += stroke(tenths(left), tenths(top), 'h', width) + "v" + height + "h";
   path += (width == "0" ? "0" : "-" + width) + "z";
 }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "lab/numbers.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -61,8 +63,10 @@ struct Panel {
   const DrawingLayer* layer;  // or none
 };
 
+/// What fits of a text, as an SVG; the whole is shown where a mouse rests on it.
 std::string shortened(const std::string& text) {
-  return text.size() <= caption_length ? text : text.substr(0, caption_length - 3) + "...";
+  if (text.size() <= caption_length) return escaped(text);
+  return escaped(text.substr(0, caption_length - 3)) + "...<title>" + escaped(text) + "</title>";
 }
 
 std::string caption_of(const DrawingLayer& layer) {
@@ -89,8 +93,8 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
   if (drawing.dimension == 3) title += fmt::format(", {} to the right, {} up", view.axes[0], view.axes[1]);
   const std::string caption = panel.layer == nullptr ? "" : caption_of(*panel.layer);
   std::string text = fmt::format("<g transform=\"translate({} {})\">\n<text class=\"t\" y=\"15\">{}</text>\n",
-                                 x, y, escaped(shortened(title)));
-  text += fmt::format("<text class=\"c\" y=\"34\">{}</text>\n", escaped(shortened(caption)));
+                                 x, y, shortened(title));
+  text += fmt::format("<text class=\"c\" y=\"34\">{}</text>\n", shortened(caption));
   text += fmt::format("<svg y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\">\n", title_height,
                       panel_width, height, view.width, view.height);
   text += fmt::format("<rect class=\"f\" width=\"{}\" height=\"{}\" stroke-width=\"{:.1f}\"/>\n", view.width,
@@ -106,8 +110,8 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
 
 /// What a screen reader says of the picture.
 std::string description_of(const Drawing& drawing) {
-  std::string text = fmt::format("{} boxes in {}D", drawing.boxes, drawing.dimension);
-  if (drawing.of > drawing.boxes) text += fmt::format(", for {}", drawing.of);
+  std::string text = fmt::format("{} in {}D", counted(drawing.boxes, "box", "boxes"), drawing.dimension);
+  if (drawing.of > drawing.boxes) text += ", for " + grouped(drawing.of);
   text += "; those that overlap another one are orange.";
   if (drawing.views.empty()) return text;
   for (const DrawingLayer& layer : drawing.views[0].layers) {
@@ -149,8 +153,8 @@ std::string svg_of(const Drawing& drawing) {
   const int height = y + key_height;
   bool swept = false;
   for (const Panel& panel : panels) swept |= panel.layer != nullptr && !panel.layer->active.empty();
-  std::string key = fmt::format("{}, {} boxes", drawing.scene, drawing.boxes);
-  if (drawing.of > drawing.boxes) key += fmt::format(" for {}", drawing.of);
+  std::string key = fmt::format("{}, {}", drawing.scene, counted(drawing.boxes, "box", "boxes"));
+  if (drawing.of > drawing.boxes) key += " for " + grouped(drawing.of);
   key += ". Orange: overlaps another.";
   if (swept) key += " Green: a sweep half way.";
 

@@ -40,7 +40,8 @@ TEST(DrawingPaths, ShowWhatIsGreaterInYHigherUp) {
 TEST(DrawingPaths, AreClippedToTheWindow) {
   EXPECT_EQ(rectangle({{-infinity, 9}, {infinity, infinity}}), "M0 0h100v10h-100z");
   EXPECT_EQ(rectangle({{11, 0}, {12, 1}}), "");
-  EXPECT_EQ(rectangle({{5, 5}, {5, 5}}), "M50 50h0v0h0z");
+  EXPECT_EQ(rectangle({{5, 5}, {5, 5}}), "M48 48h4v4h-4z") << "a point is seen";
+  EXPECT_EQ(rectangle({{5, 5}, {6, 5}}), "M50 50h10v0h-10z");
 }
 
 TEST(DrawingPaths, HaveALineOnceWhereCellsMeet) {
