@@ -136,7 +136,6 @@ void check(const AdviseArguments& arguments) {
 
 Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
-  on_signal(OnSignal::end);
   arguments.input = only_one_of(arguments.inputs);
   check(arguments);
   const bool reads = is_file(arguments.input);

@@ -111,8 +111,9 @@ void check_applies(const CLI::App& verb, const CompareArguments& arguments, cons
 
 /// Where to find what the lines leave out.
 std::string details_hint(const ResultFiles& files) {
-  const std::string written = files.any() ? files.names() + " holds" : "--json or --report FILE keeps";
-  return fmt::format("details: --details prints each case's table; {} every sample\n", written);
+  const std::string samples =
+      files.any() ? "every sample is in " + files.names() : "--json or --report FILE keeps every sample";
+  return fmt::format("details: --details prints each case's table; {}\n", samples);
 }
 
 Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
@@ -146,7 +147,6 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   progress.clear();
   for (const std::string& warning : comparison.warnings) say(warning);
   print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
-  if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::end);
     const std::string json = lab::json_of(comparison, command);
@@ -159,11 +159,12 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
                                        catalogue.select(arguments.contenders.algorithms))};
     });
     if (comparison.stopped)
-      say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
-                      lab::counted(comparison.cases.size(), "case", "cases")));
+      say(fmt::format("stopped; wrote the {} that had ended to {}",
+                      lab::counted(comparison.cases.size(), "case", "cases"), arguments.files.names()));
   } else if (arguments.files.any()) {
-    say(fmt::format("stopped before a case had ended; {} is not written", arguments.files.names()));
+    say(fmt::format("stopped before a case had ended; nothing is written to {}", arguments.files.names()));
   }
+  if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
   if (comparison.stopped) return Exit::interrupted;
   return comparison.all_verified() ? Exit::fine : Exit::failed;
 }

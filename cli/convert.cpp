@@ -11,7 +11,6 @@
 
 #include "cli/help.hpp"
 #include "cli/input_options.hpp"
-#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
@@ -29,7 +28,6 @@ struct ConvertArguments {
 };
 
 Exit run(const ConvertArguments& arguments) {
-  on_signal(OnSignal::end);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.file);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);

@@ -14,7 +14,6 @@
 #include "cli/contender_options.hpp"
 #include "cli/help.hpp"
 #include "cli/input_options.hpp"
-#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/scene_arguments.hpp"
 #include "cli/unusable.hpp"
@@ -107,7 +106,6 @@ void check_is_svg(const std::string& path) {
 }
 
 Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
-  on_signal(OnSignal::end);
   arguments.scene = only_one_of(arguments.scenes);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.scene);

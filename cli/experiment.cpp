@@ -129,10 +129,12 @@ Exit run(const ExperimentArguments& arguments, const CLI::App& verb, const lab::
           .drawings = lab::drawings_of(lab::scenes_of_experiments(), find, catalogue.select("own,paper"))};
     });
     if (results.stopped && are_measured)
-      say(fmt::format("stopped; {} holds the {} that had ended", arguments.files.names(),
-                      lab::counted(results.results.size(), "experiment", "experiments")));
+      say(fmt::format("stopped; wrote the {} that had ended to {}",
+                      lab::counted(results.results.size(), "experiment", "experiments"),
+                      arguments.files.names()));
   } else if (arguments.files.any()) {
-    say(fmt::format("stopped before an experiment had ended; {} is not written", arguments.files.names()));
+    say(fmt::format("stopped before an experiment had ended; nothing is written to {}",
+                    arguments.files.names()));
   }
   // Results that were read may be of a run that was stopped; this one was not.
   return results.stopped && arguments.from.empty() ? Exit::interrupted : Exit::fine;

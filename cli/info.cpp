@@ -6,7 +6,6 @@
 
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
-#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/scene_arguments.hpp"
 #include "cli/verbs.hpp"
@@ -24,7 +23,6 @@ lab::FileInfo info_of(const BoxArguments& arguments, const CLI::App& verb) {
 }
 
 Exit run(const BoxArguments& arguments, const CLI::App& verb) {
-  on_signal(OnSignal::end);
   const lab::FileInfo info = info_of(arguments, verb);
   if (!info.warning.empty()) say(info.warning);
   print(lab::text_of(info));

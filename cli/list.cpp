@@ -106,7 +106,8 @@ Exit run(const lab::Catalogue& catalogue) {
   for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
     algorithms.push_back(
         {peer.name, std::string(name(AlgorithmKind::peer)), "", "not there: " + peer.reason, {}});
-  print_entries("Algorithms", algorithms);
+  print_entries("Algorithms (tunables follow the name, each after a colon: grid:cell=2.5:threads=2)",
+                algorithms);
 
   std::vector<Entry> scenes;
   for (const lab::Scene& scene : lab::scenes()) scenes.push_back(entry_of(scene));

@@ -17,7 +17,6 @@
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
 #include "cli/input_options.hpp"
-#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/pairs_arguments.hpp"
 #include "cli/unusable.hpp"
@@ -168,7 +167,6 @@ class Join {
 };
 
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
-  on_signal(OnSignal::end);
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check(arguments, catalogue);
   Join join(arguments, catalogue);

@@ -77,6 +77,7 @@ int run_program(int count, const char* const* values, std::vector<Algorithm> alg
   const std::vector<std::string> arguments(values, values + count);
   if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename());
   cli::on_failing_write();
+  cli::on_signal(cli::OnSignal::end);
   try {
     lab::Catalogue catalogue;
     for (Algorithm& algorithm : algorithms) catalogue.add(std::move(algorithm));

@@ -13,7 +13,6 @@
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
 #include "cli/input_options.hpp"
-#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/motion_options.hpp"
 #include "cli/scene_arguments.hpp"
@@ -75,7 +74,6 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
 }
 
 Exit run(SceneArguments& arguments, const CLI::App& verb) {
-  on_signal(OnSignal::end);
   arguments.scene = only_one_of(arguments.scenes);
   if (arguments.moving) check_fraction("--moving", *arguments.moving);
   check(arguments.motion);

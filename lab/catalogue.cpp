@@ -110,6 +110,10 @@ std::vector<Contender> Catalogue::select(std::string_view list) const {
       const auto missing = std::ranges::find(peers::missing_peers(), spec.name, &peers::MissingPeer::name);
       if (missing != peers::missing_peers().end())
         throw InvalidSpec("peer '" + spec.name + "' is not in this build: " + missing->reason);
+      if (part.data() != list.data() && spec.name.find('=') != std::string::npos)
+        throw InvalidSpec(
+            fmt::format("a comma before '{}' in '{}'; expected a colon before each tunable, as in {}",
+                        spec.name, list, "name:tunable=value:tunable=value"));
       std::vector<std::string> known(groups.begin(), groups.end());
       for (const Algorithm& other : algorithms_) known.push_back(other.name);
       throw InvalidSpec(fmt::format("unknown algorithm '{}'{}; expected one of: {}", spec.name,

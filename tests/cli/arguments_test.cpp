@@ -73,6 +73,8 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{}, {"no verb", "expected one of: compare, advise, experiment, pairs"}},
       {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, experiment, pairs"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
+      {{"compare", "--algorithms", "grid:cell=5,threads=2"},
+       {"a comma before 'threads=2'", "name:tunable=value:tunable=value"}},
       {{"compare", "--algorithms", "gird"}, {"'gird'", "expected one of: ", "grid"}},
       {{"compare", "--algorithms", "grid:cell=-1"}, {"grid: cell is '-1'", "expected a number"}},
       {{"compare", "--scenes", "unifrom"}, {"'unifrom'", "expected a file or one of: ", "uniform"}},

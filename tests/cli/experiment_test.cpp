@@ -171,7 +171,7 @@ TEST(ExperimentVerb, KeepsAnOlderFileWhereItIsInterruptedBeforeAnExperimentHasEn
   process.signal(SIGINT);
   const Ended ended = process.wait();
   EXPECT_EQ(ended.status, 130) << ended.errors;
-  EXPECT_THAT(ended.errors, HasSubstr("out.json is not written"));
+  EXPECT_THAT(ended.errors, HasSubstr("nothing is written to"));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
   EXPECT_EQ(text_of(file), "older");
 }
@@ -185,7 +185,7 @@ TEST(ExperimentVerb, WritesWhatHadEndedWhereItIsInterrupted) {
   process.signal(SIGTERM);
   const Ended ended = process.wait();
   EXPECT_EQ(ended.status, 130) << ended.errors;
-  EXPECT_THAT(ended.errors, HasSubstr("out.json holds the 1 experiment that had ended"));
+  EXPECT_THAT(ended.errors, HasSubstr("wrote the 1 experiment that had ended to"));
   EXPECT_THAT(ended.output, HasSubstr("stopped before the end"));
   const Json json = Json::parse(text_of(file));
   EXPECT_EQ(json["stopped"], true);
