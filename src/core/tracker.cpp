@@ -43,14 +43,23 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   drop_ignored(change);
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
+  // Those that are ignored from now on come first.
+  const std::span<const Pair> no_longer =
+      std::ranges::partition(toggled_, [this](Pair pair) { return !ignored_.contains(pair); });
+  const std::span<const Pair> newly = std::span(toggled_).first(toggled_.size() - no_longer.size());
   try {
+    // Whatever takes memory comes before the events are told: what is told has been taken.
+    for (const Pair pair : newly) ignored_.insert(pair);
+    quarantined_.reserve(quarantined_.size() + invalid_.size());
     begun.put(begun_);
     ended.put(ended_);
   } catch (...) {
+    for (const Pair pair : newly) ignored_.erase(pair);
     begun.discard();
     ended.discard();
     throw;
   }
+  for (const Pair pair : no_longer) ignored_.erase(pair);
   keep(frame);
   dirty_ = false;
 }
@@ -156,9 +165,9 @@ void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
   }
 }
 
-/// Makes this frame the one before.
+/// Makes this frame the one before, but for what is ignored. There is room in quarantined_.
 template <int D, typename Real>
-void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
+void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();
   if (!quarantined_.empty() || !invalid_.empty()) {
     std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
@@ -177,9 +186,7 @@ void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
   before_.resize(size);
   now_.resize(size);
   flags_.resize(size);
-  for (const Pair pair : toggled_) {
-    if (!ignored_.insert(pair)) ignored_.erase(pair);
-  }
+  taken_ = size;
   had_ignored_ = frame.ignored != nullptr;
 }
 

@@ -91,6 +91,7 @@ class FinderFailure : public MemoryTest {
     Dice dice(1);
     for (const Spec& spec : specs_of(GetParam())) {
       for (const Workers& workers : all_workers) {
+        const bool is_alone = workers.threads == 1;
         const std::int64_t blocks = blocks_held();
         std::string text;
         const auto run = [&](const std::vector<Search<D, Real>>& searches, Injector injector) {
@@ -101,7 +102,7 @@ class FinderFailure : public MemoryTest {
         {
           const std::vector<Search<D, Real>> few = {{6, false, dice}, {41, false, dice}, {70, true, dice}};
           for (const FailureKind kind : {FailureKind::once, FailureKind::from_then_on}) {
-            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); ++k) {
+            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k += is_alone ? 1 : 1 + k / 16) {
             }
             ASSERT_EQ(text, "") << spec.text();
           }
@@ -116,7 +117,7 @@ class FinderFailure : public MemoryTest {
             ASSERT_EQ(text, "") << spec.text() << ", seed " << seed;
           }
         }
-        if (workers.threads == 1) {
+        if (is_alone) {
           ASSERT_EQ(blocks_held(), blocks) << spec.text() << " leaks";
         }
       }
