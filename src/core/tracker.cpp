@@ -93,8 +93,7 @@ void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
 template <int D, typename Real>
 void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
-  const std::size_t known = before_.size();
-  const std::size_t size = std::max(boxes.size(), known);
+  const std::size_t size = std::max(boxes.size(), taken_);
   const bool had_filters = !filters_before_.empty();
   core::resize_by_eighths(before_, size, absent_box<D, Real>());
   core::resize_by_eighths(now_, size, absent_box<D, Real>());
@@ -122,7 +121,7 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
     for (std::size_t i = 0; i < size; ++i) take(i);
   } else {
     for (const BoxId id : frame.changed) take(index(id));
-    for (std::size_t i = std::min(known, boxes.size()); i < size; ++i) take(i);
+    for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
   }
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,8 +81,17 @@ std::string play(const MemoryCase& memory_case, const Spec& spec, const Workers&
   while (!injector.attempt([&] { tracker = make_tracker<D, Real>(*memory_case.algorithm, spec); })) {
   }
   tracker->set_workers(workers);
-  return divergence<D, Real>(*tracker, frames,
-                             [&](const std::function<void()>& update) { return injector.attempt(update); });
+  std::string wrong;
+  const auto run = [&](const std::function<void()>& update) {
+    const std::size_t size = tracker->last_frame().boxes.size();
+    if (injector.attempt(update)) return true;
+    const Frame<D, Real> last = tracker->last_frame();
+    if (last.boxes.size() != size || (!last.filters.empty() && last.filters.size() != size))
+      wrong = "after an update that failed, the last frame is not the one before";
+    return false;
+  };
+  const std::string text = divergence<D, Real>(*tracker, frames, run);
+  return wrong.empty() ? text : wrong;
 }
 
 class TrackerFailure : public MemoryTest {
