@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -80,24 +81,33 @@ struct ShadowTracker<D, Real>::State {
   Pairs pairs{};           // those that hold since the tracker's last update, by the definition
   IgnoredPairs ignored{};  // then, likewise
   bool had_ignored = false;
-  std::exception_ptr divergence{};
+  std::optional<core::Fault> fault{};  // in the last frame of the log
+  Pairs now{};                         // the pairs of that frame
+  std::exception_ptr divergence{};     // which tells all about it
 
-  /// The exception that says all about a fault in the last frame of the log.
-  DivergenceOf<D, Real> explained(const core::Fault& fault, const Frame<D, Real>& frame,
-                                  const Pairs& now) const {
+  /// Throws the divergence. Where there is no memory to tell it, that is thrown, and told the next time.
+  [[noreturn]] void diverge() {
+    if (!divergence) divergence = std::make_exception_ptr(explained());
+    std::rethrow_exception(divergence);
+  }
+
+  DivergenceOf<D, Real> explained() const {
     const std::size_t number = log.count() - 1;
-    std::string text = name + " " + text_of(fault) + " in frame " + std::to_string(number);
-    for (const BoxId id : {fault.pair.first, fault.pair.second}) {
+    const History<D, Real> kept = log.history();
+    Replay<D, Real> replay(kept);
+    for (const Step<D, Real>& step : kept.steps) replay.next(step);
+    const Frame<D, Real> frame = replay.frame();
+    std::string text = name + " " + text_of(*fault) + " in frame " + std::to_string(number);
+    for (const BoxId id : {fault->pair.first, fault->pair.second}) {
       const bool is_there = index(id) < frame.boxes.size() && !is_absent(frame.boxes[index(id)]);
       text += "; box " + std::to_string(index(id)) +
               (is_there ? " has " + core::text_of(frame.boxes[index(id)]) : " is absent");
     }
-    const bool holds = std::ranges::binary_search(now, fault.pair);
+    const bool holds = std::ranges::binary_search(now, fault->pair);
     text += std::string("; expected, by the definition: the pair ") + (holds ? "holds" : "does not hold") +
             ", and before this frame it " +
-            (std::ranges::binary_search(pairs, fault.pair) ? "held" : "did not");
+            (std::ranges::binary_search(pairs, fault->pair) ? "held" : "did not");
 
-    const History<D, Real> kept = log.history();
     std::optional<History<D, Real>> small;
     if (make) small = core::smallest_fault<D, Real>(kept, make, options.tests);
     const bool reproduced = small.has_value();
@@ -108,11 +118,11 @@ struct ShadowTracker<D, Real>::State {
           make ? "\na new one does not err in the last " + std::to_string(kept.steps.size() + 1) + " frames"
                : "\nthere is no other one to try histories on";
       text += "; in them, these two boxes:\n";
-      const std::array<std::size_t, 2> places = {index(fault.pair.first), index(fault.pair.second)};
+      const std::array<std::size_t, 2> places = {index(fault->pair.first), index(fault->pair.second)};
       small = only<D, Real>(places, kept);
     }
     text += text_of(*small);
-    return {Divergence(text, fault.pair, number, holds), std::move(*small), reproduced};
+    return {Divergence(text, fault->pair, number, holds), std::move(*small), reproduced};
   }
 };
 
@@ -146,7 +156,7 @@ ShadowTracker<D, Real>::~ShadowTracker() = default;
 template <int D, typename Real>
 void ShadowTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
   State& state = *state_;
-  if (state.divergence) std::rethrow_exception(state.divergence);
+  if (state.fault) state.diverge();
   const Frame<D, Real> seen{change.now, change.changed, change.filters_now};
   const Frame<D, Real>& given = change.frame != nullptr ? *change.frame : seen;
   static const IgnoredPairs none;
@@ -157,22 +167,29 @@ void ShadowTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSin
       check_listed(toggled, given.ignored_changed, state.log.count());
   }
 
-  // The tracker may have taken a frame that this one, whose sink threw, has not: it goes on from its own.
-  const Frame<D, Real> frame{change.now.first(given.boxes.size()), change.changed, given.filters,
-                             given.ignored, toggled};
+  // The tracker may have taken a frame that this one, whose sink threw, has not: it goes on from its own,
+  // which may have had fewer boxes. Those that this frame has no more it knows to be gone.
+  std::vector<BoxId> changed;
+  std::ranges::copy_if(change.changed, std::back_inserter(changed),
+                       [&given](BoxId id) { return index(id) < given.boxes.size(); });
+  const Frame<D, Real> frame{change.now.first(given.boxes.size()), changed, given.filters, given.ignored,
+                             toggled};
+  // Whatever takes memory comes before the tracker is asked, so that what it takes is known here as well.
+  Pairs now = core::pairs_by_definition(frame);
+  const core::EventPairs expected = core::events_between(state.pairs, now);
+  IgnoredPairs ignored = given.ignored != nullptr ? *given.ignored : IgnoredPairs();
+  state.log.prepare(frame, toggled);
   const core::EventPairs events = core::events_of(*state.tracker, frame);
   this->count(state.tracker->statistics());
-  state.log.add(frame, toggled);
-  Pairs now = core::pairs_by_definition(frame);
-  if (const auto fault = core::fault_of(events, state.pairs, now)) {
-    state.divergence = std::make_exception_ptr(state.explained(*fault, frame, now));
-    std::rethrow_exception(state.divergence);
+  state.log.add();
+  state.fault = core::fault_of(events, expected);
+  if (state.fault) {
+    state.now = std::move(now);
+    state.diverge();
   }
-  for (const Pair pair : toggled) {
-    if (!state.ignored.insert(pair)) state.ignored.erase(pair);
-  }
-  state.had_ignored = given.ignored != nullptr;
   state.pairs = std::move(now);
+  state.ignored = std::move(ignored);
+  state.had_ignored = given.ignored != nullptr;
 
   if (!change.rebuild) {
     begun.put(events.begun);

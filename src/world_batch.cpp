@@ -1,7 +1,9 @@
 // World: many boxes at once, all or none; and all of them in a new origin.
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
@@ -32,6 +34,14 @@ void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> 
   for (const BoxOptions& its : options) {
     has_filters |= its.filter != Filter{};
     has_user_data |= its.user_data != 0;
+  }
+  // Where the boxes given are the world's own, they move when its arrays grow.
+  std::vector<Box<D, Real>> copies;
+  const std::less<const Box<D, Real>*> is_before;
+  const std::span<const Box<D, Real>> own = state_->boxes;
+  if (!is_before(boxes.data(), own.data()) && is_before(boxes.data(), own.data() + own.size())) {
+    copies.assign(boxes.begin(), boxes.end());
+    boxes = copies;
   }
   state_->reserve(boxes.size(), has_filters, has_user_data);
   for (std::size_t i = 0; i < boxes.size(); ++i)

@@ -101,9 +101,9 @@ class PairTracker {
   ///
   /// Throws InvalidInput before anything has changed if a changed box is invalid (unless bad_input() says
   /// otherwise), if an id in `changed` lies beyond both this frame's array and the last one's, or if there
-  /// are filters and not one for each box. If
-  /// a sink throws, the frame counts as not taken: the next update rebuilds, takes every box for changed and
-  /// delivers the events since the last whole update.
+  /// are filters and not one for each box.
+  /// If a sink throws or memory runs out, the frame counts as not taken: the next update rebuilds, takes
+  /// every box for changed and delivers the events since the last whole update.
   void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
   /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
@@ -118,7 +118,13 @@ class PairTracker {
   /// The frame that the last whole update() took, with nothing listed: what the next one's events start from.
   /// Without boxes before the first. Valid until the next update().
   Frame<D, Real> last_frame() const noexcept {
-    return {before_, {}, filters_before_, had_ignored_ ? &ignored_ : nullptr, {}};
+    // An update that failed may have made them longer.
+    const std::span<const Filter> filters = filters_before_;
+    return {std::span(before_).first(taken_),
+            {},
+            filters.first(filters.empty() ? 0 : taken_),
+            had_ignored_ ? &ignored_ : nullptr,
+            {}};
   }
 
   /// What the last update() did; empty where the algorithm does not count.
@@ -163,9 +169,10 @@ class PairTracker {
   void take(const Frame<D, Real>& frame, bool rebuild);
   void take_ignored(const Frame<D, Real>& frame, bool rebuild);
   void drop_ignored(const Change<D, Real>& change);
-  void keep(const Frame<D, Real>& frame);
+  void keep(const Frame<D, Real>& frame) noexcept;
 
   std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
+  std::size_t taken_ = 0;             // how many boxes that had
   std::vector<Box<D, Real>> now_;
   std::vector<Filter> filters_before_;  // both empty until there are filters
   std::vector<Filter> filters_now_;

@@ -120,7 +120,8 @@ class GridTracker final : public core::IncrementalTracker<D> {
     }
     for (; levels != 0; levels &= levels - 1) gather(step, std::countr_zero(levels));
     const std::size_t room = (blocks_.size() + 1) * Block::places;
-    if (begun_.size() < room) {
+    // `ended_` grows last: where it has room both have, also after memory ran out in between.
+    if (ended_.size() < room) {
       begun_.resize(2 * room);
       ended_.resize(2 * room);
     }

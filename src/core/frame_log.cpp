@@ -6,24 +6,34 @@
 namespace broadside::core {
 
 template <int D, typename Real>
-void FrameLog<D, Real>::add(const Frame<D, Real>& frame, const std::vector<Pair>& toggled) {
+void FrameLog<D, Real>::prepare(const Frame<D, Real>& frame, const std::vector<Pair>& toggled) {
   Step<D, Real> step{frame.boxes.size(), {frame.changed.begin(), frame.changed.end()}, {}, {}, toggled};
   for (const BoxId id : step.changed) {
     const bool is_there = index(id) < frame.boxes.size();
     step.boxes.push_back(is_there ? frame.boxes[index(id)] : absent_box<D, Real>());
     if (!frame.filters.empty()) step.filters.push_back(is_there ? frame.filters[index(id)] : Filter{});
   }
-  if (++count_ == 1) {
+  if (count_ == 0) {
+    first_ = {};
     first_.next(step);
     return;
   }
-  bytes_ += bytes_of(step);
-  steps_.push_back(std::move(step));
-  while (steps_.size() > 1 && (steps_.size() > most_frames_ || bytes_ > most_bytes_)) {
+  while (!steps_.empty() && (steps_.size() >= most_frames_ || bytes_ + bytes_of(step) > most_bytes_)) {
+    Replay<D, Real> second = first_;  // a step that is taken by halves could not be taken again
+    second.next(steps_.front());
+    first_ = std::move(second);
     bytes_ -= bytes_of(steps_.front());
-    first_.next(steps_.front());
     steps_.pop_front();
   }
+  prepared_.clear();
+  prepared_.push_back(std::move(step));
+}
+
+template <int D, typename Real>
+void FrameLog<D, Real>::add() noexcept {
+  if (count_++ == 0) return;
+  bytes_ += bytes_of(prepared_.front());
+  steps_.splice(steps_.end(), prepared_);
 }
 
 template <int D, typename Real>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
+#include <list>
 #include <vector>
 
 #include "broadside/history.hpp"
@@ -17,9 +17,12 @@ class FrameLog {
   FrameLog(std::size_t most_frames, std::size_t most_bytes)
       : most_frames_(most_frames), most_bytes_(most_bytes) {}
 
-  /// Takes the next frame, in which `frame.changed` says what changed, and `toggled` which pairs became
-  /// ignored or no longer are.
-  void add(const Frame<D, Real>& frame, const std::vector<Pair>& toggled);
+  /// Makes room for a frame, in which `frame.changed` says what changed, and `toggled` which pairs became
+  /// ignored or no longer are. It counts when add() has taken it.
+  void prepare(const Frame<D, Real>& frame, const std::vector<Pair>& toggled);
+
+  /// Takes the frame that was prepared last.
+  void add() noexcept;
 
   /// The frames that are kept.
   History<D, Real> history() const;
@@ -35,8 +38,9 @@ class FrameLog {
   std::size_t most_frames_;
   std::size_t most_bytes_;
   Replay<D, Real> first_;
-  std::deque<Step<D, Real>> steps_;
-  std::size_t bytes_ = 0;  // of the steps
+  std::list<Step<D, Real>> steps_;
+  std::list<Step<D, Real>> prepared_;  // one at most
+  std::size_t bytes_ = 0;              // of the steps
   std::size_t count_ = 0;
 };
 

@@ -43,14 +43,23 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   drop_ignored(change);
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
+  // Those that are ignored from now on come first.
+  const std::span<const Pair> no_longer =
+      std::ranges::partition(toggled_, [this](Pair pair) { return !ignored_.contains(pair); });
+  const std::span<const Pair> newly = std::span(toggled_).first(toggled_.size() - no_longer.size());
   try {
+    // Whatever takes memory comes before the events are told: what is told has been taken.
+    for (const Pair pair : newly) ignored_.insert(pair);
+    quarantined_.reserve(quarantined_.size() + invalid_.size());
     begun.put(begun_);
     ended.put(ended_);
   } catch (...) {
+    for (const Pair pair : newly) ignored_.erase(pair);
     begun.discard();
     ended.discard();
     throw;
   }
+  for (const Pair pair : no_longer) ignored_.erase(pair);
   keep(frame);
   dirty_ = false;
 }
@@ -84,8 +93,7 @@ void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
 template <int D, typename Real>
 void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
-  const std::size_t known = before_.size();
-  const std::size_t size = std::max(boxes.size(), known);
+  const std::size_t size = std::max(boxes.size(), taken_);
   const bool had_filters = !filters_before_.empty();
   core::resize_by_eighths(before_, size, absent_box<D, Real>());
   core::resize_by_eighths(now_, size, absent_box<D, Real>());
@@ -113,7 +121,7 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
     for (std::size_t i = 0; i < size; ++i) take(i);
   } else {
     for (const BoxId id : frame.changed) take(index(id));
-    for (std::size_t i = std::min(known, boxes.size()); i < size; ++i) take(i);
+    for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
   }
 }
 
@@ -156,9 +164,9 @@ void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
   }
 }
 
-/// Makes this frame the one before.
+/// Makes this frame the one before, but for what is ignored. There is room in quarantined_.
 template <int D, typename Real>
-void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
+void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();
   if (!quarantined_.empty() || !invalid_.empty()) {
     std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
@@ -177,9 +185,7 @@ void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) {
   before_.resize(size);
   now_.resize(size);
   flags_.resize(size);
-  for (const Pair pair : toggled_) {
-    if (!ignored_.insert(pair)) ignored_.erase(pair);
-  }
+  taken_ = size;
   had_ignored_ = frame.ignored != nullptr;
 }
 

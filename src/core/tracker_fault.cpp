@@ -23,11 +23,11 @@ Pairs without(const Pairs& pairs, const Pairs& some) {
 }
 
 /// The first event that was reported and did not happen, or the other way round, or was reported twice.
-std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, bool began) {
-  Pairs differing;
-  std::ranges::set_symmetric_difference(reported, happened, std::back_inserter(differing));
-  if (differing.empty()) return std::nullopt;
-  return Fault{differing.front(), began, std::ranges::binary_search(reported, differing.front())};
+std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, bool began) noexcept {
+  const auto [found, expected] = std::ranges::mismatch(reported, happened);
+  if (found == reported.end() && expected == happened.end()) return std::nullopt;
+  const bool is_reported = expected == happened.end() || (found != reported.end() && *found < *expected);
+  return Fault{is_reported ? *found : *expected, began, is_reported};
 }
 
 }  // namespace
@@ -47,9 +47,13 @@ std::string text_of(const Fault& fault) {
          (fault.began ? "began" : "ended");
 }
 
-std::optional<Fault> fault_of(const EventPairs& events, const Pairs& before, const Pairs& now) {
-  const auto began = first_fault(events.begun, without(now, before), true);
-  const auto ended = first_fault(events.ended, without(before, now), false);
+EventPairs events_between(const Pairs& before, const Pairs& now) {
+  return {without(now, before), without(before, now)};
+}
+
+std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expected) noexcept {
+  const auto began = first_fault(events.begun, expected.begun, true);
+  const auto ended = first_fault(events.ended, expected.ended, false);
   if (began && ended) return began->pair <= ended->pair ? began : ended;
   return began ? began : ended;
 }
@@ -66,7 +70,7 @@ std::optional<Fault> fault_at_the_end(PairTracker<D, Real>& tracker, const Histo
       std::ranges::set_union(still, events.begun, std::back_inserter(held));
       events = events_of(tracker, replay.next(step));
     }
-    return fault_of(events, held, pairs_by_definition(replay.frame()));
+    return fault_of(events, events_between(held, pairs_by_definition(replay.frame())));
   } catch (const std::exception&) {
     return std::nullopt;
   }

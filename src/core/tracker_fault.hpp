@@ -33,10 +33,11 @@ struct Fault {
 /// Such as "reported that the pair (1, 2) began".
 std::string text_of(const Fault& fault);
 
-/// The first pair whose events are not those that lead from the pairs of one frame to those of the next, both
-/// sorted.
-std::optional<Fault> fault_of(const EventPairs& events, const std::vector<Pair>& before,
-                              const std::vector<Pair>& now);
+/// The events that lead from the pairs of one frame to those of the next, both sorted.
+EventPairs events_between(const std::vector<Pair>& before, const std::vector<Pair>& now);
+
+/// The first pair whose events are not those expected.
+std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expected) noexcept;
 
 /// What a tracker does wrong in a history's last frame. If it throws, that is another failure, and none here.
 template <int D, typename Real>

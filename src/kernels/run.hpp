@@ -83,7 +83,8 @@ class RunBuffer {
 
   /// Makes room for `count` boxes, so that append() need not.
   void reserve(std::size_t count) {
-    if (count + read_ahead <= id_.size()) return;
+    // `apart_` grows last: where it has room all have, also after memory ran out in between.
+    if (count + read_ahead <= apart_.size()) return;
     for (int axis = 0; axis < D; ++axis) {
       min_[axis].resize(count + read_ahead);
       max_[axis].resize(count + read_ahead);

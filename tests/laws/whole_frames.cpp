@@ -103,7 +103,8 @@ std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame) {
 }
 
 template <int D, typename Real>
-std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames) {
+std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
+                       const RunUpdate& run) {
   WholeFrame<D, Real> last{};  // the one handed in before, whether taken or not
   std::vector<Pair> held;      // after the last whole update
   IgnoredPairs ignored;
@@ -120,10 +121,16 @@ std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame
     LimitedCollector begun(frame.begun_room);
     LimitedCollector ended(frame.ended_room);
     last = frame;
-    try {
+    const auto update = [&] {
       tracker.update(
           {frame.boxes, changed, frame.filters, frame.ignored ? &ignored : nullptr, ignored_changed}, begun,
           ended);
+    };
+    try {
+      if (!run)
+        update();
+      else if (!run(update))
+        continue;
     } catch (const SinkIsFull&) {
       continue;
     }
@@ -146,8 +153,10 @@ template std::vector<Pair> pairs_of(const WholeFrame<2>&);
 template std::vector<Pair> pairs_of(const WholeFrame<3>&);
 template std::vector<Pair> pairs_of(const WholeFrame<2, double>&);
 template std::vector<Pair> pairs_of(const WholeFrame<3, double>&);
-template std::string divergence(PairTracker<2>&, std::span<const WholeFrame<2>>);
-template std::string divergence(PairTracker<3>&, std::span<const WholeFrame<3>>);
-template std::string divergence(PairTracker<2, double>&, std::span<const WholeFrame<2, double>>);
-template std::string divergence(PairTracker<3, double>&, std::span<const WholeFrame<3, double>>);
+template std::string divergence(PairTracker<2>&, std::span<const WholeFrame<2>>, const RunUpdate&);
+template std::string divergence(PairTracker<3>&, std::span<const WholeFrame<3>>, const RunUpdate&);
+template std::string divergence(PairTracker<2, double>&, std::span<const WholeFrame<2, double>>,
+                                const RunUpdate&);
+template std::string divergence(PairTracker<3, double>&, std::span<const WholeFrame<3, double>>,
+                                const RunUpdate&);
 }  // namespace broadside::laws

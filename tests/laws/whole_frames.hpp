@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -31,10 +32,14 @@ struct WholeFrame {
 template <int D, typename Real>
 std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame);
 
+/// Runs an update. Returns false if it threw and counts as not taken.
+using RunUpdate = std::function<bool(const std::function<void()>& update)>;
+
 /// Hands the frames to the tracker, one after the other, and says what differs first from the events that
 /// lead from each whole update's pairs to the next one's; empty if nothing does. Throws what the tracker
-/// throws, but for what sinks threw.
+/// throws, but for what sinks threw. `run` makes updates fail in other ways.
 template <int D, typename Real>
-std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames);
+std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
+                       const RunUpdate& run = {});
 
 }  // namespace broadside::laws

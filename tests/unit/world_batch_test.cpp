@@ -105,6 +105,15 @@ TEST_F(WorldBatchTest, RemovesAllOrNone) {
   EXPECT_EQ(world_.update().ended.size(), 3u);
 }
 
+TEST_F(WorldBatchTest, AddsABoxOfItsOwn) {
+  const Handle first = world_.add(at(7));
+  for (int i = 0; i < 100; ++i) {
+    Handle added;
+    world_.add(std::span(&world_.box(first), 1), std::span(&added, 1));
+    ASSERT_EQ(world_.box(added), at(7)) << i;
+  }
+}
+
 TEST_F(WorldBatchTest, TakesNothingForNothing) {
   world_.add(std::span<const Box2>{}, std::span<Handle>{});
   world_.move(std::span<const Handle>{}, std::span<const Box2>{});

@@ -1,0 +1,58 @@
+// What is tried with too little memory.
+#include "memory_case.hpp"
+
+#include <ostream>
+
+#include "broadside/error.hpp"
+
+namespace broadside::laws {
+namespace {
+
+bool is_accepted(const MemoryCase& memory_case, const Spec& spec) {
+  try {
+    if (memory_case.dimension == 2)
+      make_tracker<2>(*memory_case.algorithm, spec);
+    else
+      make_tracker<3>(*memory_case.algorithm, spec);
+    return true;
+  } catch (const InvalidSpec&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<MemoryCase> memory_cases() {
+  std::vector<MemoryCase> cases;
+  for (const Algorithm& algorithm : algorithms()) {
+    for (const int dimension : {2, 3}) {
+      if (!algorithm.has_dimension(dimension)) continue;
+      for (const bool is_double : {false, true}) cases.push_back({&algorithm, dimension, is_double});
+    }
+  }
+  return cases;
+}
+
+std::string name(const MemoryCase& memory_case) {
+  return memory_case.algorithm->name + "_" + std::to_string(memory_case.dimension) + "d" +
+         (memory_case.is_double ? "_double" : "");
+}
+
+void PrintTo(const MemoryCase& memory_case, std::ostream* out) { *out << name(memory_case); }
+
+std::vector<Spec> specs_of(const MemoryCase& memory_case) {
+  const Algorithm& algorithm = *memory_case.algorithm;
+  std::vector<Spec> specs = {{algorithm.name, {}}};
+  for (const Tunable& tunable : algorithm.tunables) {
+    std::vector<std::string> values = tunable.choices;
+    // Leaves of a few boxes are many, and cells of one box wide as well.
+    if (tunable.name == "capacity") values = {"3"};
+    for (const std::string& value : values) {
+      Spec spec{algorithm.name, {{tunable.name, value}}};
+      if (is_accepted(memory_case, spec)) specs.push_back(std::move(spec));
+    }
+  }
+  return specs;
+}
+
+}  // namespace broadside::laws

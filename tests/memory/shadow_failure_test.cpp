@@ -1,0 +1,51 @@
+// ShadowTracker, where there is no memory to tell the fault that it has found.
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/shadow.hpp"
+#include "broadside/sinks.hpp"
+
+#include "injection.hpp"
+
+namespace broadside::laws {
+namespace {
+
+/// Never tells of any event.
+class SilentTracker final : public PairTracker<2> {
+ private:
+  void update_valid(const Change<2>&, PairSink&, PairSink&) override {}
+};
+
+/// Whether an update has told a fault; nothing if memory ran out.
+std::optional<Pair> told(PairTracker<2>& tracker, const std::vector<Box2>& boxes, Injector& injector) {
+  std::optional<Pair> pair;
+  PairCounter events;
+  injector.attempt([&] {
+    try {
+      tracker.update({boxes, {}}, events, events);
+    } catch (const Divergence& divergence) {
+      EXPECT_EQ(divergence.frame(), 0U);
+      EXPECT_TRUE(divergence.holds());
+      pair = divergence.pair();
+    }
+  });
+  return pair;
+}
+
+TEST(ShadowFailure, TellsAFaultAsSoonAsThereIsMemory) {
+  const std::vector<Box2> boxes(2, Box2{{0, 0}, {1, 1}});
+  for (std::uint64_t k = 0, failures = 1; failures > 0; ++k) {
+    ShadowTracker<2> shadow([] { return std::make_unique<SilentTracker>(); });
+    Injector injector(k, FailureKind::once);
+    std::optional<Pair> pair = told(shadow, boxes, injector);
+    failures = injector.failures();
+    if (!pair) pair = told(shadow, boxes, injector);
+    EXPECT_EQ(pair, (Pair{BoxId{0}, BoxId{1}})) << "allocation " << k;
+  }
+}
+
+}  // namespace
+}  // namespace broadside::laws
