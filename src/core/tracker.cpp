@@ -9,6 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "core/float_environment.hpp"
 #include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/sort_pairs.hpp"
@@ -23,6 +24,7 @@ constexpr std::size_t ignored_pair_bytes = 40;
 
 template <int D, typename Real>
 void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  const core::DefaultEnvironment environment;
   check(frame);
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
   take(frame, rebuild);
@@ -44,6 +46,7 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
   try {
+    const core::CallersEnvironment callers;
     begun.put(begun_);
     ended.put(ended_);
   } catch (...) {
