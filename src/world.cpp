@@ -28,9 +28,10 @@ Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
 }
 
 template <typename Real>
-Real rounded(double number) noexcept {
+Real rounded(const double& number) noexcept {
   const core::DefaultEnvironment environment;
-  return static_cast<Real>(number);
+  const volatile Real result = static_cast<Real>(number);
+  return result;
 }
 
 /// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
@@ -257,10 +258,10 @@ Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOption
 template <int D, typename Real>
 void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given) noexcept {
   mark_changed(slot);
-  const Box<D, Real> box = kept(given);
-  boxes[slot] = box;
+  boxes[slot] = kept(given);
   if (!has_margin()) return;
   const core::DefaultEnvironment environment;
+  const Box<D, Real>& box = boxes[slot];
   Box<D, Real>& seen = enlarged[slot];
   if (!is_absent(seen) && core::encloses(seen, box) &&
       core::encloses(enlarge(box, most_margins * margin), seen))

@@ -68,7 +68,8 @@ Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
     if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
     sum += outside * outside;
   }
-  return sum;
+  const volatile Real result = sum;
+  return result;
 }
 
 template <int D, typename Real>

@@ -6,27 +6,34 @@
 namespace broadside::core {
 namespace {
 
-/// The environment of this thread's caller, while a DefaultEnvironment has replaced it.
-thread_local constinit FloatControl callers = FloatControl::standard();
+/// Of the library's caller, while a DefaultEnvironment has replaced it.
+thread_local constinit FloatControl callers_control = FloatControl::standard();
 
 }  // namespace
 
 void DefaultEnvironment::enter() noexcept {
-  outer_ = std::exchange(callers, FloatControl::now());
+  outer_ = std::exchange(callers_control, callers_);
   FloatControl::standard().set();
 }
 
-void DefaultEnvironment::leave() noexcept { std::exchange(callers, outer_).set(); }
+void DefaultEnvironment::leave() const noexcept {
+  callers_control = outer_;
+  thread_.set();
+}
 
-CallersEnvironment::CallersEnvironment() noexcept : is_foreign_(!callers.is_standard()) {
+CallersEnvironment::CallersEnvironment() noexcept : callers_(callers_control) {
+  if (callers_.is_standard()) return;
   // What is called back may call the library again, as any caller.
-  if (is_foreign_) std::exchange(callers, FloatControl::standard()).set();
+  callers_control = FloatControl::standard();
+  callers_.set();
 }
 
 CallersEnvironment::~CallersEnvironment() {
-  if (!is_foreign_) return;
-  callers = FloatControl::now();
+  if (callers_.is_standard()) return;
+  callers_control = callers_;
   FloatControl::standard().set();
 }
+
+FloatControl CallersEnvironment::control() noexcept { return callers_control; }
 
 }  // namespace broadside::core

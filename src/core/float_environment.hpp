@@ -45,27 +45,39 @@ struct FloatControl {
 /// function that compares or computes coordinates begins with one, and so does each task of an executor.
 /// Where the thread is in the default environment already, it costs a read of the register, some
 /// nanoseconds.
+///
+/// Compilers do not know what it does, and may move arithmetic on local values across its beginning and its
+/// end. So read operands through references, and write a result that is returned to a volatile variable; a
+/// call of a function in another source needs neither.
 class DefaultEnvironment {
  public:
-  DefaultEnvironment() noexcept : is_foreign_(!FloatControl::now().is_standard()) {
-    if (is_foreign_) enter();
+  DefaultEnvironment() noexcept : thread_(FloatControl::now()), callers_(thread_) {
+    if (is_foreign()) enter();
   }
+
+  /// For a task in a thread of an executor: `callers` is what CallersEnvironment::control() says in the
+  /// thread that hands out the task.
+  explicit DefaultEnvironment(FloatControl callers) noexcept
+      : thread_(FloatControl::now()), callers_(callers) {
+    if (is_foreign()) enter();
+  }
+
   ~DefaultEnvironment() {
-    if (is_foreign_) leave();
+    if (is_foreign()) leave();
   }
   DefaultEnvironment(const DefaultEnvironment&) = delete;
   DefaultEnvironment& operator=(const DefaultEnvironment&) = delete;
 
-  /// Whether the caller's is another one. Then what calls back needs a CallersEnvironment.
-  bool is_foreign() const noexcept { return is_foreign_; }
+  /// Whether the thread's or the caller's is another one. Then what calls back needs a CallersEnvironment.
+  bool is_foreign() const noexcept { return !thread_.is_standard() || !callers_.is_standard(); }
 
  private:
-  // In a source of their own, so that no compiler moves arithmetic across them.
   void enter() noexcept;
-  void leave() noexcept;
+  void leave() const noexcept;
 
-  bool is_foreign_;
-  FloatControl outer_ = FloatControl::standard();
+  FloatControl thread_;                            // what this thread had
+  FloatControl callers_;                           // what the library's caller has,
+  FloatControl outer_ = FloatControl::standard();  // and that of a DefaultEnvironment around this one
 };
 
 /// Gives this thread the environment of the library's caller again while it lives: around calls of sinks,
@@ -77,8 +89,10 @@ class CallersEnvironment {
   CallersEnvironment(const CallersEnvironment&) = delete;
   CallersEnvironment& operator=(const CallersEnvironment&) = delete;
 
+  static FloatControl control() noexcept;
+
  private:
-  bool is_foreign_;
+  FloatControl callers_;
 };
 
 }  // namespace broadside::core

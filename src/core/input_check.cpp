@@ -27,7 +27,8 @@ bool is_present_by_value(const Box<D, Real>& box) noexcept {
   }
   if (is_certain) return true;
   const DefaultEnvironment environment;
-  return is_present(box);
+  const volatile bool result = is_present(box);
+  return result;
 }
 
 template <int D, typename Real>

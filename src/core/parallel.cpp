@@ -308,10 +308,11 @@ void Parallel::run_lanes(const std::function<void(std::size_t)>& body) {
   std::atomic<bool> begun = false;
   std::atomic<std::size_t> ended = 0;
   begun.store(true, std::memory_order_release);
-  // oneTBB's threads keep the environment in which it was called first.
+  // oneTBB's threads have the environment in which it was called first, and in a task this one has as well.
+  const FloatControl control = CallersEnvironment::control();
   const CallersEnvironment callers;
   executor_->run(lanes_, [&](std::size_t lane) {
-    const DefaultEnvironment environment;
+    const DefaultEnvironment environment(control);
     static_cast<void>(begun.load(std::memory_order_acquire));
     body(lane);
     ended.fetch_add(1, std::memory_order_release);

@@ -73,6 +73,14 @@ inline std::span<const Environment> environments() {
   return all;
 }
 
+/// The one that changes most of what a search computes.
+inline const Environment& hardest() {
+  for (const Environment& environment : environments()) {
+    if (environment.rounding == FE_DOWNWARD && environment.set != 0) return environment;
+  }
+  return environments().front();
+}
+
 /// Sets the environment of this thread while it lives.
 class InEnvironment {
  public:
