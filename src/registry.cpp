@@ -8,6 +8,7 @@
 
 #include "algorithms/descriptions.hpp"
 #include "core/double_finder.hpp"
+#include "core/float_environment.hpp"
 #include "paper/descriptions.hpp"
 
 namespace broadside {
@@ -33,6 +34,7 @@ std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Setti
     throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other +
                       "D boxes");
   }
+  const core::DefaultEnvironment environment;  // how a number is read depends on it
   const Settings settings(spec, algorithm.tunables);
   std::unique_ptr<Made> made = maker(settings);
   if (made != nullptr && has_threads(algorithm)) {

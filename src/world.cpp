@@ -10,6 +10,7 @@
 #include "broadside/shadow.hpp"
 
 #include "core/encloses.hpp"
+#include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 #include "world_state.hpp"
 
@@ -24,6 +25,13 @@ Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
     box.max[axis] += margin;
   }
   return box;
+}
+
+template <typename Real>
+Real rounded(const double& number) noexcept {
+  const core::DefaultEnvironment environment;
+  const volatile Real result = static_cast<Real>(number);
+  return result;
 }
 
 /// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
@@ -59,7 +67,7 @@ template <int D, typename Real>
 World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
                              const WorldOptions& its_options, bool is_own)
     : options(its_options),
-      margin(static_cast<Real>(its_options.margin)),
+      margin(rounded<Real>(its_options.margin)),
       is_own_tracker(is_own),
       tracker(is_own || !its_tracker || !its_options.shadow
                   ? std::move(its_tracker)
@@ -189,7 +197,7 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
 /// Refuses what is no box for add() and move(): an absent one is what remove() is for.
 template <int D, typename Real>
 void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const {
-  if (is_present(box)) return;
+  if (core::is_present_by_value(box)) return;
   if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
   const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
   if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
@@ -250,9 +258,10 @@ Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOption
 template <int D, typename Real>
 void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given) noexcept {
   mark_changed(slot);
-  const Box<D, Real> box = kept(given);
-  boxes[slot] = box;
+  boxes[slot] = kept(given);
   if (!has_margin()) return;
+  const core::DefaultEnvironment environment;
+  const Box<D, Real>& box = boxes[slot];
   Box<D, Real>& seen = enlarged[slot];
   if (!is_absent(seen) && core::encloses(seen, box) &&
       core::encloses(enlarge(box, most_margins * margin), seen))

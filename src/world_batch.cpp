@@ -8,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "core/float_environment.hpp"
 #include "world_state.hpp"
 
 namespace broadside {
@@ -89,6 +90,7 @@ std::vector<Handle> World<D, Real>::quarantined() const {
 
 template <int D, typename Real>
 void World<D, Real>::shift_origin(const std::array<Real, D>& origin) {
+  const core::DefaultEnvironment environment;
   State& state = *state_;
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(origin[axis])) continue;

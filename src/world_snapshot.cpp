@@ -8,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "core/float_environment.hpp"
 #include "core/snapshot_format.hpp"
 #include "core/snapshot_parts.hpp"
 #include "world_state.hpp"
@@ -60,6 +61,7 @@ void put_last_frame(ByteWriter& out, const Frame<D, Real>& last, const Frame<D, 
 
 template <int D, typename Real>
 std::vector<std::byte> World<D, Real>::snapshot() const {
+  const core::DefaultEnvironment environment;
   const State& state = *state_;
   const std::span<const HandlePair> current =
       state.options.keep_pairs ? pairs() : std::span<const HandlePair>{};
@@ -137,6 +139,7 @@ void World<D, Real>::State::put(ByteWriter& out, std::span<const HandlePair> pai
 
 template <int D, typename Real>
 void World<D, Real>::restore(std::span<const std::byte> bytes) {
+  const core::DefaultEnvironment environment;
   ByteReader in(bytes);
   for (const unsigned char byte : snapshot::magic)
     expect_equal("a byte of the magic number", in.get<unsigned char>(), byte);

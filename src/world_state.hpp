@@ -14,6 +14,7 @@
 #include "broadside/world.hpp"
 
 #include "core/current_pairs.hpp"
+#include "core/input_check.hpp"
 #include "core/pair_graph.hpp"
 #include "core/slot_set.hpp"
 
@@ -75,7 +76,7 @@ struct World<D, Real>::State {
   [[noreturn]] void refuse(Handle handle, const char* action) const;
   void check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const;
   Box<D, Real> kept(const Box<D, Real>& box) const noexcept {
-    return is_present(box) ? box : absent_box<D, Real>();
+    return core::is_present_by_value(box) ? box : absent_box<D, Real>();
   }
   void reserve(std::size_t boxes, bool with_filters, bool with_user_data);
   std::uint32_t next_slot() const noexcept;

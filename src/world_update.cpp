@@ -11,6 +11,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
+#include "core/float_environment.hpp"
 #include "core/sort_pairs.hpp"
 #include "world_state.hpp"
 
@@ -40,6 +41,7 @@ void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair
 
 template <int D, typename Real>
 Events World<D, Real>::update() {
+  const core::DefaultEnvironment environment;
   State& state = *state_;
   state.note_changes_for_index();
   const bool is_again = !state.refined.empty();
@@ -131,8 +133,13 @@ void World<D, Real>::State::refine() {
   if (refilters_all) graph.for_each(look);
 
   std::ranges::sort(questions, {}, &Question::pair);
-  for (const Question& question : questions)
-    touched[question.touched].accepted = predicate(handle(question.pair.first), handle(question.pair.second));
+  if (!questions.empty()) {
+    const core::CallersEnvironment callers;
+    for (const Question& question : questions) {
+      touched[question.touched].accepted =
+          predicate(handle(question.pair.first), handle(question.pair.second));
+    }
+  }
 
   make_room(refined.begun, touched.size());
   make_room(refined.ended, touched.size());

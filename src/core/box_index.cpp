@@ -10,6 +10,7 @@
 #include "broadside/error.hpp"
 #include "broadside/queries.hpp"
 
+#include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 
 namespace broadside {
@@ -39,11 +40,27 @@ void check(const BoxCast<D, Real>& cast) {
   if (!(cast.furthest >= 0)) refuse("a cast's furthest parameter", &cast.furthest, 1, "0, more, or infinity");
 }
 
+/// Calls a visitor in the floating-point environment of the query's caller.
+template <typename Found>
+class CallersVisitor final : public Visitor<Found> {
+ public:
+  explicit CallersVisitor(Visitor<Found>& visitor) : visitor_(visitor) {}
+
+  bool visit(std::span<const Found> found) override {
+    const core::CallersEnvironment environment;
+    return visitor_.visit(found);
+  }
+
+ private:
+  Visitor<Found>& visitor_;
+};
+
 }  // namespace
 
 template <int D, typename Real>
 Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
                       const Box<D, Real>& box) noexcept {
+  const core::DefaultEnvironment environment;
   Real sum = 0;
   for (int axis = 0; axis < D; ++axis) {
     Real outside = 0;
@@ -51,11 +68,13 @@ Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
     if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
     sum += outside * outside;
   }
-  return sum;
+  const volatile Real result = sum;
+  return result;
 }
 
 template <int D, typename Real>
 void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
+  const core::DefaultEnvironment environment;
   const std::size_t size = std::max(size_, frame.boxes.size());
   core::check_count(frame.boxes.size());
   if (!frame.filters.empty() && frame.filters.size() != frame.boxes.size()) {
@@ -99,23 +118,30 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
 template <int D, typename Real>
 bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
                                     const Filter* asker) const {
+  const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
     core::refuse_box(box, 0, "the box or point asked about");
   }
-  return find_overlapping(box, visitor, asker);
+  if (!environment.is_foreign()) return find_overlapping(box, visitor, asker);
+  CallersVisitor callers(visitor);
+  return find_overlapping(box, callers, asker);
 }
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                              const Filter* asker) const {
+  const core::DefaultEnvironment environment;
   check(cast);
-  return find_hits(cast, visitor, asker);
+  if (!environment.is_foreign()) return find_hits(cast, visitor, asker);
+  CallersVisitor callers(visitor);
+  return find_hits(cast, callers, asker);
 }
 
 template <int D, typename Real>
 std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& cast,
                                                       const Filter* asker) const {
+  const core::DefaultEnvironment environment;
   check(cast);
   return find_first_hit(cast, asker);
 }
@@ -123,6 +149,7 @@ std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& ca
 template <int D, typename Real>
 void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
                                 const Filter* asker, Real furthest) const {
+  const core::DefaultEnvironment environment;
   for (const Real coordinate : point) {
     if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
   }

@@ -7,6 +7,7 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 
+#include "core/callers_sink.hpp"
 #include "core/filter_sink.hpp"
 #include "core/input_check.hpp"
 #include "core/parallel.hpp"
@@ -104,6 +105,9 @@ void deliver(PairSink& pairs, Search search) {
 
 template <int D, typename Real>
 void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find(boxes, sink); });
   core::check_count(boxes.size());
   const std::size_t absent = check(boxes);
   quarantined_.clear();
@@ -127,6 +131,9 @@ void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pa
 template <int D, typename Real>
 void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
                                        std::span<const Box<D, Real>> right, PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find_between(left, right, sink); });
   core::check_count(left.size() + right.size());
   const std::size_t absent_left = check_side("left", [&] { return check(left); });
   const std::size_t absent_right = check_side("right", [&] { return check(right); });
@@ -150,6 +157,9 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
 template <int D, typename Real>
 void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                        PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find_between(boxes, left_count, sink); });
   const std::span<const Box<D, Real>> left = boxes.first(left_count);
   const std::span<const Box<D, Real>> right = boxes.subspan(left_count);
   core::check_count(boxes.size());

@@ -1,14 +1,35 @@
 // Refuses boxes that no algorithm may see, before anything has changed.
 #include "core/input_check.hpp"
 
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "broadside/error.hpp"
 
 #include "core/box_text.hpp"
+#include "core/float_environment.hpp"
 
 namespace broadside::core {
+
+template <int D, typename Real>
+bool is_present_by_value(const Box<D, Real>& box) noexcept {
+  using Bits = std::conditional_t<sizeof(Real) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+  bool is_certain = true;
+  for (int axis = 0; axis < D; ++axis) {
+    const Real min = box.min[axis];
+    const Real max = box.max[axis];
+    // Denormals taken for zeros make numbers equal that are not, and never one less that is not.
+    is_certain &=
+        std::isless(min, max) || (min == max && std::bit_cast<Bits>(min) == std::bit_cast<Bits>(max));
+  }
+  if (is_certain) return true;
+  const DefaultEnvironment environment;
+  const volatile bool result = is_present(box);
+  return result;
+}
 
 template <int D, typename Real>
 void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name) {
@@ -39,6 +60,10 @@ void check_count(std::size_t count) {
     throw InvalidInput(most, std::to_string(count) + " boxes; expected at most " + std::to_string(most));
 }
 
+template bool is_present_by_value(const Box<2>&) noexcept;
+template bool is_present_by_value(const Box<3>&) noexcept;
+template bool is_present_by_value(const DoubleBox2&) noexcept;
+template bool is_present_by_value(const DoubleBox3&) noexcept;
 template void refuse_box(const Box<2>&, std::size_t, const std::string&);
 template void refuse_box(const Box<3>&, std::size_t, const std::string&);
 template void refuse_box(const DoubleBox2&, std::size_t, const std::string&);

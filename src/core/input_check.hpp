@@ -16,6 +16,11 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
   return !is_present(box) && !is_absent(box);
 }
 
+/// is_present(), whatever the floating-point environment: where that takes denormals for zeros, is_present()
+/// does. For where a DefaultEnvironment would cost more than the rest.
+template <int D, typename Real>
+bool is_present_by_value(const Box<D, Real>& box) noexcept;
+
 /// Throws InvalidInput with the box's values, which `name` goes before.
 template <int D, typename Real>
 [[noreturn]] void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 
 namespace broadside {
@@ -45,6 +46,7 @@ void make_finite(Box<D, Real>& part, const Box<D, Real>& bounds) {
 template <int D, typename Real>
 Outline<D, Real> outline(PairFinder<D, Real>& finder,
                          std::type_identity_t<std::span<const Box<D, Real>>> boxes) {
+  const core::DefaultEnvironment environment;
   core::check_count(boxes.size());
   core::check_boxes(boxes, 0, finder.bad_input());
   auto* const outlined = dynamic_cast<Outlined<D, Real>*>(&finder);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/filter_sink.hpp"
+#include "core/float_environment.hpp"
 
 namespace broadside::core {
 namespace {
@@ -199,6 +200,7 @@ Parallel::~Parallel() = default;
 void Parallel::start(const Workers& workers, std::size_t boxes) {
   lanes_ = 1;
   if (workers.threads == 1) return;
+  const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
   if (executor_ == nullptr) return;
   const std::size_t threads = workers.threads == 0 ? executor_->threads() : workers.threads;
@@ -306,7 +308,11 @@ void Parallel::run_lanes(const std::function<void(std::size_t)>& body) {
   std::atomic<bool> begun = false;
   std::atomic<std::size_t> ended = 0;
   begun.store(true, std::memory_order_release);
+  // oneTBB's threads have the environment in which it was called first, and in a task this one has as well.
+  const FloatControl control = CallersEnvironment::control();
+  const CallersEnvironment callers;
   executor_->run(lanes_, [&](std::size_t lane) {
+    const DefaultEnvironment environment(control);
     static_cast<void>(begun.load(std::memory_order_acquire));
     body(lane);
     ended.fetch_add(1, std::memory_order_release);

@@ -9,6 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "core/float_environment.hpp"
 #include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/sort_pairs.hpp"
@@ -23,6 +24,7 @@ constexpr std::size_t ignored_pair_bytes = 40;
 
 template <int D, typename Real>
 void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  const core::DefaultEnvironment environment;
   check(frame);
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
   take(frame, rebuild);
@@ -51,6 +53,7 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
     // Whatever takes memory comes before the events are told: what is told has been taken.
     for (const Pair pair : newly) ignored_.insert(pair);
     quarantined_.reserve(quarantined_.size() + invalid_.size());
+    const core::CallersEnvironment callers;
     begun.put(begun_);
     ended.put(ended_);
   } catch (...) {

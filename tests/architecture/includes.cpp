@@ -26,6 +26,7 @@ const std::vector<Rule>& rules() {
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
+      {"src/core/float_environment", library + R"(|"core/[a-z_]+\.hpp"|<[a-z]+intrin\.h>)"},
       {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
       {"src/kernels/",
        standard +

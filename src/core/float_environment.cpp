@@ -1,0 +1,39 @@
+// The floating-point environment: set, and set back.
+#include "core/float_environment.hpp"
+
+#include <utility>
+
+namespace broadside::core {
+namespace {
+
+/// Of the library's caller, while a DefaultEnvironment has replaced it.
+thread_local constinit FloatControl callers_control = FloatControl::standard();
+
+}  // namespace
+
+void DefaultEnvironment::enter() noexcept {
+  outer_ = std::exchange(callers_control, callers_);
+  FloatControl::standard().set();
+}
+
+void DefaultEnvironment::leave() const noexcept {
+  callers_control = outer_;
+  thread_.set();
+}
+
+CallersEnvironment::CallersEnvironment() noexcept : callers_(callers_control) {
+  if (callers_.is_standard()) return;
+  // What is called back may call the library again, as any caller.
+  callers_control = FloatControl::standard();
+  callers_.set();
+}
+
+CallersEnvironment::~CallersEnvironment() {
+  if (callers_.is_standard()) return;
+  callers_control = callers_;
+  FloatControl::standard().set();
+}
+
+FloatControl CallersEnvironment::control() noexcept { return callers_control; }
+
+}  // namespace broadside::core

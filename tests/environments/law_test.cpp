@@ -1,0 +1,220 @@
+// The law in every floating-point environment: what the library answers is what it answers in the default
+// one, in the same order, on every instruction set.
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/outline.hpp"
+#include "broadside/queries.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "environment.hpp"
+#include "tests/instruction_sets.hpp"
+#include "tests/laws/hard_inputs.hpp"
+#include "tests/laws/harder_histories.hpp"
+#include "tests/laws/law_case.hpp"
+
+namespace broadside::laws {
+namespace {
+
+/// The boxes, in double with bits that a float does not have, down to the denormals of a double.
+template <int D, typename Real>
+std::vector<Box<D, Real>> real(const std::vector<Box<D>>& floats) {
+  std::vector<Box<D, Real>> boxes;
+  for (const Box<D>& box : floats) {
+    Box<D, Real>& result = boxes.emplace_back();
+    for (int axis = 0; axis < D; ++axis) {
+      result.min[axis] = box.min[axis];
+      result.max[axis] = box.max[axis];
+      if (std::is_same_v<Real, float> || is_absent(box) || boxes.size() % 3 == 0) continue;
+      if (result.min[axis] == 0) result.min[axis] -= std::numeric_limits<Real>::denorm_min();
+      if (result.max[axis] == 0) result.max[axis] += std::numeric_limits<Real>::denorm_min();
+      if (boxes.size() % 3 == 1) continue;
+      result.min[axis] -= std::min<Real>(std::abs(result.min[axis]), 1) * Real(0x1p-40);
+      result.max[axis] += std::min<Real>(std::abs(result.max[axis]), 1) * Real(0x1p-40);
+    }
+  }
+  return boxes;
+}
+
+/// The hard inputs of both types of coordinates: body(name, boxes).
+template <int D, typename Body>
+void for_hard_inputs(const Algorithm& algorithm, Body body) {
+  for (const Input<D>& input : hard_inputs<D>(algorithm, 100)) {
+    body(input.name, input.boxes);
+    body(input.name + ", in double", real<D, double>(input.boxes));
+  }
+}
+
+/// All that a search gives, in its order; between two sets if `left_count` is not 0.
+template <int D, typename Real>
+std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+                        std::size_t left_count = 0) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  if (left_count == 0)
+    finder.find(boxes, collector);
+  else
+    finder.find_between(boxes, left_count, collector);
+  return pairs;
+}
+
+class EnvironmentLaw : public Law {};
+
+TEST_P(EnvironmentLaw, FindsTheSamePairsInTheSameOrder) {
+  const std::vector<std::string> sets = instruction_sets();
+  std::size_t turn = 0;
+  in_dimension([&]<int D>() {
+    for_hard_inputs<D>(
+        algorithm(), [&]<typename Real>(const std::string& name, const std::vector<Box<D, Real>>& boxes) {
+          const auto finder = make_finder<D, Real>(algorithm(), spec());
+          const std::vector<Pair> expected = found(*finder, boxes);
+          const std::vector<Pair> between = found(*finder, boxes, boxes.size() / 3);
+          for (const Environment& environment : environments()) {
+            const InEnvironment in(environment);
+            EXPECT_EQ(found(*finder, boxes), expected) << name << ", " << environment.name;
+            EXPECT_EQ(found(*finder, boxes, boxes.size() / 3), between) << name << ", " << environment.name;
+          }
+          // On each of the other instruction sets another environment in turn.
+          for (std::size_t i = 1; i < sets.size(); ++i) {
+            const Environment& environment = environments()[++turn % environments().size()];
+            const OnInstructionSet on(sets[i]);
+            const InEnvironment in(environment);
+            EXPECT_EQ(found(*finder, boxes), expected) << name << ", " << environment.name << ", " << sets[i];
+          }
+        });
+  });
+}
+
+/// Frames made of one input: all boxes in other places, a few of them back, some gone, the first frame again.
+template <int D, typename Real>
+std::vector<std::vector<Box<D, Real>>> frames_of(const std::vector<Box<D, Real>>& boxes) {
+  std::vector<std::vector<Box<D, Real>>> frames(5, boxes);
+  std::ranges::reverse(frames[1]);
+  frames[2] = frames[3] = frames[1];
+  for (std::size_t i = 0; i < boxes.size(); i += 8) frames[2][i] = frames[3][i] = boxes[i];
+  for (std::size_t i = 0; i < boxes.size(); i += 3) frames[3][i] = absent_box<D, Real>();
+  return frames;
+}
+
+/// What a tracker tells of frames whose boxes may all have changed, or of which only some are listed.
+template <int D, typename Real>
+class Follower {
+ public:
+  explicit Follower(const Algorithm& algorithm, const Spec& spec)
+      : tracker_(make_tracker<D, Real>(algorithm, spec)) {}
+
+  std::vector<Pair> events(const std::vector<Box<D, Real>>& boxes) {
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (i >= last_.size() || bits(boxes[i]) != bits(last_[i])) changed.push_back(BoxId(i));
+    }
+    last_ = boxes;
+    std::vector<Pair> events;
+    PairCollector begun(events);
+    PairCollector ended(events);
+    tracker_->update({.boxes = boxes, .changed = changed}, begun, ended);
+    return events;
+  }
+
+ private:
+  /// Compared as integers, which no environment changes.
+  static auto bits(const Box<D, Real>& box) {
+    return std::bit_cast<
+        std::array<std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>, 2 * D>>(box);
+  }
+
+  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  std::vector<Box<D, Real>> last_;
+};
+
+TEST_P(EnvironmentLaw, TracksTheSamePairs) {
+  std::size_t turn = 0;
+  in_dimension([&]<int D>() {
+    const auto expect_same = [&]<typename Real>(const std::string& name,
+                                                const std::vector<std::vector<Box<D, Real>>>& frames) {
+      Follower<D, Real> alone(algorithm(), spec());
+      std::vector<std::vector<Pair>> expected;
+      for (const std::vector<Box<D, Real>>& boxes : frames) expected.push_back(alone.events(boxes));
+      // The one with most in it, and another in turn.
+      for (const Environment* environment : {&environments()[++turn % environments().size()], &hardest()}) {
+        const InEnvironment in(*environment);
+        Follower<D, Real> follower(algorithm(), spec());
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+          ASSERT_EQ(follower.events(frames[i]), expected[i])
+              << name << ", frame " << i << ", " << environment->name;
+        }
+      }
+    };
+    for_hard_inputs<D>(algorithm(), [&](const std::string& name, const auto& boxes) {
+      if (boxes.size() <= 300) expect_same(name, frames_of(boxes));
+    });
+    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+      std::vector<std::vector<Box<D>>> frames;
+      for (const WholeFrame<D>& frame : named.frames) frames.push_back(frame.boxes);
+      expect_same(named.name, frames);
+    }
+  });
+}
+
+/// Runs tasks in threads of their own, each of which has another environment.
+class ForeignThreads final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 4; }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < count; ++i) {
+      threads.emplace_back([&task, i] {
+        const InEnvironment in(environments()[i % environments().size()]);
+        task(i);
+      });
+    }
+  }
+};
+
+TEST_P(EnvironmentLaw, FindsTheSamePairsByThreadsOfOtherEnvironments) {
+  if (!has_threads(algorithm())) GTEST_SKIP() << algorithm().name << " uses one thread";
+  ForeignThreads executor;
+  std::size_t turn = 0;
+  in_dimension([&]<int D>() {
+    for_hard_inputs<D>(algorithm(), [&]<typename Real>(const std::string& name,
+                                                       const std::vector<Box<D, Real>>& boxes) {
+      if (++turn % 8 != 0) return;
+      const auto finder = make_finder<D, Real>(algorithm(), spec());
+      const std::vector<Pair> expected = found(*finder, boxes);
+      finder->set_workers({.threads = environments().size(), .executor = &executor, .boxes_per_thread = 1});
+      EXPECT_EQ(found(*finder, boxes), expected) << name;
+    });
+  });
+}
+
+TEST_P(EnvironmentLaw, DrawsTheSameOutline) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    for (const Input<D>& input : hard_inputs<D>(algorithm(), 100)) {
+      const Outline<D> expected = outline(*finder, input.boxes);
+      for (const Environment& environment : environments()) {
+        const auto drawn = [&] {
+          const InEnvironment in(environment);
+          return outline(*finder, input.boxes);
+        }();
+        EXPECT_EQ(drawn.caption, expected.caption) << input.name << ", " << environment.name;
+        EXPECT_EQ(drawn.levels, expected.levels) << input.name << ", " << environment.name;
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Library, EnvironmentLaw, testing::ValuesIn(cases_of(algorithms())), case_name);
+
+}  // namespace
+}  // namespace broadside::laws
