@@ -141,10 +141,14 @@ class Parallel::SharedSearch {
   }
 
  private:
-  void search_piece(std::size_t piece, std::size_t lane, FilterChain& chain) {
+  Statistics search_piece(std::size_t piece, std::size_t lane, FilterChain& chain) {
     const auto begin = [&](std::size_t i) { return parts_ / pieces_ * i + std::min(i, parts_ % pieces_); };
-    const Statistics more = search_({begin(piece), begin(piece + 1)}, lane, chain.front());
+    const Statistics statistics = search_({begin(piece), begin(piece + 1)}, lane, chain.front());
     chain.flush();
+    return statistics;
+  }
+
+  void add(std::size_t lane, const Statistics& more) {
     done_[lane].tests += more.tests;
     done_[lane].references += more.references;
   }
@@ -159,7 +163,7 @@ class Parallel::SharedSearch {
       try {
         FilterChain chain(filters_, *clones[lane]);
         while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
-          search_piece(piece, lane, chain);
+          add(lane, search_piece(piece, lane, chain));
         clones[lane]->flush();
       } catch (...) {
         errors_.note(piece);
@@ -193,21 +197,23 @@ class Parallel::SharedSearch {
       FilterChain buffered(filters_, buffer);
       FilterChain direct(filters_, target_);
       do {
+        if (delivery.is_callers_thread()) {
+          do {
+            at = delivery.delivered();
+          } while (delivery.deliver_next());
+        }
         const std::optional<Delivery::Piece> piece = delivery.take();
         if (!piece) return;
         at = piece->number;
         try {
-          search_piece(at, lane, piece->is_direct ? direct : buffered);
+          const Statistics more = search_piece(at, lane, piece->is_direct ? direct : buffered);
           delivery.end(*piece, buffer.take());
+          add(lane, more);
         } catch (const NoRoom&) {
           buffer.clear();
           delivery.give_up(*piece);
           return;
         }
-        if (!delivery.is_callers_thread()) continue;
-        do {
-          at = delivery.delivered();
-        } while (delivery.deliver_next());
       } while (!only_one && !errors_.any());
     } catch (...) {
       errors_.note(at);
