@@ -1,6 +1,5 @@
 // World: the memory it holds, how it is given back, and what there is to count.
 #include <algorithm>
-#include <new>
 #include <utility>
 
 #include "broadside/sinks.hpp"
@@ -62,8 +61,8 @@ void World<D, Real>::State::release_unneeded() noexcept {
   if (!wants_release) return;
   try {
     release();
-  } catch (const std::bad_alloc&) {
-    // Memory is short already: it stays as it is.
+  } catch (...) {
+    // Memory is short already, or an executor threw whatever it throws: the memory stays as it is.
   }
 }
 

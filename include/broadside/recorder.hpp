@@ -105,7 +105,10 @@ class Recorder {
   using Write = std::function<bool(const void* bytes, std::size_t count)>;
 
   Recorder() = default;
-  ~Recorder() { close(); }
+  /// Does what close() does, but for telling what failed.
+  ~Recorder() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 

@@ -25,6 +25,9 @@ constexpr std::size_t most_beyond = 32;
 /// A box may stand in a bucket with so many others on average, before it pays to sort them all.
 constexpr std::size_t most_in_bucket = 48;
 
+/// In a cell of so many boxes, to count those that go on costs less than room for all of them.
+constexpr std::size_t crowd = 1024;
+
 constexpr float largest = std::numeric_limits<float>::max();
 
 }  // namespace
@@ -66,8 +69,8 @@ void GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   next_along_.size = 0;
   if (count == 0) return;
   // Room for one more than there may be: where none goes on, one is written all the same.
-  next_up_.reserve(count + 1);
-  if constexpr (D == 3) next_along_.reserve(count + 1);
+  next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
+  if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
   bucket_of_.resize(std::max(bucket_of_.size(), count));
   const Buckets buckets = cut(range_, count);
   starts_.assign(buckets.count, 0);
@@ -85,6 +88,16 @@ void GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
   statistics_.tests += kernels::sweep(run_.view(slack), pairs);
+}
+
+template <int D>
+std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, int axis, float border) {
+  if (count <= crowd) return count;
+  std::size_t reaching = 0;
+  for (const auto& list : lists)
+    reaching += static_cast<std::size_t>(std::ranges::count_if(
+        list, [axis, border](const Filed<D>& filed) { return filed.box.max[axis] >= border; }));
+  return reaching;
 }
 
 template <int D>
@@ -204,17 +217,21 @@ void GridSweep<D>::file_by_bucket(const Lists& lists) {
 template <int D>
 void GridSweep<D>::file_exactly(const Lists& lists, std::size_t count) {
   const std::span<core::KeyedPlace> places = radix_.places(count);
-  together_.clear();
+  std::uint32_t next = 0;
   for (const auto& list : lists) {
     for (const Filed<D>& filed : list) {
-      places[together_.size()] = {core::sort_key(filed.box.min[axes_[0]]),
-                                  static_cast<std::uint32_t>(together_.size())};
-      together_.push_back(filed);
+      places[next] = {core::sort_key(filed.box.min[axes_[0]]), next};
+      ++next;
     }
   }
+  const auto filed_at = [&lists](std::size_t place) -> const Filed<D>& {
+    std::size_t list = 0;
+    while (place >= lists[list].size()) place -= lists[list++].size();
+    return lists[list][place];
+  };
   run_.clear();
   for (const core::KeyedPlace& place : radix_.sort()) {
-    const Filed<D>& filed = together_[place.place];
+    const Filed<D>& filed = filed_at(place.place);
     Box<D> box;
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] = filed.box.min[axes_[axis]];

@@ -83,6 +83,9 @@ class GridSweep {
   /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach.
   void sweep_cell(const Lists& lists, float column_border, float row_border, PairSink& pairs);
 
+  /// How many boxes of a cell's `count` reach a border; of a few, perhaps more.
+  static std::size_t most_reaching(const Lists& lists, std::size_t count, int axis, float border);
+
   static Buckets cut(const SweptRange& range, std::size_t count);
 
   /// Counts a list's boxes by bucket, and sends them on.
@@ -108,7 +111,6 @@ class GridSweep {
   std::vector<std::uint32_t> starts_;  // by bucket: how many boxes; then where the next one goes
   std::vector<std::uint16_t> bucket_of_;
   core::RadixSort radix_;
-  std::vector<Filed<D>> together_;
   kernels::RunBuffer<D> run_;
 };
 

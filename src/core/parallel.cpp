@@ -11,24 +11,38 @@
 #include <thread>
 #include <utility>
 
+#include "core/delivery.hpp"
 #include "core/filter_sink.hpp"
 #include "core/float_environment.hpp"
 
 namespace broadside::core {
 namespace {
 
-/// No new task is begun while so many pairs wait for one before them: 64 MiB.
-constexpr std::size_t most_waiting = std::size_t{1} << 23;
+/// Thrown where there is no room for a piece's pairs.
+struct NoRoom {};
 
-/// Collects a task's pairs.
+/// Collects a piece's pairs.
 class BufferSink final : public PairSink {
  public:
-  std::vector<Pair>* buffer = nullptr;
+  explicit BufferSink(PairBlocks& blocks) : blocks_(&blocks) {}
+
+  PairList take() {
+    flush();
+    return std::move(pairs_);
+  }
+
+  void clear() noexcept {
+    discard();
+    pairs_.clear();
+  }
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    buffer->insert(buffer->end(), pairs.begin(), pairs.end());
+    if (!pairs_.append(pairs, *blocks_)) throw NoRoom();
   }
+
+  PairBlocks* blocks_;
+  PairList pairs_;
 };
 
 /// The filters between an algorithm and its caller's sink, the algorithm's end first. What they hold of an
@@ -102,96 +116,119 @@ class Parallel::Errors {
   std::atomic<bool> any_ = false;
 };
 
-/// Tasks are taken in order and end in any; their pairs go to the sink in order, in the caller's thread. That
-/// thread writes straight to the sink where nothing waits before its task.
-class Parallel::Delivery {
+/// A search that is cut into pieces of consecutive parts, each of which one lane searches.
+class Parallel::SharedSearch {
  public:
-  Delivery(Parallel& parallel, std::size_t tasks, PairSink& target)
-      : parallel_(&parallel), target_(&target), results_(tasks) {}
+  SharedSearch(Parallel& parallel, std::size_t parts, PairSink& pairs, const Search& search)
+      : parallel_(parallel),
+        search_(search),
+        parts_(parts),
+        pieces_(std::min(parts, pieces_per_lane * parallel.lanes_)),
+        filters_(filters_before(pairs)),
+        target_(filters_.empty() ? pairs : filters_.back()->target()),
+        done_(parallel.lanes_) {}
 
-  ~Delivery() {
-    for (Result& result : results_) {
-      if (result.pairs) parallel_->buffers_.push_back(std::move(result.pairs));
+  Statistics run() {
+    if (std::unique_ptr<PairSink> clone = target_.empty_clone())
+      fill_clones(std::move(clone));
+    else
+      deliver();
+    Statistics all;
+    for (const Statistics& of_lane : done_) {
+      all.tests += of_lane.tests;
+      all.references += of_lane.references;
     }
-  }
-
-  Delivery(const Delivery&) = delete;
-  Delivery& operator=(const Delivery&) = delete;
-
-  struct Task {
-    std::size_t number;
-    std::vector<Pair>* buffer;  // null: write to the target
-  };
-
-  bool is_callers_thread() const { return std::this_thread::get_id() == caller_; }
-
-  bool is_complete() const { return delivered_ == results_.size(); }
-
-  /// The next task; none if there is no other, or if too many pairs wait.
-  std::optional<Task> take() {
-    const std::lock_guard lock(mutex_);
-    if (taken_ == results_.size() || waiting_ > most_waiting) return std::nullopt;
-    const std::size_t number = taken_++;
-    if (number == delivered_ && is_callers_thread() && !delivering_) {
-      delivering_ = true;  // by this very task
-      return Task{number, nullptr};
-    }
-    std::unique_ptr<std::vector<Pair>>& pairs = results_[number].pairs;
-    if (parallel_->buffers_.empty()) {
-      pairs = std::make_unique<std::vector<Pair>>();
-    } else {
-      pairs = std::move(parallel_->buffers_.back());
-      parallel_->buffers_.pop_back();
-      pairs->clear();
-    }
-    return Task{number, pairs.get()};
-  }
-
-  /// Says that a task has ended.
-  void end(const Task& task) {
-    const std::lock_guard lock(mutex_);
-    results_[task.number].ended = true;
-    if (task.buffer != nullptr) {
-      waiting_ += task.buffer->size();
-    } else {
-      delivering_ = false;
-      ++delivered_;
-    }
-  }
-
-  /// Delivers what can be. In the caller's thread alone; where the sink itself came here, what it called goes
-  /// on when it returns.
-  void deliver() {
-    std::unique_lock lock(mutex_);
-    if (delivering_) return;
-    delivering_ = true;
-    while (delivered_ < results_.size() && results_[delivered_].ended) {
-      const std::vector<Pair>& pairs = *results_[delivered_].pairs;
-      lock.unlock();
-      target_->put(pairs);
-      lock.lock();
-      waiting_ -= pairs.size();
-      parallel_->buffers_.push_back(std::move(results_[delivered_].pairs));
-      ++delivered_;
-    }
-    delivering_ = false;
+    return all;
   }
 
  private:
-  struct Result {
-    std::unique_ptr<std::vector<Pair>> pairs;
-    bool ended = false;
-  };
+  Statistics search_piece(std::size_t piece, std::size_t lane, FilterChain& chain) {
+    const auto begin = [&](std::size_t i) { return parts_ / pieces_ * i + std::min(i, parts_ % pieces_); };
+    const Statistics statistics = search_({begin(piece), begin(piece + 1)}, lane, chain.front());
+    chain.flush();
+    return statistics;
+  }
 
-  Parallel* parallel_;
-  PairSink* target_;
-  std::thread::id caller_ = std::this_thread::get_id();
-  std::mutex mutex_;  // for all that follows, and the buffers
-  std::vector<Result> results_;
-  std::size_t taken_ = 0;
-  std::size_t delivered_ = 0;
-  std::size_t waiting_ = 0;  // pairs in the results
-  bool delivering_ = false;
+  void add(std::size_t lane, const Statistics& more) {
+    done_[lane].tests += more.tests;
+    done_[lane].references += more.references;
+  }
+
+  void fill_clones(std::unique_ptr<PairSink> first) {
+    std::vector<std::unique_ptr<PairSink>> clones;
+    clones.push_back(std::move(first));
+    while (clones.size() < parallel_.lanes_) clones.push_back(target_.empty_clone());
+    std::atomic<std::size_t> next = 0;
+    parallel_.run_lanes([&](std::size_t lane) {
+      std::size_t piece = 0;
+      try {
+        FilterChain chain(filters_, *clones[lane]);
+        while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
+          add(lane, search_piece(piece, lane, chain));
+        clones[lane]->flush();
+      } catch (...) {
+        errors_.note(piece);
+      }
+    });
+    errors_.rethrow();
+    for (const std::unique_ptr<PairSink>& clone : clones) target_.merge(*clone);
+  }
+
+  void deliver() {
+    Delivery delivery(parallel_.blocks_, pieces_, target_);
+    while (!delivery.is_complete()) {
+      const std::size_t delivered = delivery.delivered();
+      delivery.begin_round();
+      parallel_.run_lanes([&](std::size_t lane) { search_pieces(delivery, lane, false); });
+      errors_.rethrow();
+      while (delivery.deliver_next()) {
+      }
+      if (delivery.delivered() > delivered) continue;
+      delivery.begin_round();
+      search_pieces(delivery, 0, true);
+      errors_.rethrow();
+    }
+  }
+
+  /// Searches pieces, or only one, until the delivery has no other or something goes wrong.
+  void search_pieces(Delivery& delivery, std::size_t lane, bool only_one) noexcept {
+    std::size_t at = 0;
+    try {
+      BufferSink buffer(parallel_.blocks_);
+      FilterChain buffered(filters_, buffer);
+      FilterChain direct(filters_, target_);
+      do {
+        if (delivery.is_callers_thread()) {
+          do {
+            at = delivery.delivered();
+          } while (delivery.deliver_next());
+        }
+        const std::optional<Delivery::Piece> piece = delivery.take();
+        if (!piece) return;
+        at = piece->number;
+        try {
+          const Statistics more = search_piece(at, lane, piece->is_direct ? direct : buffered);
+          delivery.end(*piece, buffer.take());
+          add(lane, more);
+        } catch (const NoRoom&) {
+          buffer.clear();
+          delivery.give_up(*piece);
+          return;
+        }
+      } while (!only_one && !errors_.any());
+    } catch (...) {
+      errors_.note(at);
+    }
+  }
+
+  Parallel& parallel_;
+  const Search& search_;
+  std::size_t parts_;
+  std::size_t pieces_;
+  std::vector<const FilterSink*> filters_;
+  PairSink& target_;
+  std::vector<Statistics> done_;  // by lane
+  Errors errors_;
 };
 
 Parallel::Parallel() = default;
@@ -232,74 +269,7 @@ void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
 }
 
 Statistics Parallel::share_search(std::size_t parts, PairSink& pairs, const Search& search) {
-  const std::vector<const FilterSink*> filters = filters_before(pairs);
-  PairSink& target = filters.empty() ? pairs : filters.back()->target();
-  const std::size_t tasks = std::min(parts, tasks_per_lane * lanes_);
-  const auto parts_of = [&](std::size_t task) {
-    const auto at = [&](std::size_t i) { return parts / tasks * i + std::min(i, parts % tasks); };
-    return Range{at(task), at(task + 1)};
-  };
-  std::vector<Statistics> done(lanes_);
-  Errors errors;
-  const auto add = [&done](std::size_t lane, const Statistics& more) {
-    done[lane].tests += more.tests;
-    done[lane].references += more.references;
-  };
-
-  std::vector<std::unique_ptr<PairSink>> clones;
-  if (std::unique_ptr<PairSink> clone = target.empty_clone()) {
-    clones.push_back(std::move(clone));
-    while (clones.size() < lanes_) clones.push_back(target.empty_clone());
-  }
-  if (!clones.empty()) {
-    std::atomic<std::size_t> next = 0;
-    run_lanes([&](std::size_t lane) {
-      std::size_t task = 0;
-      try {
-        FilterChain chain(filters, *clones[lane]);
-        while (!errors.any() && (task = next.fetch_add(1, std::memory_order_relaxed)) < tasks)
-          add(lane, search(parts_of(task), lane, chain.front()));
-        chain.flush();
-        clones[lane]->flush();
-      } catch (...) {
-        errors.note(task);
-      }
-    });
-    errors.rethrow();
-    for (const std::unique_ptr<PairSink>& clone : clones) target.merge(*clone);
-  } else {
-    Delivery delivery(*this, tasks, target);
-    while (!delivery.is_complete()) {
-      run_lanes([&](std::size_t lane) {
-        std::optional<Delivery::Task> task;
-        try {
-          BufferSink buffer;
-          FilterChain buffered(filters, buffer);
-          FilterChain direct(filters, target);
-          while (!errors.any() && (task = delivery.take())) {
-            buffer.buffer = task->buffer;
-            FilterChain& chain = task->buffer != nullptr ? buffered : direct;
-            add(lane, search(parts_of(task->number), lane, chain.front()));
-            chain.flush();
-            if (task->buffer != nullptr) buffer.flush();
-            delivery.end(*task);
-            if (delivery.is_callers_thread()) delivery.deliver();
-          }
-        } catch (...) {
-          errors.note(task ? task->number : 0);
-        }
-      });
-      errors.rethrow();
-      delivery.deliver();
-    }
-  }
-
-  Statistics all;
-  for (const Statistics& of_lane : done) {
-    all.tests += of_lane.tests;
-    all.references += of_lane.references;
-  }
-  return all;
+  return SharedSearch(*this, parts, pairs, search).run();
 }
 
 void Parallel::run_lanes(const std::function<void(std::size_t)>& body) {

@@ -3,13 +3,13 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
-#include <vector>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/spec.hpp"
+
+#include "core/pair_blocks.hpp"
 
 namespace broadside::core {
 
@@ -69,8 +69,9 @@ class Parallel {
   /// returns what it did. `pairs` gets them part by part in order, in this thread, while others still search;
   /// unless it can be cloned, then each lane fills a clone. Returns the sum of what was done.
   ///
-  /// Beyond what `pairs` takes, memory for a bounded number of pairs, and for those of the part that each
-  /// lane is at. Throws what a search or the sink throws, of several the first in order.
+  /// Keeps at most 64 MiB of pairs that wait for those before them. A lane that finds no room drops what it
+  /// found of its parts, and they are searched again: `search` must bear to be left by an exception of its
+  /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
     if (lanes_ == 1) return search(Range{0, parts}, std::size_t{0}, pairs);
@@ -80,13 +81,13 @@ class Parallel {
  private:
   /// Fine enough that no lane waits long for the last one, coarse enough that taking one costs nothing.
   static constexpr std::size_t ranges_per_lane = 4;
-  static constexpr std::size_t tasks_per_lane = 32;
+  static constexpr std::size_t pieces_per_lane = 32;
 
   using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
   using Search = std::function<Statistics(Range, std::size_t, PairSink&)>;
 
   class Errors;
-  class Delivery;
+  class SharedSearch;
 
   void share_ranges(std::size_t count, const RangeBody& body);
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
@@ -96,7 +97,7 @@ class Parallel {
 
   Executor* executor_ = nullptr;
   std::size_t lanes_ = 1;
-  std::vector<std::unique_ptr<std::vector<Pair>>> buffers_;  // that are not in use
+  PairBlocks blocks_;
 };
 
 }  // namespace broadside::core

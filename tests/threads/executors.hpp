@@ -1,8 +1,12 @@
 // Executors as engines may have them, for tests.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -56,6 +60,84 @@ class ClosedExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 2; }
   void run(std::size_t, const std::function<void(std::size_t)>&) override { throw ExecutorIsClosed(); }
+};
+
+/// What is no std::exception.
+struct NotAnException {};
+
+/// Runs tasks one after the other in the calling thread; one of its runs throws, before its tasks or after
+/// half of them.
+class FailingExecutor final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 3; }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    const bool fails = runs++ == failing_run;
+    if (fails) count = is_half_way ? count / 2 : 0;
+    for (std::size_t i = 0; i < count; ++i) task(i);
+    if (fails) throw NotAnException();
+  }
+
+  std::size_t runs = 0;
+  std::size_t failing_run = std::numeric_limits<std::size_t>::max();  // counted from 0
+  bool is_half_way = false;
+};
+
+/// Begins tasks in another order at each run, some in the calling thread and some in threads of their own.
+class ShufflingExecutor final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 4; }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::shuffle(order, random_);
+    std::vector<std::jthread> threads;
+    for (const std::size_t i : order) {
+      if (random_() % 3 == 0)
+        task(i);
+      else
+        threads.emplace_back([&task, i] { task(i); });
+    }
+  }
+
+ private:
+  std::minstd_rand random_;
+};
+
+/// Runs tasks one after the other in the calling thread, and more of them from within where idle() is called:
+/// as a thread of a job system does that takes up other work while it waits.
+class NestingExecutor final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 3; }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    Job job{&task, count, job_};
+    job_ = &job;
+    while (job.left > 0) run_one(job);
+    job_ = job.outer;
+  }
+
+  /// Runs a task of each run() that this thread is in.
+  void idle() {
+    for (Job* job = job_; job != nullptr; job = job->outer) {
+      if (job->left > 0) run_one(*job);
+    }
+  }
+
+ private:
+  struct Job {
+    const std::function<void(std::size_t)>* task;
+    std::size_t left;
+    Job* outer;
+  };
+
+  static void run_one(Job& job) {
+    const std::size_t i = --job.left;
+    (*job.task)(i);
+  }
+
+  Job* job_ = nullptr;
 };
 
 }  // namespace broadside::laws

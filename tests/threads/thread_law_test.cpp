@@ -16,41 +16,11 @@
 #include "executors.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "searches.hpp"
 #include "whole_frames.hpp"
 
 namespace broadside::laws {
 namespace {
-
-template <int D>
-std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_t seed = 1) {
-  Dice dice(seed);
-  std::vector<Box<D>> boxes(count);
-  for (Box<D>& box : boxes) {
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = dice.between(0, world);
-      box.max[axis] = box.min[axis] + dice.between(0, 3);
-    }
-  }
-  return boxes;
-}
-
-/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
-template <int D, typename Real>
-std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
-                        std::size_t left_count = 0) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  if (left_count == 0)
-    finder.find(boxes, collector);
-  else
-    finder.find_between(boxes, left_count, collector);
-  return pairs;
-}
-
-/// Workers that share even a few boxes.
-Workers workers(std::size_t threads, Executor* executor = nullptr) {
-  return {.threads = threads, .executor = executor, .boxes_per_thread = 1};
-}
 
 /// Who may do the work.
 struct Crew {
@@ -67,12 +37,14 @@ class ThreadLaw : public Law {
             {"7 threads", workers(7)},
             {"5 threads in reverse", workers(5, &reverse_)},
             {"all threads of their own", workers(0, &threads_)},
-            {"3 threads and the caller's", workers(3, &team_)}};
+            {"3 threads and the caller's", workers(3, &team_)},
+            {"4 threads in any order", workers(4, &shuffling_)}};
   }
 
   ReverseExecutor reverse_;
   ThreadExecutor threads_;
   TeamExecutor team_;
+  ShufflingExecutor shuffling_;
 };
 
 TEST_P(ThreadLaw, FindsTheSamePairsInTheSameOrder) {
@@ -252,13 +224,6 @@ TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
     find_pairs(scattered_boxes<D>(10'000, 300), threaded.text(), &executor);
     EXPECT_GT(executor.runs, 0u);
   });
-}
-
-/// The algorithms that can use several threads: all of our own.
-std::vector<LawCase> threaded_cases() {
-  std::vector<LawCase> cases = cases_of(algorithms());
-  std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
-  return cases;
 }
 
 INSTANTIATE_TEST_SUITE_P(Own, ThreadLaw, testing::ValuesIn(threaded_cases()), case_name);

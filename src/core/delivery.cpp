@@ -1,0 +1,68 @@
+// Delivery: the pieces of a search that several threads share, and their pairs on the way to one sink.
+#include "core/delivery.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace broadside::core {
+namespace {
+
+/// From here on no piece is begun, so that those being searched have room to end.
+constexpr std::size_t nearly_full = PairBlocks::most / 2;
+
+/// Below this, lanes that found no room may come back.
+constexpr std::size_t nearly_empty = PairBlocks::most / 8;
+
+}  // namespace
+
+void Delivery::begin_round() {
+  const std::lock_guard lock(mutex_);
+  lanes_left_ = false;
+  round_ends_ = false;
+}
+
+std::optional<Delivery::Piece> Delivery::take() {
+  const std::lock_guard lock(mutex_);
+  while (next_ < pieces_.size() && pieces_[next_].state != State::open) ++next_;
+  const std::size_t used = blocks_->used();
+  if (lanes_left_ && used < nearly_empty && is_callers_thread()) round_ends_ = true;
+  if (next_ == pieces_.size() || round_ends_) return std::nullopt;
+  const bool is_direct = next_ == delivered_ && is_callers_thread() && !delivering_;
+  if (!is_direct && used >= nearly_full) {
+    lanes_left_ = true;
+    return std::nullopt;
+  }
+  if (is_direct) delivering_ = true;  // by this very piece
+  pieces_[next_].state = State::taken;
+  return Piece{next_++, is_direct};
+}
+
+void Delivery::end(const Piece& piece, PairList pairs) {
+  const std::lock_guard lock(mutex_);
+  pieces_[piece.number].state = State::ended;
+  pieces_[piece.number].pairs = std::move(pairs);
+  if (!piece.is_direct) return;
+  delivering_ = false;
+  ++delivered_;
+}
+
+void Delivery::give_up(const Piece& piece) {
+  const std::lock_guard lock(mutex_);
+  pieces_[piece.number].state = State::open;
+  next_ = std::min(next_, piece.number);
+}
+
+bool Delivery::deliver_next() {
+  std::unique_lock lock(mutex_);
+  if (delivering_ || is_complete() || pieces_[delivered_].state != State::ended) return false;
+  delivering_ = true;
+  PairList pairs = std::move(pieces_[delivered_].pairs);
+  lock.unlock();
+  pairs.move_to(*target_);
+  lock.lock();
+  delivering_ = false;
+  ++delivered_;
+  return true;
+}
+
+}  // namespace broadside::core

@@ -1,0 +1,76 @@
+// Delivery: the pieces of a search that several threads share, and their pairs on the way to one sink.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "broadside/pair.hpp"
+
+#include "core/pair_blocks.hpp"
+
+namespace broadside::core {
+
+/// Lanes take pieces in order and end them in any; the pairs go to the sink in order, in the thread that made
+/// the delivery: the caller's. That thread searches straight into the sink where nothing waits before its
+/// piece; all other pieces keep their pairs in blocks until it comes to deliver them.
+///
+/// No lane waits for another. One that finds no room takes no further piece, and a piece that outgrows the
+/// room is given up, to be searched again. So a search goes by rounds of all lanes; a round after which
+/// nothing could be delivered was stopped by the first piece, which is then for the caller's thread to
+/// search.
+class Delivery {
+ public:
+  Delivery(PairBlocks& blocks, std::size_t pieces, PairSink& target)
+      : blocks_(&blocks), target_(&target), pieces_(pieces) {}
+
+  struct Piece {
+    std::size_t number;
+    bool is_direct;  // its pairs go straight to the target
+  };
+
+  bool is_callers_thread() const { return std::this_thread::get_id() == caller_; }
+
+  /// How many pieces are delivered, which is the number of the first that is not. For the caller's thread.
+  std::size_t delivered() const { return delivered_; }
+
+  bool is_complete() const { return delivered_ == pieces_.size(); }
+
+  void begin_round();
+
+  /// The next piece for a lane; none if there is no other, or no room for one, or if the round is to end.
+  std::optional<Piece> take();
+
+  /// Says that a piece has ended, and takes the pairs of one that is not direct.
+  void end(const Piece& piece, PairList pairs);
+
+  /// Says that there was no room for a piece's pairs, which are dropped.
+  void give_up(const Piece& piece);
+
+  /// Delivers the next piece, if it has ended, and says whether it did. In the caller's thread alone; where
+  /// the sink itself came here, what called it goes on when it returns.
+  bool deliver_next();
+
+ private:
+  enum class State { open, taken, ended };
+
+  struct Result {
+    PairList pairs;
+    State state = State::open;
+  };
+
+  PairBlocks* blocks_;
+  PairSink* target_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::mutex mutex_;  // for all that follows
+  std::vector<Result> pieces_;
+  std::size_t next_ = 0;       // no piece before it is open
+  std::size_t delivered_ = 0;  // written by the caller's thread alone
+  bool delivering_ = false;
+  bool lanes_left_ = false;  // in this round, for want of room
+  bool round_ends_ = false;
+};
+
+}  // namespace broadside::core

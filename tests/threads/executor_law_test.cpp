@@ -1,0 +1,125 @@
+// The law of executors: whatever order they run tasks in and whatever they throw, pairs are right afterwards.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/find_pairs.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "executors.hpp"
+#include "law_case.hpp"
+#include "searches.hpp"
+
+namespace broadside::laws {
+namespace {
+
+class ExecutorLaw : public Law {};
+
+/// Calls `search(executor)` with executors of which another run fails each time, until none does; `check()`
+/// after each that threw.
+template <typename Search, typename Check>
+void fail_each_run(const Search& search, const Check& check) {
+  for (const bool is_half_way : {false, true}) {
+    bool threw = true;
+    for (std::size_t run = 0; threw; ++run) {
+      FailingExecutor executor;
+      executor.failing_run = run;
+      executor.is_half_way = is_half_way;
+      threw = false;
+      try {
+        search(executor);
+      } catch (const NotAnException&) {
+        threw = true;
+        check();
+      }
+      ASSERT_EQ(threw, executor.runs > run);
+      ASSERT_TRUE(threw || run > 0);
+    }
+  }
+}
+
+TEST_P(ExecutorLaw, FindsTheSamePairsAfterAnyRunThrewWhatIsNoException) {
+  in_dimension([&]<int D>() {
+    const auto finder = make_finder<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(2000, D == 2 ? 40 : 12);
+    const std::vector<Pair> expected = found(*finder, boxes);
+    fail_each_run(
+        [&](Executor& executor) {
+          finder->set_workers(workers(3, &executor));
+          EXPECT_EQ(found(*finder, boxes), expected);
+        },
+        [&] {
+          finder->set_workers(workers(2));
+          EXPECT_EQ(found(*finder, boxes), expected);
+        });
+  });
+}
+
+TEST_P(ExecutorLaw, FindsTheSamePairsWhereTasksAndSearchesRunWithinTasks) {
+  in_dimension([&]<int D>() {
+    const auto outer = make_finder<D>(algorithm(), spec());
+    const auto inner = make_finder<D>(algorithm(), spec());
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 40 : 12);
+    const std::vector<Box<D>> others = scattered_boxes<D>(2000, D == 2 ? 40 : 12, 2);
+    const std::vector<Pair> expected = found(*outer, boxes);
+    const std::vector<Pair> expected_of_others = found(*outer, others);
+    NestingExecutor nesting;
+    outer->set_workers(workers(7, &nesting));
+    inner->set_workers(workers(4, &nesting));
+    std::vector<Pair> pairs;
+    bool is_inside = false;
+    PairFunction sink([&](std::span<const Pair> chunk) {
+      pairs.insert(pairs.end(), chunk.begin(), chunk.end());
+      nesting.idle();
+      if (is_inside) return;
+      is_inside = true;
+      std::vector<Pair> inner_pairs;
+      PairFunction inner_sink([&](std::span<const Pair> inner_chunk) {
+        inner_pairs.insert(inner_pairs.end(), inner_chunk.begin(), inner_chunk.end());
+        nesting.idle();
+      });
+      inner->find(others, inner_sink);
+      EXPECT_EQ(inner_pairs, expected_of_others);
+      is_inside = false;
+    });
+    outer->find(boxes, sink);
+    EXPECT_EQ(pairs, expected);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Own, ExecutorLaw, testing::ValuesIn(threaded_cases()), case_name);
+
+TEST(WorldExecutor, MayThrowAnythingWhereAnUpdateGivesMemoryBack) {
+  const std::vector<Box2> boxes = scattered_boxes<2>(6000, 600);
+  for (const char* const algorithm : {"grid", "auto", "brute_force"}) {
+    const auto pairs_left = find_pairs(std::span(boxes).first(500), "brute_force").size();
+    bool threw = true;
+    for (std::size_t run = 0; threw; ++run) {
+      FailingExecutor executor;
+      World2 world(algorithm);
+      world.set_workers(workers(2, &executor));
+      std::vector<Handle> handles(boxes.size());
+      world.add(boxes, handles);
+      world.update();
+      world.remove(std::span(handles).subspan(500));
+      world.update();
+      executor.failing_run = executor.runs + run;
+      try {
+        world.update();
+      } catch (const NotAnException&) {
+        world.update();
+      }
+      threw = executor.runs > executor.failing_run;
+      EXPECT_EQ(world.statistics().slots, 500u);
+      EXPECT_EQ(world.pairs().size(), pairs_left);
+      world.remove(handles[0]);
+      EXPECT_NO_THROW(world.update());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace broadside::laws

@@ -1,0 +1,55 @@
+// Searches by several threads, for their laws.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/sinks.hpp"
+
+#include "dice.hpp"
+#include "law_case.hpp"
+
+namespace broadside::laws {
+
+template <int D>
+std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_t seed = 1) {
+  Dice dice(seed);
+  std::vector<Box<D>> boxes(count);
+  for (Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = dice.between(0, world);
+      box.max[axis] = box.min[axis] + dice.between(0, 3);
+    }
+  }
+  return boxes;
+}
+
+/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
+template <int D, typename Real>
+std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+                        std::size_t left_count = 0) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  if (left_count == 0)
+    finder.find(boxes, collector);
+  else
+    finder.find_between(boxes, left_count, collector);
+  return pairs;
+}
+
+/// Workers that share even a few boxes.
+inline Workers workers(std::size_t threads, Executor* executor = nullptr) {
+  return {.threads = threads, .executor = executor, .boxes_per_thread = 1};
+}
+
+/// The algorithms that can use several threads: all of our own.
+inline std::vector<LawCase> threaded_cases() {
+  std::vector<LawCase> cases = cases_of(algorithms());
+  std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
+  return cases;
+}
+
+}  // namespace broadside::laws
