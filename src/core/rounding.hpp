@@ -31,6 +31,9 @@ class LinearRounding {
   /// About the value that a float stands for, and the same for the same float.
   double back(float rounded) const { return origin_ + rounded * inverse_scale_; }
 
+  double origin() const { return origin_; }
+  double scale() const { return scale_; }
+
  private:
   double origin_ = 0;
   double scale_ = 1;
