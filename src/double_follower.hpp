@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -16,8 +17,9 @@ namespace broadside::own {
 
 /// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So all pairs
 /// that began or ended are among those of a changed box with what it overlaps as floats, or did. How
-/// coordinates are rounded is chosen by the boxes of the frame in which it starts. Cost: that of the floats,
-/// and a test in double for each of these.
+/// coordinates are rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have
+/// moved to where that makes too many false candidates. Cost: that of the floats, and a test in double for
+/// each candidate.
 template <int D>
 class DoubleFollower final : public PairTracker<D, double> {
  private:
@@ -30,6 +32,7 @@ class DoubleFollower final : public PairTracker<D, double> {
   std::array<core::LinearFit, D> fit_{};
   std::array<core::QuantileRounding, D> quantiles_;
   bool by_quantiles_ = false;
+  std::uint64_t false_candidates_ = 0;  // since all boxes were rounded
   std::unique_ptr<HierarchicalGridTracker<D>> grid_;
   std::vector<Box<D>> before_;
   std::vector<Box<D>> now_;
