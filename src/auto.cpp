@@ -251,7 +251,8 @@ template <int D>
 std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
   return std::make_unique<AutoTracker<D, double>>(
       std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
-      std::make_unique<DoubleFollower<D>>(), nullptr, floats_suffice<D>, way_of(settings));
+      std::make_unique<DoubleFollower<D>>(), nullptr, [](std::span<const Box<D, double>>) { return true; },
+      way_of(settings));
 }
 
 }  // namespace

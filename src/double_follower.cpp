@@ -2,92 +2,71 @@
 #include "double_follower.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "core/candidate_sink.hpp"
-#include "core/sample.hpp"
+#include <cstdint>
+#include <span>
 
 namespace broadside::own {
 namespace {
 
-constexpr std::size_t most_sampled = 256;
+/// So many false candidates a box cost about what rounding all boxes anew does.
+constexpr double most_false_candidates = 32;
 
-/// The finite coordinates of a sample of the boxes that are there.
+/// Writes the events among candidates, and counts the candidates that are false.
 template <int D>
-struct Coordinates {
-  explicit Coordinates(std::span<const Box<D, double>> boxes) {
-    const std::size_t tries = std::min(boxes.size(), 4 * most_sampled);
-    std::size_t taken = 0;
-    for (std::size_t i = 0; i < tries && taken < most_sampled; ++i) {
-      const Box<D, double>& box = boxes[tries == boxes.size() ? i : core::sampled_place(i, boxes.size())];
-      if (!is_present(box)) continue;
-      ++taken;
-      for (int axis = 0; axis < D; ++axis) {
-        if (std::isfinite(box.min[axis])) minima[axis].push_back(box.min[axis]);
-        const double extent = box.max[axis] - box.min[axis];
-        if (std::isfinite(extent)) extents[axis].push_back(extent);
-      }
-    }
-    for (int axis = 0; axis < D; ++axis) {
-      std::sort(minima[axis].begin(), minima[axis].end());
-      std::sort(extents[axis].begin(), extents[axis].end());
+class Candidates final : public PairSink {
+ public:
+  Candidates(const Change<D, double>& change, PairSink& begun, PairSink& ended)
+      : change_(change), begun_(begun), ended_(ended) {}
+
+  std::uint64_t count() const noexcept { return count_; }
+  std::uint64_t false_count() const noexcept { return false_count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    count_ += pairs.size();
+    for (const Pair pair : pairs) {
+      change_.report(pair.first, pair.second, begun_, ended_);
+      const bool was_near = overlap(change_.before[index(pair.first)], change_.before[index(pair.second)]);
+      const bool is_near = overlap(change_.now[index(pair.first)], change_.now[index(pair.second)]);
+      false_count_ += static_cast<std::uint64_t>(!was_near && !is_near);
     }
   }
 
-  static double median(const std::vector<double>& sorted) {
-    return sorted.empty() ? 0 : sorted[sorted.size() / 2];
-  }
-
-  std::array<std::vector<double>, D> minima;
-  std::array<std::vector<double>, D> extents;
+  const Change<D, double>& change_;
+  PairSink& begun_;
+  PairSink& ended_;
+  std::uint64_t count_ = 0;
+  std::uint64_t false_count_ = 0;
 };
 
 }  // namespace
 
 template <int D>
-bool floats_suffice(std::span<const Box<D, double>> boxes) {
-  const Coordinates<D> sample(boxes);
-  for (int axis = 0; axis < D; ++axis) {
-    const std::vector<double>& minima = sample.minima[axis];
-    if (minima.empty()) continue;
-    // Nine tenths of the boxes lie nearer to the origin than this.
-    const double origin = sample.median(minima);
-    const std::size_t tenth = minima.size() / 20;
-    const double reach = std::max(origin - minima[tenth], minima[minima.size() - 1 - tenth] - origin);
-    const double step = reach * std::numeric_limits<float>::epsilon();
-    // A float's step may be a part of a box, or of what lies between two.
-    const double spread = reach / std::max(1.0, static_cast<double>(boxes.size()));
-    constexpr double steps_a_box = 16;
-    if (step * steps_a_box > std::max(sample.median(sample.extents[axis]), spread)) return false;
-  }
-  return true;
-}
-
-template <int D>
 void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
-  if (change.rebuild || !grid_) start(change);
+  const double most = most_false_candidates * static_cast<double>(change.now.size());
+  const bool starts = change.rebuild || !grid_ || static_cast<double>(false_candidates_) > most;
+  if (starts) start(change);
   before_.resize(change.now.size(), absent_box<D>());
   now_.resize(change.now.size(), absent_box<D>());
   for (const BoxId id : change.changed) now_[index(id)] = rounded(change.now[index(id)]);
-  core::CandidateSink<D, double> candidates(change, begun, ended);
-  Statistics statistics = grid_->candidates({.before = before_,
-                                             .now = now_,
-                                             .changed = change.changed,
-                                             .flags = change.flags,
-                                             .rebuild = change.rebuild},
-                                            candidates);
+  Candidates<D> candidates(change, begun, ended);
+  Statistics statistics = grid_->candidates(
+      {.before = before_, .now = now_, .changed = change.changed, .flags = change.flags, .rebuild = starts},
+      candidates);
   candidates.flush();
   statistics.hits = candidates.count();
+  false_candidates_ += candidates.false_count();
   for (const BoxId id : change.changed) before_[index(id)] = now_[index(id)];
   this->count(statistics);
 }
 
-/// Rounds all boxes of the frame before, about an origin amid those of this one.
+/// Rounds all boxes of the frame before, in a way that suits this one.
 template <int D>
 void DoubleFollower<D>::start(const Change<D, double>& change) {
-  const Coordinates<D> sample(change.now);
-  for (int axis = 0; axis < D; ++axis) origin_[axis] = sample.median(sample.minima[axis]);
+  false_candidates_ = 0;
+  fit_ = core::fit_linear<D>(change.now);
+  by_quantiles_ = core::makes_false_pairs<D>(fit_, change.now, 0);
+  quantiles_ = by_quantiles_ ? core::fit_quantiles<D>(change.now) : std::array<core::QuantileRounding, D>{};
   grid_ = std::make_unique<HierarchicalGridTracker<D>>();
   before_.resize(change.before.size());
   for (std::size_t i = 0; i < before_.size(); ++i) before_[i] = rounded(change.before[i]);
@@ -96,22 +75,22 @@ void DoubleFollower<D>::start(const Change<D, double>& change) {
 
 template <int D>
 Box<D> DoubleFollower<D>::rounded(const Box<D, double>& box) const {
-  Box<D> floats;
-  for (int axis = 0; axis < D; ++axis) {
-    floats.min[axis] = static_cast<float>(box.min[axis] - origin_[axis]);
-    floats.max[axis] = static_cast<float>(box.max[axis] - origin_[axis]);
-  }
-  return floats;
+  if (!is_present(box)) return absent_box<D>();
+  if (by_quantiles_)
+    return core::rounded(
+        box, [&](int axis) -> const auto& { return quantiles_[axis]; });
+  return core::rounded(
+      box, [&](int axis) -> const auto& { return fit_[axis].rounding; });
 }
 
 template <int D>
 std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
-  return (before_.capacity() + now_.capacity()) * sizeof(Box<D>) + (grid_ ? grid_->kept_bytes() : 0);
+  std::size_t bytes = (before_.capacity() + now_.capacity()) * sizeof(Box<D>);
+  for (const core::QuantileRounding& rounding : quantiles_) bytes += rounding.bytes();
+  return bytes + (grid_ ? grid_->kept_bytes() : 0);
 }
 
 template class DoubleFollower<2>;
 template class DoubleFollower<3>;
-template bool floats_suffice<2>(std::span<const Box<2, double>>);
-template bool floats_suffice<3>(std::span<const Box<3, double>>);
 
 }  // namespace broadside::own

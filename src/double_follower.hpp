@@ -4,18 +4,22 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "broadside/pair_tracker.hpp"
 
 #include "algorithms/hierarchical_grid_tracker.hpp"
+#include "core/rounding.hpp"
 
 namespace broadside::own {
 
-/// Rounding about an origin keeps order, as in core::DoubleFinder: boxes that overlap in double do in float.
-/// So all pairs that began or ended are among those of a changed box with what it overlaps as floats, or did.
-/// Cost: that of the floats, and a test in double for each of these.
+/// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So all pairs
+/// that began or ended are among those of a changed box with what it overlaps as floats, or did. How
+/// coordinates are rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have
+/// moved to where that makes too many false candidates. Cost: that of the floats, and a test in double for
+/// each candidate.
 template <int D>
 class DoubleFollower final : public PairTracker<D, double> {
  private:
@@ -25,15 +29,13 @@ class DoubleFollower final : public PairTracker<D, double> {
   Box<D> rounded(const Box<D, double>& box) const;
   void start(const Change<D, double>& change);
 
-  std::array<double, D> origin_{};
+  std::array<core::LinearFit, D> fit_{};
+  std::array<core::QuantileRounding, D> quantiles_;
+  bool by_quantiles_ = false;
+  std::uint64_t false_candidates_ = 0;  // since all boxes were rounded
   std::unique_ptr<HierarchicalGridTracker<D>> grid_;
   std::vector<Box<D>> before_;
   std::vector<Box<D>> now_;
 };
-
-/// Whether floats about a common origin tell most of the boxes apart, by a sample of them: else too many
-/// pairs would have to be tested in double, and boxes are better found anew.
-template <int D>
-bool floats_suffice(std::span<const Box<D, double>> boxes);
 
 }  // namespace broadside::own

@@ -49,7 +49,7 @@ class BvhIndex final : public BoxIndex<D, Real> {
       tree_.build(boxes);
     } else {
       exact_.assign(boxes.begin(), boxes.end());
-      outward_.choose_origin(boxes);
+      outward_.fit(boxes);
       std::vector<Box<D>> rounded;
       rounded.reserve(boxes.size());
       for (const Box<D, Real>& box : boxes)
@@ -168,16 +168,21 @@ class BvhIndex final : public BoxIndex<D, Real> {
     kernels::CastQuery<D> query{in_tree(cast.box), {}, {}, {}, is_float};
     exponent = 0;
     if constexpr (!is_float) {
-      Real greatest = 0;
-      for (const Real direction : cast.direction) greatest = std::max(greatest, std::abs(direction));
-      if (greatest > 0) exponent = std::ilogb(greatest);
+      constexpr int none = std::numeric_limits<int>::min();
+      int greatest = none;
+      for (int axis = 0; axis < D; ++axis) {
+        if (cast.direction[axis] == 0) continue;
+        greatest = std::max(greatest, std::ilogb(cast.direction[axis]) + outward_.exponent(axis));
+      }
+      if (greatest != none) exponent = greatest;
     }
     // Beyond these, a parameter that is computed by the definition may overflow or lose its last places, or
     // an inverse may, and the tree's bounds would tell apart what the definition does not.
     constexpr Real least = is_float ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
+    constexpr int most_exponent = 800;
     for (int axis = 0; axis < D; ++axis) {
       const Real direction = cast.direction[axis];
-      const Real scaled = is_float ? direction : std::ldexp(direction, -exponent);
+      const Real scaled = is_float ? direction : std::ldexp(direction, outward_.exponent(axis) - exponent);
       const auto is_usual = [](Real value, Real limit) {
         return std::abs(value) >= limit && std::abs(value) <= 1 / limit;
       };
@@ -185,7 +190,8 @@ class BvhIndex final : public BoxIndex<D, Real> {
       query.inverse[axis] = 1;
       if (direction == 0) {
         query.course[axis] = kernels::Course::still;
-      } else if (is_usual(direction, least) && is_usual(scaled, Real{0x1p-125f})) {
+      } else if (is_usual(direction, least) && is_usual(scaled, Real{0x1p-125f}) &&
+                 std::abs(exponent) <= most_exponent) {
         query.course[axis] = direction > 0 ? kernels::Course::forward : kernels::Course::backward;
         query.inverse[axis] = static_cast<float>(1 / scaled);
       } else {
@@ -226,9 +232,19 @@ class BvhIndex final : public BoxIndex<D, Real> {
                     const Filter* asker) const override {
     if (tree_.size() == 0) return;
     kernels::DistanceQuery<D> query;
+    query.weight.fill(1);
     query.point = in_tree(Box<D, Real>{point, point});
     query.most = std::numeric_limits<float>::infinity();
+    Real unit = 1;              // a distance squared in the tree, where 1 is the caller's
     if constexpr (!is_float) {  // then distances in the tree are to be no greater than they are
+      // Beyond these, the definition's squares may overflow or lose their last places.
+      constexpr int most_exponent = 400;
+      int exponent = most_exponent;
+      for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, outward_.exponent(axis));
+      exponent = std::max(exponent, -most_exponent);
+      for (int axis = 0; axis < D; ++axis)
+        query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - outward_.exponent(axis)));
+      unit = std::ldexp(Real{1}, 2 * exponent);
       query.most = std::numeric_limits<float>::max();
       query.share = 1 - 0x1p-18f;
       query.allowance = std::numeric_limits<float>::min();
@@ -261,12 +277,12 @@ class BvhIndex final : public BoxIndex<D, Real> {
     waiting[0] = {0, tree.root};
     while (waits > 0) {
       const auto [distance, number] = waiting[--waits];
-      if (!(distance <= limit())) continue;
+      if (!(distance <= limit() * unit)) continue;
       const kernels::QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
       kernels::distances(node, query, distances);
       const std::size_t begin = waits;
       for (std::size_t i = 0; i < tree_.child_count(number); ++i) {
-        if (!(distances[i] <= limit())) continue;
+        if (!(distances[i] <= limit() * unit)) continue;
         const std::uint32_t child = node.child[i];
         if ((number & leaf_bit) == 0) {
           waiting[waits++] = {distances[i], child};

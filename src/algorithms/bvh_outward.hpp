@@ -5,12 +5,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 
 #include "broadside/box.hpp"
+
+#include "core/rounding.hpp"
 
 namespace broadside::own {
 
@@ -29,37 +30,31 @@ inline float rounded_down(double value) noexcept {
 /// The same to the other side.
 inline float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
-/// Boxes of doubles as boxes of floats that hold them.
+/// Boxes of doubles as boxes of floats that hold them, about an origin and scaled by a power of two, both of
+/// them chosen for each axis.
 template <int D>
 class Outward {
  public:
-  /// Takes the middle of the boxes' finite coordinates for the origin.
-  void choose_origin(std::span<const Box<D, double>> boxes) noexcept {
-    for (int axis = 0; axis < D; ++axis) {
-      double low = std::numeric_limits<double>::infinity();
-      double high = -low;
-      for (const Box<D, double>& box : boxes) {
-        for (const double at : {box.min[axis], box.max[axis]}) {
-          if (!std::isfinite(at)) continue;
-          low = std::min(low, at);
-          high = std::max(high, at);
-        }
-      }
-      origin_[axis] = low <= high ? low / 2 + high / 2 : 0;
-    }
-  }
+  /// Chooses origin and scale by a sample of the boxes.
+  void fit(std::span<const Box<D, double>> boxes) { fit_ = core::fit_linear<D>(boxes); }
 
   Box<D> box(const Box<D, double>& box) const noexcept {
+    // A difference that overflows is not to be scaled to more than it is.
+    constexpr double most = std::numeric_limits<double>::max();
     Box<D> rounded;
     for (int axis = 0; axis < D; ++axis) {
-      rounded.min[axis] = rounded_down(box.min[axis] - origin_[axis]);
-      rounded.max[axis] = rounded_up(box.max[axis] - origin_[axis]);
+      const core::LinearRounding& rounding = fit_[axis].rounding;
+      rounded.min[axis] = rounded_down(std::min(box.min[axis] - rounding.origin(), most) * rounding.scale());
+      rounded.max[axis] = rounded_up(std::max(box.max[axis] - rounding.origin(), -most) * rounding.scale());
     }
     return rounded;
   }
 
+  /// A length on the axis is multiplied by 2 to this power.
+  int exponent(int axis) const noexcept { return std::ilogb(fit_[axis].rounding.scale()); }
+
  private:
-  std::array<double, D> origin_{};
+  std::array<core::LinearFit, D> fit_{};
 };
 
 }  // namespace broadside::own

@@ -2,7 +2,8 @@
 #include "core/exact_sink.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <utility>
 
 namespace broadside::core {
 namespace {
@@ -16,32 +17,18 @@ void prefetch([[maybe_unused]] const void* address) {
 #endif
 }
 
-}  // namespace
-
+/// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
 template <int D>
-ExactSink<D>::ExactSink(const RoundedBoxes<D>& rounded_boxes, const std::array<double, D>& begin,
-                        const std::array<double, D>& origin, PairSink& target)
-    : FilterSink(target), of_(rounded_boxes), begin_(begin) {
+bool is_pair_for_certain(const Box<D>& a, const Box<D>& b) {
+  bool certain = true;
   for (int axis = 0; axis < D; ++axis) {
-    bounded_ = bounded_ || begin[axis] > -std::numeric_limits<double>::infinity();
-    rounded_begin_[axis] = rounded(begin[axis], origin[axis]);
+    certain &= a.min[axis] < b.max[axis];
+    certain &= b.min[axis] < a.max[axis];
   }
-  exact_ = of_.exact && !bounded_;
+  return certain;
 }
 
-template <int D>
-ExactSink<D>::ExactSink(const ExactSink& other, PairSink& target)
-    : FilterSink(target),
-      of_(other.of_),
-      bounded_(other.bounded_),
-      exact_(other.exact_),
-      begin_(other.begin_),
-      rounded_begin_(other.rounded_begin_) {}
-
-template <int D>
-std::unique_ptr<FilterSink> ExactSink<D>::onto(PairSink& target) const {
-  return std::make_unique<ExactSink>(*this, target);
-}
+}  // namespace
 
 template <int D>
 void ExactSink<D>::consume(std::span<const Pair> pairs) {
@@ -72,7 +59,7 @@ std::size_t ExactSink<D>::keep(std::span<const Pair> pairs, Pair* out) const {
     const std::uint32_t second = of_.ids[b];
     const std::uint32_t lesser = std::min(first, second);
     const Pair pair = {BoxId{lesser}, BoxId{first ^ second ^ lesser}};
-    const bool certain = exact_ || is_pair_for_certain(of_.floats[a], of_.floats[b]);
+    const bool certain = of_.exact || is_pair_for_certain(of_.floats[a], of_.floats[b]);
     uncertain[uncertain_count] = pair;
     before[uncertain_count] = static_cast<std::uint32_t>(kept);
     uncertain_count += static_cast<std::size_t>(!certain);
@@ -85,7 +72,7 @@ std::size_t ExactSink<D>::keep(std::span<const Pair> pairs, Pair* out) const {
     uncertain[accepted] = pair;
     before[accepted] = before[i];
     accepted +=
-        static_cast<std::size_t>(is_pair(of_.boxes[index(pair.first)], of_.boxes[index(pair.second)]));
+        static_cast<std::size_t>(overlap(of_.boxes[index(pair.first)], of_.boxes[index(pair.second)]));
   }
   // They go where they were found, so that the order does not depend on where a chunk of pairs ends.
   std::size_t end = kept;
@@ -103,25 +90,6 @@ template <int D>
 void ExactSink<D>::fetch(std::size_t place) const {
   prefetch(&of_.ids[place]);
   prefetch(&of_.floats[place]);
-}
-
-/// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
-template <int D>
-bool ExactSink<D>::is_pair_for_certain(const Box<D>& a, const Box<D>& b) const {
-  bool certain = true;
-  for (int axis = 0; axis < D; ++axis) {
-    certain &= a.min[axis] < b.max[axis];
-    certain &= b.min[axis] < a.max[axis];
-    certain &= !bounded_ || std::max(a.min[axis], b.min[axis]) > rounded_begin_[axis];
-  }
-  return certain;
-}
-
-template <int D>
-bool ExactSink<D>::is_pair(const Box<D, double>& a, const Box<D, double>& b) const {
-  bool here = overlap(a, b);
-  for (int axis = 0; axis < D; ++axis) here &= std::max(a.min[axis], b.min[axis]) >= begin_[axis];
-  return here;
 }
 
 template class ExactSink<2>;

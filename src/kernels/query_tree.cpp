@@ -72,7 +72,8 @@ void distances_of(const QueryNode<D>& node, const DistanceQuery<D>& query,
       // No infinity is subtracted from itself where it counts.
       const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
       const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
-      sum = hn::Add(sum, hn::Mul(gap, gap));
+      const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
+      sum = hn::Add(sum, hn::Mul(weighted, weighted));
     }
     sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.most)), all(query.share)), all(query.allowance));
     hn::StoreU(sum, Floats(), result.data() + at);

@@ -74,11 +74,12 @@ struct CastQuery {
   bool exact;                    ///< whether boxes are tested by the definition, with divisions
 };
 
-/// A point, as a box that holds it, whose distances are asked for: multiplied by `share`, less `allowance`,
-/// at most `most`.
+/// A point, as a box that holds it, whose distances are asked for: each axis weighted, their squares' sum
+/// multiplied by `share`, less `allowance`, at most `most`.
 template <int D>
 struct DistanceQuery {
   Box<D> point;
+  std::array<float, D> weight;
   float share = 1;
   float allowance = 0;
   float most = 0;

@@ -78,6 +78,61 @@ Boxes<D> lattice(Dice& dice, std::size_t count, const std::vector<double>& sites
   return boxes;
 }
 
+/// The boxes with each axis in a unit of its own.
+template <int D>
+Boxes<D> scaled(Boxes<D> boxes, const std::array<double, 3>& units) {
+  for (Box<D, double>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] *= units[axis];
+      box.max[axis] *= units[axis];
+    }
+  }
+  return boxes;
+}
+
+/// Boxes for which one scale does not serve, since floats about one origin hold only some of them.
+template <int D>
+void add_scales(Dice& dice, std::size_t count, std::vector<DoubleInput<D>>& inputs) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  constexpr double smallest = std::numeric_limits<double>::denorm_min();
+  const double side = std::pow(static_cast<double>(count), 1.0 / D);
+  const auto near = [&] { return boxes_at<D>(dice, count, {0}, side, 0.6); };
+  inputs.push_back({"axes of different units", scaled<D>(near(), {1e60, 1e-60, 1})});
+  inputs.push_back({"up to the greatest double", scaled<D>(near(), std::array{largest, largest, largest})});
+  Boxes<D> denormals = near();
+  for (Box<D, double>& box : denormals) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = std::floor(8 * box.min[axis]) * smallest;
+      box.max[axis] = std::floor(8 * box.max[axis]) * smallest;
+    }
+  }
+  inputs.push_back({"denormals", denormals});
+  Boxes<D> powers(count);
+  for (Box<D, double>& box : powers) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double at = std::pow(10, 60 * dice.unit() - 30);
+      box.min[axis] = dice.one_in(2) ? at : -at;
+      box.max[axis] = box.min[axis] + (dice.one_in(2) ? at : 1e-3 * at) * dice.unit();
+    }
+  }
+  inputs.push_back({"sixty orders of magnitude", powers});
+  Boxes<D> together = scaled<D>(near(), {1e60, 1e60, 1e60});
+  for (const double unit : {1e-60, 1.0}) {
+    const Boxes<D> others = scaled<D>(near(), {unit, unit, unit});
+    together.insert(together.end(), others.begin(), others.end());
+  }
+  inputs.push_back({"units of 1e60, 1e-60 and 1 together", together});
+  Boxes<D> nested = boxes_at<D>(dice, count, {0}, 1e-12 * side, 0.6e-12);
+  for (Box<D, double>& box : nested) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double site = dice.whole(0, 3) + 1e-4 * dice.whole(0, 3) + 1e-8 * dice.whole(0, 3);
+      box.min[axis] += site;
+      box.max[axis] += site;
+    }
+  }
+  inputs.push_back({"clusters within clusters", nested});
+}
+
 template <int D>
 std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
   Dice dice(21);
@@ -128,6 +183,7 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     boxes[7].max.fill(std::numeric_limits<double>::max());
     inputs.push_back({"infinite and absent boxes together", boxes});
   }
+  add_scales<D>(dice, count, inputs);
   std::erase_if(inputs, [&](const DoubleInput<D>& input) {
     return std::ranges::any_of(input.boxes,
                                [&](const Box<D, double>& box) { return is_beyond(algorithm, box); });
@@ -207,11 +263,12 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
   });
 }
 
-/// Tracks boxes that rest, creep, jump, come, go and grow beyond all bounds, some in each frame.
+/// Tracks boxes that rest, creep, jump, come, go, leave for other scales and grow beyond all bounds, some in
+/// each frame.
 template <int D>
-void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double where) {
+void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double where, double unit) {
   Dice dice(24);
-  Boxes<D> boxes = boxes_at<D>(dice, 300, {where}, 0.05, 1e-3);
+  Boxes<D> boxes = scaled<D>(boxes_at<D>(dice, 300, {where}, 0.05, 1e-3), {unit, unit, unit});
   const Boxes<D> first = boxes;
   const auto tracker = make_tracker<D, double>(algorithm, spec);
   std::vector<Pair> current;
@@ -221,33 +278,37 @@ void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double w
       if (frame > 0 && dice.unit() > 0.1) continue;
       changed.push_back(BoxId(i));
       const double kind = dice.unit();
-      const double step = (kind < 0.6 ? 1e-4 : 1e-2) * (dice.unit() - 0.5);
+      const double step = unit * (kind < 0.6 ? 1e-4 : 1e-2) * (dice.unit() - 0.5);
       if (!is_present(boxes[i])) boxes[i] = first[i];
+      const double farther = kind > 0.9 && kind < 0.92 && algorithm.infinite_boxes ? 1e30 : 1;
       for (int axis = 0; axis < D; ++axis) {
-        boxes[i].min[axis] += step;
-        boxes[i].max[axis] += step;
+        boxes[i].min[axis] = farther * (boxes[i].min[axis] + step);
+        boxes[i].max[axis] = farther * (boxes[i].max[axis] + step);
       }
       if (kind > 0.95) boxes[i] = absent_box<D, double>();
       if (kind < 0.02 && algorithm.infinite_boxes) boxes[i].max.fill(std::numeric_limits<double>::infinity());
     }
     take_frame<D>(*tracker, boxes, changed, current);
-    ASSERT_EQ(current, reference<D>(boxes)) << spec.text() << ", frame " << frame << ", at " << where;
+    ASSERT_EQ(current, reference<D>(boxes))
+        << spec.text() << ", frame " << frame << ", at " << where << ", in " << unit;
   }
 }
 
 TEST_P(DoubleLaw, TracksBoxesThatRestCreepJumpComeAndGo) {
   in_dimension([&]<int D>() {
-    for (const double where : {0.0, 5e6}) {
-      track_restless_boxes<D>(algorithm(), spec(), where);
-      if (algorithm().name == "auto")
-        track_restless_boxes<D>(algorithm(), Spec::parse("auto:way=incremental"), where);
+    for (const double unit : {1.0, 1e60, 1e-60, 1e-300}) {
+      for (const double where : {0.0, 5e6}) {
+        track_restless_boxes<D>(algorithm(), spec(), where, unit);
+        if (algorithm().name == "auto")
+          track_restless_boxes<D>(algorithm(), Spec::parse("auto:way=incremental"), where, unit);
+      }
     }
   });
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, DoubleLaw, testing::ValuesIn(law_cases()), case_name);
 
-TEST(Doubles, TakeSeveralOriginsWhereOneWouldMakeEverythingTouch) {
+TEST(Doubles, TakeFewTestsWhereFloatsAboutOneOriginAllTouch) {
   // Boxes of a millimetre at sites 100 km apart: as floats about one origin they would be 8 mm wide or more.
   Dice dice(23);
   const std::size_t count = 20'000;

@@ -56,9 +56,12 @@ class QueryLaw : public testing::Test {
       result.min[axis] = box.min[axis];
       result.max[axis] = box.max[axis];
       if constexpr (std::is_same_v<Real, double>) {
-        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis]) || dice_.one_in(2)) continue;
-        result.min[axis] -= dice_.unit() * 0x1p-26 * std::abs(result.min[axis]);
-        result.max[axis] += dice_.unit() * 0x1p-26 * std::abs(result.max[axis]);
+        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) continue;
+        const double wider = dice_.one_in(2) ? 0 : 0x1p-26;
+        result.min[axis] -= dice_.unit() * wider * std::abs(result.min[axis]);
+        result.max[axis] += dice_.unit() * wider * std::abs(result.max[axis]);
+        result.min[axis] *= unit_[axis];
+        result.max[axis] *= unit_[axis];
       }
     }
     return result;
@@ -72,10 +75,10 @@ class QueryLaw : public testing::Test {
 
   /// A coordinate where something happens: one that a box has, or close to it.
   Real coordinate(const Boxes& boxes, int axis) {
-    if (boxes.empty() || dice_.one_in(8)) return dice_.between(-12, 12);
+    if (boxes.empty() || dice_.one_in(8)) return dice_.between(-12, 12) * unit_[axis];
     const Box<D, Real>& box = boxes[dice_.below(boxes.size())];
     const Real at = dice_.one_in(2) ? box.min[axis] : box.max[axis];
-    if (dice_.one_in(4)) return at + dice_.between(-1, 1);
+    if (dice_.one_in(4)) return at + dice_.between(-1, 1) * unit_[axis];
     if (dice_.one_in(8)) return std::nextafter(at, Real(dice_.one_in(2) ? -1e30 : 1e30));
     return at;
   }
@@ -214,6 +217,7 @@ class QueryLaw : public testing::Test {
   }
 
   Dice dice_{1};
+  std::array<Real, 3> unit_ = {1, 1, 1};  // by axis
 };
 
 using Kinds = testing::Types<Kind<2, float>, Kind<3, float>, Kind<2, double>, Kind<3, double>>;
@@ -235,6 +239,28 @@ TYPED_TEST(QueryLaw, HoldsForHardInputs) {
     index->update({.boxes = boxes, .changed = {}});
     this->expect_answers(*index, boxes, {}, reduced(60, 1));
     ASSERT_FALSE(this->HasFailure()) << name;
+  }
+}
+
+/// Beyond what floats hold, and with axes that differ by far: what a double's tree holds is scaled.
+TYPED_TEST(QueryLaw, HoldsAtEveryScale) {
+  if constexpr (std::is_same_v<typename TestFixture::Real, double>) {
+    constexpr std::array<std::array<double, 3>, 6> units = {{{1e60, 1e60, 1e60},
+                                                             {1e-60, 1e-60, 1e-60},
+                                                             {1e60, 1e-60, 1},
+                                                             {1e-160, 1e160, 1e-160},
+                                                             {1e-300, 1e-300, 1e-300},
+                                                             {1e300, 1e300, 1}}};
+    for (const std::array<double, 3>& unit : units) {
+      this->unit_ = unit;
+      for (const auto& [name, floats] : hard_inputs<TestFixture::D>(Algorithm{})) {
+        const typename TestFixture::Boxes boxes = this->real(floats);
+        const auto index = make_box_index<TestFixture::D, double>();
+        index->update({.boxes = boxes, .changed = {}});
+        this->expect_answers(*index, boxes, {}, reduced(20, 1));
+        ASSERT_FALSE(this->HasFailure()) << name << ", " << unit[0] << ", " << unit[1];
+      }
+    }
   }
 }
 

@@ -1,0 +1,224 @@
+// Doubles as floats in the same order.
+#include "core/rounding.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "core/sample.hpp"
+
+namespace broadside::core {
+namespace {
+
+constexpr double largest_double = std::numeric_limits<double>::max();
+
+/// How many boxes are sampled to fit an origin and a scale.
+constexpr std::size_t most_fitted = 256;
+
+/// From so many boxes one gives its coordinates for knots: then in each interval are some ten.
+constexpr std::size_t boxes_per_knot = 16;
+constexpr std::size_t most_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
+
+/// So many false pairs a box cost about what another rounding does.
+constexpr double most_false_pairs = 8;
+
+/// Each false pair among the boxes that are compared stands for 4/3 a box.
+constexpr double compared_share = 0.75;
+constexpr std::size_t least_compared = 64;
+
+/// Shifts a sample: it depends on all boxes, so that no array can be made up whose samples hide what most of
+/// it is like.
+template <int D>
+std::uint32_t sample_shift(std::span<const Box<D, double>> boxes) {
+  std::uint64_t sum = 0;
+  for (const Box<D, double>& box : boxes) sum += std::bit_cast<std::uint64_t>(box.max[0]);
+  return static_cast<std::uint32_t>(sum * 0x9e3779b97f4a7c15U >> 32);
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Fits one axis to the finite minima of some boxes.
+LinearFit fit_axis(std::vector<double>& minima) {
+  const double origin = median(minima);
+  LinearFit fit{.rounding = {}, .low = origin, .high = origin};
+  for (double& min : minima) {
+    fit.low = std::min(fit.low, min);
+    fit.high = std::max(fit.high, min);
+    min = std::min(std::abs(min - origin), largest_double);
+  }
+  double distance = median(minima);
+  if (distance == 0 && !minima.empty()) distance = *std::ranges::max_element(minima);
+  fit.rounding = LinearRounding(origin, distance);
+  return fit;
+}
+
+/// Boxes by axis, so that a loop compares one with many.
+template <int D>
+class Columns {
+ public:
+  void add(const Box<D, double>& exact, const Box<D>& box) {
+    exact_.push_back(exact);
+    for (int axis = 0; axis < D; ++axis) {
+      min_[axis].push_back(box.min[axis]);
+      max_[axis].push_back(box.max[axis]);
+    }
+  }
+
+  std::size_t size() const { return exact_.size(); }
+
+  /// How many of the first `count` boxes overlap box i as floats and not in double.
+  std::size_t false_pairs(std::size_t i, std::size_t count) const {
+    std::uint32_t overlaps = 0;
+    for (std::size_t j = 0; j < count; ++j) overlaps += overlap_as_floats(i, j);
+    std::size_t wrong = 0;
+    for (std::size_t j = 0; j < count && overlaps > 0; ++j)
+      wrong += static_cast<std::size_t>(overlap_as_floats(i, j) != 0 && !overlap(exact_[i], exact_[j]));
+    return wrong;
+  }
+
+ private:
+  std::uint32_t overlap_as_floats(std::size_t i, std::size_t j) const {
+    std::uint32_t all = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      all &= static_cast<std::uint32_t>(min_[axis][i] <= max_[axis][j]) &
+             static_cast<std::uint32_t>(min_[axis][j] <= max_[axis][i]);
+    }
+    return all;
+  }
+
+  std::vector<Box<D, double>> exact_;
+  std::array<std::vector<float>, D> min_;
+  std::array<std::vector<float>, D> max_;
+};
+
+}  // namespace
+
+LinearRounding::LinearRounding(double origin, double distance) : origin_(origin) {
+  if (!(distance > 0)) return;
+  // Beyond that the scale or its inverse would be none.
+  const int exponent = std::clamp(std::ilogb(distance), -1022, 1022);
+  scale_ = std::ldexp(1.0, -exponent);
+  inverse_scale_ = std::ldexp(1.0, exponent);
+}
+
+QuantileRounding::QuantileRounding(std::vector<double> knots) : knots_(std::move(knots)) {
+  std::ranges::sort(knots_);
+  knots_.erase(std::ranges::unique(knots_).begin(), knots_.end());
+  if (knots_.empty()) knots_.push_back(0);
+  const auto count = static_cast<double>(knots_.size());
+  middle_ = (count - 1) / 2;
+  const double range = std::min(knots_.back() - knots_.front(), largest_double);
+  slope_ = range > 0 ? std::min(count / range, largest_double) : 1;
+}
+
+float QuantileRounding::operator()(double value) const {
+  constexpr double largest = std::numeric_limits<float>::max();
+  if (!(value > knots_.front())) {
+    const double below = (value - knots_.front()) * slope_;
+    return static_cast<float>(std::max(-largest, below - middle_));
+  }
+  if (value >= knots_.back()) {
+    const double above = (value - knots_.back()) * slope_;
+    return static_cast<float>(std::min(largest, above + middle_));
+  }
+  // The last knot that is not above the value, by halving without branches that nobody can predict.
+  const double* knot = knots_.data();
+  for (std::size_t size = knots_.size() - 1; size > 1;) {
+    const std::size_t half = size / 2;
+    knot += knot[half] <= value ? half : 0;
+    size -= half;
+  }
+  // Where the interval's length overflows, its values may as well become equal: then the part is 0 or NaN,
+  // which std::max takes for 0.
+  const double part = std::min(1.0, std::max(0.0, (value - knot[0]) / (knot[1] - knot[0])));
+  return static_cast<float>(static_cast<double>(knot - knots_.data()) - middle_ + part);
+}
+
+template <int D>
+std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes) {
+  std::array<std::vector<double>, D> minima;
+  const std::size_t tries = std::min(boxes.size(), 4 * most_fitted);
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < tries && taken < most_fitted; ++i) {
+    const Box<D, double>& box = boxes[tries == boxes.size() ? i : sampled_place(i, boxes.size())];
+    if (!is_present(box)) continue;
+    ++taken;
+    for (int axis = 0; axis < D; ++axis) {
+      if (std::isfinite(box.min[axis])) minima[axis].push_back(box.min[axis]);
+    }
+  }
+  std::array<LinearFit, D> fit;
+  for (int axis = 0; axis < D; ++axis) fit[axis] = fit_axis(minima[axis]);
+  return fit;
+}
+
+template <int D>
+std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes) {
+  const std::uint32_t shift = sample_shift(boxes);
+  const std::size_t count = std::min(boxes.size() / boxes_per_knot + 1, most_knots / 2);
+  std::array<QuantileRounding, D> fit;
+  for (int axis = 0; axis < D; ++axis) {
+    std::vector<double> knots;
+    knots.reserve(2 * count);
+    for (std::size_t i = 0; i < count && !boxes.empty(); ++i) {
+      const Box<D, double>& box = boxes[sampled_place(i + shift, boxes.size())];
+      if (!is_present(box)) continue;
+      for (const double at : {box.min[axis], box.max[axis]}) {
+        if (std::isfinite(at)) knots.push_back(at);
+      }
+    }
+    fit[axis] = QuantileRounding(std::move(knots));
+  }
+  return fit;
+}
+
+template <int D>
+bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                       std::size_t left_count) {
+  const auto size = static_cast<double>(boxes.size());
+  const auto most = std::max(least_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
+  const std::uint32_t shift = sample_shift(boxes);
+  Columns<D> columns;
+  const auto take = [&](std::span<const Box<D, double>> from) {
+    const std::size_t count = std::min(from.size(), most);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Box<D, double>& box = from[count == from.size() ? i : sampled_place(i + shift, from.size())];
+      if (is_present(box))
+        columns.add(box, rounded(
+                             box, [&](int axis) -> const auto& { return fit[axis].rounding; }));
+    }
+    return count;
+  };
+  double compared = 0;
+  double all = 0;
+  std::size_t wrong = 0;
+  if (left_count == 0) {
+    const auto count = static_cast<double>(take(boxes));
+    compared = count * (count - 1) / 2;
+    all = size * (size - 1) / 2;
+    for (std::size_t i = 1; i < columns.size(); ++i) wrong += columns.false_pairs(i, i);
+  } else {
+    const std::size_t left = take(boxes.first(left_count));
+    const std::size_t left_columns = columns.size();
+    const std::size_t right = take(boxes.subspan(left_count));
+    compared = static_cast<double>(left) * static_cast<double>(right);
+    all = static_cast<double>(left_count) * static_cast<double>(boxes.size() - left_count);
+    for (std::size_t i = left_columns; i < columns.size(); ++i) wrong += columns.false_pairs(i, left_columns);
+  }
+  return compared > 0 && static_cast<double>(wrong) / compared * all > most_false_pairs * size;
+}
+
+template std::array<LinearFit, 2> fit_linear<2>(std::span<const DoubleBox2>);
+template std::array<LinearFit, 3> fit_linear<3>(std::span<const DoubleBox3>);
+template std::array<QuantileRounding, 2> fit_quantiles<2>(std::span<const DoubleBox2>);
+template std::array<QuantileRounding, 3> fit_quantiles<3>(std::span<const DoubleBox3>);
+template bool makes_false_pairs<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>, std::size_t);
+template bool makes_false_pairs<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>, std::size_t);
+
+}  // namespace broadside::core

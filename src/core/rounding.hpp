@@ -1,0 +1,96 @@
+// Doubles as floats in the same order.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+
+namespace broadside::core {
+
+/// One axis about an origin, scaled by a power of two: each step keeps the order of values, at worst it makes
+/// two equal. Floats have seven digits of the distance to the origin, over 38 orders of magnitude to either
+/// side of a typical distance.
+class LinearRounding {
+ public:
+  LinearRounding() = default;
+
+  /// Takes values about `distance` away from the origin to floats about 1 away from 0.
+  LinearRounding(double origin, double distance);
+
+  /// Finite, for an infinite value as well.
+  float operator()(double value) const {
+    constexpr double largest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp((value - origin_) * scale_, -largest, largest));
+  }
+
+  /// About the value that a float stands for, and the same for the same float.
+  double back(float rounded) const { return origin_ + rounded * inverse_scale_; }
+
+  double origin() const { return origin_; }
+  double scale() const { return scale_; }
+
+ private:
+  double origin_ = 0;
+  double scale_ = 1;
+  double inverse_scale_ = 1;
+};
+
+/// One axis by its quantiles, for coordinates whose distances differ too much for one scale, such as clusters
+/// within clusters: the i-th knot, in ascending order, becomes about i, and values between two knots are
+/// interpolated. Keeps order as LinearRounding does.
+class QuantileRounding {
+ public:
+  QuantileRounding() = default;
+
+  /// The knots are finite, in any order.
+  explicit QuantileRounding(std::vector<double> knots);
+
+  float operator()(double value) const;
+
+  std::size_t bytes() const noexcept { return knots_.capacity() * sizeof(double); }
+
+ private:
+  std::vector<double> knots_;  // ascending, no two equal
+  double middle_ = 0;          // the knots' mean number, which becomes 0
+  double slope_ = 0;           // beyond the first and the last knot
+};
+
+/// One axis of a sample of boxes.
+struct LinearFit {
+  LinearRounding rounding;
+  double low;  ///< the least and the greatest of the minima that are finite, 0 where none is
+  double high;
+};
+
+/// A rounding for each axis that suits most of those boxes that are present, by a sample.
+template <int D>
+std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes);
+
+/// A rounding for each axis whose knots are from one in sixteen of the boxes. O(n log n).
+template <int D>
+std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes);
+
+/// Whether rounding makes so many pairs overlap that do not in double that another rounding pays. Where
+/// `left_count` is not 0, only pairs between the boxes before that place and the others matter. Compares a
+/// sample of about sqrt(n) boxes with each other: O(n).
+template <int D>
+bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                       std::size_t left_count);
+
+/// The box, rounded on each axis by what `rounding_of(axis)` gives; the absent box stays absent.
+template <int D, typename RoundingOf>
+Box<D> rounded(const Box<D, double>& box, RoundingOf rounding_of) {
+  Box<D> floats;
+  for (int axis = 0; axis < D; ++axis) {
+    floats.min[axis] = rounding_of(axis)(box.min[axis]);
+    floats.max[axis] = rounding_of(axis)(box.max[axis]);
+  }
+  return floats;
+}
+
+}  // namespace broadside::core

@@ -1,0 +1,195 @@
+// What boxes of doubles cost: as many tests at every scale, and few where floats about one origin coincide.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
+#include "broadside/world.hpp"
+
+#include "core/sample.hpp"
+#include "dice.hpp"
+
+namespace broadside::laws {
+namespace {
+
+constexpr std::size_t count = 20'000;
+
+template <int D>
+using Boxes = std::vector<Box<D, double>>;
+
+/// Boxes of up to `extent` anywhere in a cube of `side`, both in units by axis.
+template <int D>
+Boxes<D> uniform(double side, double extent, const std::array<double, 3>& units) {
+  Dice dice(1);
+  Boxes<D> boxes(count);
+  for (Box<D, double>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = side * dice.unit() * units[axis];
+      box.max[axis] = box.min[axis] + extent * dice.unit() * units[axis];
+    }
+  }
+  return boxes;
+}
+
+template <int D>
+Boxes<D> uniform(const std::array<double, 3>& units) {
+  return uniform<D>(std::pow(static_cast<double>(count), 1.0 / D), 0.7, units);
+}
+
+/// Lines along all axes in turn, half as long as all is, that do not meet.
+Boxes<3> lines() {
+  Boxes<3> boxes = uniform<3>(1, 1e-12, {1, 1, 1});
+  for (std::size_t i = 0; i < count; ++i) boxes[i].max[i % 3] += 0.5;
+  return boxes;
+}
+
+/// Clusters of clusters of clusters: floats about one origin tell only the greatest apart.
+template <int D>
+Boxes<D> nested() {
+  Dice dice(2);
+  Boxes<D> boxes = uniform<D>(1e-9, 1e-11, {1, 1, 1});
+  for (Box<D, double>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double site = dice.whole(0, 9) + 1e-4 * dice.whole(0, 9) + 1e-8 * dice.whole(0, 9);
+      box.min[axis] += site;
+      box.max[axis] += site;
+    }
+  }
+  return boxes;
+}
+
+template <int D, typename Real>
+std::uint64_t tests(const std::string& algorithm, std::span<const Box<D, Real>> boxes) {
+  const auto finder = make_finder<D, Real>(algorithm);
+  PairCounter counter;
+  finder->find(boxes, counter);
+  return finder->statistics()->tests;
+}
+
+template <int D>
+std::uint64_t tests(const std::string& algorithm, const Boxes<D>& boxes) {
+  return tests<D, double>(algorithm, boxes);
+}
+
+const std::vector<std::string> algorithms_that_count = {"auto",     "grid", "sweep_and_prune",
+                                                        "quadtree", "bvh",  "hierarchical_grid"};
+
+template <int D>
+void expect_the_same_at_every_scale(const std::string& algorithm) {
+  constexpr std::array<std::array<double, 3>, 4> scales = {
+      {{0x1p200, 0x1p200, 0x1p200}, {0x1p-200, 0x1p-200, 0x1p-200}, {1, 0x1p-900, 0x1p900}, {3, 3, 3}}};
+  const std::uint64_t usual = tests<D>(algorithm, uniform<D>({1, 1, 1}));
+  for (const std::array<double, 3>& units : scales) {
+    const std::uint64_t scaled = tests<D>(algorithm, uniform<D>(units));
+    // A power of two changes nothing, another factor some last bits.
+    EXPECT_LE(scaled, units[0] == 3 ? usual + usual / 10 : usual) << algorithm << ", units of " << units[0];
+  }
+}
+
+TEST(DoubleCost, IsTheSameAtEveryScale) {
+  for (const std::string& algorithm : algorithms_that_count) {
+    expect_the_same_at_every_scale<2>(algorithm);
+    expect_the_same_at_every_scale<3>(algorithm);
+  }
+}
+
+TEST(DoubleCost, OfLinesIsThatOfFloats) {
+  const Boxes<3> boxes = lines();
+  std::vector<Box3> floats;
+  for (const DoubleBox3& box : boxes) {
+    Box3& rounded = floats.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      rounded.min[axis] = static_cast<float>(box.min[axis]);
+      rounded.max[axis] = static_cast<float>(box.max[axis]);
+    }
+  }
+  for (const std::string& algorithm : algorithms_that_count)
+    EXPECT_LE(tests<3>(algorithm, boxes), 5 * (tests<3, float>(algorithm, floats)) / 4) << algorithm;
+}
+
+TEST(DoubleCost, IsLowWhereFloatsAboutOneOriginCoincide) {
+  for (const std::string& algorithm : algorithms_that_count) {
+    EXPECT_LE(tests<2>(algorithm, nested<2>()), 40 * count) << algorithm;
+    EXPECT_LE(tests<3>(algorithm, nested<3>()), 100 * count) << algorithm;
+  }
+}
+
+/// Boxes are ordinary at the places that a sample of a fixed choice would look at, the others lie in a heap.
+TEST(DoubleCost, IsLowWhereASampleAtKnownPlacesIsFooled) {
+  std::vector<bool> is_known(count);
+  for (std::uint32_t i = 0; i < 512; ++i) is_known[core::sampled_place(i, count)] = true;
+  Boxes<2> boxes = uniform<2>({1, 1, 1});
+  Dice dice(3);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int axis = 0; axis < 2 && !is_known[i]; ++axis) {
+      boxes[i].min[axis] = 1e6 + 1e-6 * dice.unit();
+      boxes[i].max[axis] = boxes[i].min[axis] + 1e-9 * dice.unit();
+    }
+  }
+  EXPECT_LE(tests<2>("bvh", boxes), 100 * count);
+}
+
+template <int D>
+std::uint64_t tests_of_frames(double unit) {
+  Boxes<D> boxes = uniform<D>({unit, unit, unit});
+  const auto tracker = make_tracker<D, double>("auto");
+  PairCounter begun;
+  PairCounter ended;
+  tracker->update({boxes, {}}, begun, ended);
+  std::uint64_t tests = 0;
+  Dice dice(4);
+  for (int frame = 0; frame < 4; ++frame) {
+    std::vector<BoxId> changed;
+    for (std::size_t i = frame; i < count; i += count / 100) {
+      changed.push_back(BoxId(i));
+      for (int axis = 0; axis < D; ++axis) {
+        const double step = unit * dice.unit();
+        boxes[i].min[axis] += step;
+        boxes[i].max[axis] += step;
+      }
+    }
+    tracker->update({boxes, changed}, begun, ended);
+    tests += tracker->statistics()->tests;
+  }
+  return tests;
+}
+
+TEST(DoubleCost, OfAFrameIsTheSameAtEveryScale) {
+  EXPECT_LE(tests_of_frames<2>(1), 200'000u);
+  EXPECT_LE(tests_of_frames<3>(1), 400'000u);
+  for (const double unit : {0x1p200, 0x1p-200, 0x1p-1010}) {
+    EXPECT_EQ(tests_of_frames<2>(unit), tests_of_frames<2>(1)) << unit;
+    EXPECT_EQ(tests_of_frames<3>(unit), tests_of_frames<3>(1)) << unit;
+  }
+}
+
+/// Boxes that come where floats about the first ones' origin are one and the same: they are rounded anew.
+TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
+  Boxes<2> boxes = uniform<2>({1, 1, 1});
+  const Boxes<2> others = uniform<2>({1e80, 1e80, 1e80});
+  const auto tracker = make_tracker<2, double>("auto:way=incremental");
+  PairCounter begun;
+  PairCounter ended;
+  tracker->update({boxes, {}}, begun, ended);
+  std::uint64_t tests = 0;
+  for (std::size_t frame = 0; frame < 200; ++frame) {
+    std::vector<BoxId> changed;
+    for (std::size_t i = frame; i < count; i += 200) {
+      changed.push_back(BoxId(i));
+      boxes[i] = others[i];
+    }
+    tracker->update({boxes, changed}, begun, ended);
+    tests += tracker->statistics()->tests;
+  }
+  EXPECT_LE(tests, 200 * count);
+}
+
+}  // namespace
+}  // namespace broadside::laws
