@@ -41,6 +41,7 @@ void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair
 template <int D, typename Real>
 Events World<D, Real>::update() {
   State& state = *state_;
+  state.lead_back();
   state.note_changes_for_index();
   const bool is_again = !state.refined.empty();
   state.ask_tracker();
