@@ -76,6 +76,7 @@ void World<D, Real>::State::release() {
     PairCounter known;
     fresh_tracker->update(frame(), known, known);
     tracker = std::move(fresh_tracker);
+    way_back.reset();
   }
   current.merge(generations);
   is_current = true;

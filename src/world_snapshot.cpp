@@ -113,7 +113,7 @@ void World<D, Real>::State::put(ByteWriter& out, std::span<const HandlePair> pai
   put_list(out, refiltered);
   put_list(out, sorted(ignored));
   put_list(out, ignored_changed);
-  put_last_frame(out, tracker->last_frame(), frame());
+  put_last_frame(out, last_frame(), frame());
 
   const auto put_pairs = [&out](std::span<const HandlePair> handles) {
     out.put(std::uint64_t{handles.size()});
@@ -132,9 +132,12 @@ void World<D, Real>::State::put(ByteWriter& out, std::span<const HandlePair> pai
     out.put(
         static_cast<std::uint8_t>((mark.overlaps ? edge_overlaps : 0) | (mark.accepted ? edge_accepted : 0)));
   }
-  for (const auto* const list :
-       {&candidates.begun, &candidates.ended, &refined.begun, &refined.ended, &fresh})
-    put_list(out, *list);
+  for (const PairEvents* const events : {&candidates, &refined}) {
+    const PairEvents net = events->netted();
+    put_list(out, net.begun);
+    put_list(out, net.ended);
+  }
+  put_list(out, fresh);
 }
 
 template <int D, typename Real>

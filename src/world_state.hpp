@@ -50,6 +50,9 @@ struct World<D, Real>::State {
 
     bool empty() const noexcept { return begun.empty() && ended.empty(); }
     void clear() noexcept { begun.clear(), ended.clear(); }
+
+    /// Sorted, without what both have: an update that ran out of memory may not have come to that.
+    PairEvents netted() const;
   };
 
   /// An edge that an update looks at, and what it makes of it.
@@ -123,8 +126,18 @@ struct World<D, Real>::State {
   std::vector<Pair> graph_pairs(bool (*is_wanted)(const core::PairGraph::Mark&)) const;
   bool knows_candidates() const noexcept;
   std::vector<Pair> known_candidates() const;
+  Frame<D, Real> last_frame() const noexcept;
   static std::vector<Pair> lead(PairTracker<D, Real>& tracker, const LastFrame& to);
+  void lead_back();
   void take_tracker(State& other, const LastFrame& last);
+
+  // world_snapshot_check.cpp.
+  bool is_paired(std::uint32_t slot) const noexcept;
+  void expect_paired(Pair pair) const;
+  void check_last_frame(const LastFrame& last) const;
+  void check_pending(bool asks_predicate) const;
+  void check_marks(bool asks_predicate) const;
+  void check_pairs(const std::vector<Pair>& tracked) const;
 
   // world_memory.cpp.
   void trim() noexcept;
@@ -137,6 +150,10 @@ struct World<D, Real>::State {
   Real margin;
   bool is_own_tracker;  // made from options.algorithm, so that another one can be made
   std::unique_ptr<PairTracker<D, Real>> tracker;
+
+  /// The frame from which the next events start, if the tracker is at another one: restore() failed, and so
+  /// did the tracker's way back. Null otherwise.
+  std::unique_ptr<LastFrame> way_back;
 
   std::vector<Box<D, Real>> boxes;     // absent where nothing lives
   std::vector<Box<D, Real>> enlarged;  // what the tracker sees; empty without a margin

@@ -43,6 +43,7 @@ template <int D, typename Real>
 Events World<D, Real>::update() {
   const core::DefaultEnvironment environment;
   State& state = *state_;
+  state.lead_back();
   state.note_changes_for_index();
   const bool is_again = !state.refined.empty();
   state.ask_tracker();
