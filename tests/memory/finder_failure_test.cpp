@@ -102,7 +102,7 @@ class FinderFailure : public MemoryTest {
         {
           const std::vector<Search<D, Real>> few = {{6, false, dice}, {41, false, dice}, {70, true, dice}};
           for (const FailureKind kind : {FailureKind::once, FailureKind::from_then_on}) {
-            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k += is_alone ? 1 : 1 + k / 16) {
+            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k = next_number(k, !is_alone)) {
             }
             ASSERT_EQ(text, "") << spec.text();
           }

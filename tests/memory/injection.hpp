@@ -9,8 +9,13 @@
 
 namespace broadside::laws {
 
-/// How many random histories each test plays: 10, or what the environment's BROADSIDE_FAILURE_HISTORIES says.
+/// How many random histories each test plays: a few, or as many as the environment's
+/// BROADSIDE_FAILURE_HISTORIES says.
 std::uint64_t random_histories();
+
+/// The allocation to fail after `number`, where each is to fail in turn: the next one, but under a sanitizer,
+/// where calls are slow, and in `many`.
+std::uint64_t next_number(std::uint64_t number, bool many = false);
 
 /// Lets calls of the library run out of memory.
 class Injector {

@@ -114,7 +114,7 @@ class TrackerFailure : public MemoryTest {
         {
           const auto few = random_frames<D, Real>(7, 12, dice);
           for (const FailureKind kind : {FailureKind::once, FailureKind::from_then_on}) {
-            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k += is_alone ? 1 : 1 + k / 16) {
+            for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k = next_number(k, !is_alone)) {
             }
             ASSERT_EQ(text, "") << spec.text();
           }
