@@ -41,7 +41,6 @@ void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair
 
 template <int D, typename Real>
 Events World<D, Real>::update() {
-  const core::DefaultEnvironment environment;
   State& state = *state_;
   state.lead_back();
   state.note_changes_for_index();
@@ -120,6 +119,7 @@ void World<D, Real>::State::apply_candidates() {
 /// Looks at all edges that may hold now and did not before, or the other way round.
 template <int D, typename Real>
 void World<D, Real>::State::refine() {
+  const core::DefaultEnvironment environment;
   ++stamp;
   touched.clear();
   questions.clear();

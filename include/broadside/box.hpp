@@ -12,6 +12,11 @@ namespace broadside {
 ///
 /// Boxes are closed: two that only touch overlap, and a degenerate box (min = max) is a point and counts.
 /// Coordinates are in the caller's unit, float or double; infinite ones are allowed and mean what they say.
+///
+/// Coordinates are compared by value, denormals too, whatever rounding mode, flushing of denormals (FTZ, DAZ)
+/// or traps the calling thread has set: the library computes in the default floating-point environment and
+/// sets the caller's back before it returns, throws, or calls a sink, a visitor, a predicate or an executor.
+/// Functions that are inline in these headers, such as overlap(), compute in the caller's.
 template <int D, typename Real = float>
 struct Box {
   std::array<Real, D> min;

@@ -12,6 +12,7 @@
 
 #include "algorithms/bvh_outward.hpp"
 #include "algorithms/bvh_queries.hpp"
+#include "core/squared_distance.hpp"
 #include "kernels/query_tree.hpp"
 
 namespace broadside::own {
@@ -292,7 +293,7 @@ class BvhIndex final : public BoxIndex<D, Real> {
         if constexpr (is_float)
           offer({BoxId{child}, distances[i]});
         else
-          offer({BoxId{child}, distance_squared(point, exact_[child])});
+          offer({BoxId{child}, core::squared_distance<D, Real>(point, exact_[child])});
       }
       // The nearest one last, where it is taken from.
       std::sort(waiting.begin() + begin, waiting.begin() + waits, [](const Waiting& a, const Waiting& b) {

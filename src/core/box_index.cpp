@@ -12,6 +12,7 @@
 
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
+#include "core/squared_distance.hpp"
 
 namespace broadside {
 namespace {
@@ -61,14 +62,7 @@ template <int D, typename Real>
 Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
                       const Box<D, Real>& box) noexcept {
   const core::DefaultEnvironment environment;
-  Real sum = 0;
-  for (int axis = 0; axis < D; ++axis) {
-    Real outside = 0;
-    if (point[axis] < box.min[axis]) outside = box.min[axis] - point[axis];
-    if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
-    sum += outside * outside;
-  }
-  const volatile Real result = sum;
+  const volatile Real result = core::squared_distance<D, Real>(point, box);
   return result;
 }
 
