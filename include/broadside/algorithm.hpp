@@ -80,8 +80,8 @@ const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm
 /// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec
 /// if a value is wrong or the algorithm does not do D dimensions.
 ///
-/// Algorithms work on floats. A finder of boxes of doubles is one of floats about a local origin, or several
-/// where the extent demands it, and a last test in double: its pairs are exact.
+/// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
+/// origin and at a scale of their own, and has a last test in double: its pairs are exact.
 template <int D, typename Real = float>
 std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm, const Spec& spec);
 

@@ -50,14 +50,15 @@ Boxes<3> lines() {
   return boxes;
 }
 
-/// Clusters of clusters of clusters: floats about one origin tell only the greatest apart.
+/// Some 200 clusters of clusters of clusters: floats about one origin tell only the greatest apart.
 template <int D>
 Boxes<D> nested() {
   Dice dice(2);
-  Boxes<D> boxes = uniform<D>(1e-9, 1e-11, {1, 1, 1});
+  Boxes<D> boxes = uniform<D>(1e-12, 1e-14, {1, 1, 1});
+  constexpr int last = D == 2 ? 3 : 1;
   for (Box<D, double>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
-      const double site = dice.whole(0, 9) + 1e-4 * dice.whole(0, 9) + 1e-8 * dice.whole(0, 9);
+      const double site = dice.whole(0, last) + 1e-6 * dice.whole(0, last) + 1e-10 * dice.whole(0, last);
       box.min[axis] += site;
       box.max[axis] += site;
     }
@@ -178,7 +179,7 @@ TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
   PairCounter begun;
   PairCounter ended;
   tracker->update({boxes, {}}, begun, ended);
-  std::uint64_t tests = 0;
+  std::uint64_t candidates = 0;
   for (std::size_t frame = 0; frame < 200; ++frame) {
     std::vector<BoxId> changed;
     for (std::size_t i = frame; i < count; i += 200) {
@@ -186,9 +187,9 @@ TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
       boxes[i] = others[i];
     }
     tracker->update({boxes, changed}, begun, ended);
-    tests += tracker->statistics()->tests;
+    candidates += tracker->statistics()->hits;
   }
-  EXPECT_LE(tests, 200 * count);
+  EXPECT_LE(candidates, 60 * count);
 }
 
 }  // namespace

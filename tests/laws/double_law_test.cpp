@@ -183,7 +183,7 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     boxes[7].max.fill(std::numeric_limits<double>::max());
     inputs.push_back({"infinite and absent boxes together", boxes});
   }
-  add_scales<D>(dice, count, inputs);
+  add_scales<D>(dice, count / 2, inputs);
   std::erase_if(inputs, [&](const DoubleInput<D>& input) {
     return std::ranges::any_of(input.boxes,
                                [&](const Box<D, double>& box) { return is_beyond(algorithm, box); });
