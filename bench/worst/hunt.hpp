@@ -25,9 +25,9 @@ struct Hunt {
   std::vector<lab::Contender> algorithms;
   std::vector<lab::Contender> references{};  ///< asked in turn where only one algorithm finished
   Effort effort{};
-  double limit_seconds = 10;       ///< for a run
-  double reference_seconds = 120;  ///< for that of a reference
-  bool judges_auto = false;        ///< others are run only as long as they may be the best
+  double limit_seconds = 10;      ///< for a run
+  double reference_seconds = 30;  ///< for that of a reference
+  bool judges_auto = false;       ///< others are run only as long as they may be the best
   Bounds bounds{};
 };
 

@@ -104,6 +104,9 @@ std::vector<InputResult> hunt(const Arguments& arguments) {
     // Of the fixed ones none may be lost.
     if (result.state == InputResult::State::too_many_pairs && source.draws()) continue;
     results.push_back(std::move(result));
+    // At once: a hunt takes long, and what it has found must not be lost where it is ended.
+    fmt::print("{}", above_text(results.back(), arguments.hunt.bounds));
+    std::fflush(stdout);
     if (is_watched) fmt::print(stderr, "\r{} of {}", results.size(), source.size());
   }
   if (is_watched) fmt::print(stderr, "\n");
@@ -139,13 +142,14 @@ int run(int count, char** values) {
     throw std::runtime_error("--judge without auto among --algorithms; expected auto");
   hunted.references = catalogue.select("bvh,quadtree,sweep_and_prune,grid");
   hunted.judges_auto = arguments.judge;
+  hunted.reference_seconds = 3 * hunted.limit_seconds;
   lab::keep_freed_memory();
   const lab::Machine machine = lab::this_machine();
   fmt::print("{} boxes, {} s at most; {}, {} cores; {}, {}\n\n", lab::grouped(hunted.effort.boxes),
              hunted.limit_seconds, machine.cpu, machine.cores, lab::this_build().compiler,
              lab::this_build().revision);
   const std::vector<InputResult> results = hunt(arguments);
-  fmt::print("{}{}", table(results, hunted, arguments.worst), summary(results, hunted));
+  fmt::print("\n{}{}", table(results, hunted, arguments.worst), summary(results, hunted));
   if (!arguments.json.empty()) write_json(arguments.json, to_json(results, hunted));
   if (has_fault(results)) return 2;
   return arguments.judge && above_bounds(results, hunted.bounds) > 0 ? 1 : 0;

@@ -87,6 +87,20 @@ std::string table(std::span<const InputResult> results, const Hunt& hunt, std::s
   return text;
 }
 
+std::string above_text(const InputResult& result, const Bounds& bounds) {
+  std::string text;
+  for (const Finding& finding : result.findings) {
+    if (!is_above(finding, result, bounds)) continue;
+    const Run& run = finding.run;
+    text += fmt::format("{}: {}{} times uniform, {} times {}, {} ms, {} bytes a box: {}\n", finding.algorithm,
+                        run.finished() ? "" : "above ", lab::ratio_text(finding.over_uniform),
+                        run.finished() ? lab::ratio_text(finding.over_best) : "?", result.best,
+                        run.finished() ? lab::rounded(run.milliseconds) : std::string(name(run.end)),
+                        lab::whole(run.peak_bytes), result.input.text());
+  }
+  return text;
+}
+
 std::string summary(std::span<const InputResult> results, const Hunt& hunt) {
   const auto in_state = [&](InputResult::State state) {
     return std::ranges::count(results, state, &InputResult::state);

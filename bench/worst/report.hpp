@@ -14,6 +14,9 @@ namespace broadside::bench {
 /// well.
 std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t most);
 
+/// A line for each algorithm that is above its bounds on the input; empty if there is none.
+std::string above_text(const InputResult& result, const Bounds& bounds);
+
 /// How many inputs were measured, left out or wrong, and how many are above each algorithm's bounds.
 std::string summary(std::span<const InputResult> results, const Hunt& hunt);
 
