@@ -99,7 +99,8 @@ void check_applies(const CLI::App& verb, const CompareArguments& arguments, cons
   for (const std::string& name : arguments.scenes) scenes.push_back(find(name));
   const bool is_named = !scenes.empty();
   for (const lab::Scene& scene : lab::scenes()) {
-    if (!is_named && scene.kind == lab::SceneKind::generated) scenes.push_back(find(scene.name));
+    if (!is_named && scene.kind == lab::SceneKind::generated && !scene.hard)
+      scenes.push_back(find(scene.name));
   }
   const std::vector<std::string> remarks = check_options(verb, scenes);
   for (const std::string& remark : remarks) {

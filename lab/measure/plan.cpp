@@ -113,7 +113,7 @@ std::vector<CaseRequest> plan_of(const Wishes& wishes) {
   std::vector<std::string> scenes = wishes.scenes;
   if (!named) {
     for (const Scene& scene : lab::scenes()) {
-      if (scene.kind == SceneKind::generated) scenes.push_back(scene.name);
+      if (scene.kind == SceneKind::generated && !scene.hard) scenes.push_back(scene.name);
     }
   }
   const auto counts = or_standard(wishes.boxes, {standard_boxes});

@@ -1,6 +1,8 @@
 // The descriptions in which the files of this folder end, for the list of scenes.
 #pragma once
 
+#include <vector>
+
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab::generated {
@@ -20,5 +22,6 @@ Scene jumps();
 Scene bunny();
 Scene counties();
 Scene coastlines();
+std::vector<Scene> hard();
 
 }  // namespace broadside::lab::generated

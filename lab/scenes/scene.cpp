@@ -33,7 +33,7 @@ struct SceneList {
   std::size_t there = 0;  // how many are not missing
 
   SceneList() {
-    for (const std::vector<Scene>& more : {recordings::box2d(), recordings::bullet()})
+    for (const std::vector<Scene>& more : {generated::hard(), recordings::box2d(), recordings::bullet()})
       scenes.insert(scenes.end(), more.begin(), more.end());
     scenes.insert(scenes.end(), {generated::bunny(), generated::counties(), generated::coastlines()});
     // Not std::ranges' version: clang 14 cannot compile what it returns.

@@ -63,6 +63,7 @@ struct Scene {
 
   bool fixed_count = false;  ///< the number of boxes is the scene's own
   bool fixed_seed = false;   ///< the boxes are the same for every seed
+  bool hard = false;         ///< slow for many algorithms by intent: compared only where it is named
   bool integers = false;     ///< all coordinates are integers made without libm: equal under every compiler
 
   std::string

@@ -103,7 +103,8 @@ struct Lines {
       size[along] = length;
       min[along] *= 1 - length;
       for (int axis = 0; lattice && axis < D; ++axis) {
-        if (axis != along) min[axis] = std::floor(min[axis] * side) / side;
+        // Each axis has a lattice of its own, between the others' places: else all of them would cross.
+        if (axis != along) min[axis] = (std::floor(min[axis] * side) + along / 3.0) / side;
       }
       boxes.push_back(box_at<D>(min, size));
     }

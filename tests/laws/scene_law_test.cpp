@@ -35,6 +35,8 @@ TEST_P(SceneLaw, FindsEachOverlappingPairOnce) {
   in_dimension([&]<int D>() {
     for (const lab::Scene& scene : lab::scenes()) {
       for (const std::size_t boxes : {0, 1, 2, 3, 17, 200, 1000}) {
+        // Of the hard ones the smallest are like any other's.
+        if (scene.hard && boxes < 200) continue;
         const std::size_t count = boxes == 1000 ? reduced(boxes) : boxes;
         for (const std::uint64_t seed : {1, 2}) {
           const auto history = history_of<D>(scene, {.boxes = count, .seed = seed});

@@ -1,0 +1,67 @@
+// The worst that the worst-case hunt (bench/worst) found: inputs of its families with the values that were
+// slowest, each for a reason of its own.
+#include <array>
+#include <string>
+
+#include "lab/scenes/descriptions.hpp"
+#include "lab/worst/input.hpp"
+
+namespace broadside::lab::generated {
+namespace {
+
+/// A scene that is an input of the hunt in floats.
+struct Found {
+  const char* name;
+  const char* summary;
+  const char* input;  // what the hunt calls it
+  bool fixed_seed = false;
+};
+
+constexpr std::array found = {
+    Found{"crossed_plates", "two stacks of parallel plates, the one across the other",
+          "plates:neighbours=1:regions=2"},
+    Found{"many_stacks",
+          "300 stacks of parallel plates in a row, each along another axis than the one before",
+          "plates:neighbours=1:regions=300:layout=row:order=shuffled"},
+    Found{"plates_and_lines", "stacks of parallel plates, and long thin boxes through them",
+          "mixture:first=plates:second=lines:order=shuffled"},
+    Found{"wires", "lines through the whole world, along each axis", "lines:neighbours=1:order=shuffled"},
+    Found{"staircase", "boxes one after the other along the diagonal, in order", "row:overlap=1.5", true},
+    Found{"nested_clusters", "clusters of clusters, six times, each a hundredth of the one around it",
+          "clusters:levels=6:branches=6:shrink=100:order=shuffled"},
+    Found{"cantor_dust", "boxes at the ends of intervals at the ends of intervals",
+          "dust:kept=0.1:order=shuffled"},
+    Found{"many_scales", "places of 20 orders of magnitude, boxes as large as their distance allows",
+          "magnitudes:decades=20:order=shuffled"},
+    Found{"many_sizes", "sizes of 30 orders of magnitude", "magnitudes:of=sizes:decades=30:order=shuffled"},
+    Found{"misleading_sample", "even boxes where a sample of the array looks, plates elsewhere",
+          "fooled:hidden=plates"},
+};
+
+template <int D>
+MakeBoxes<D> maker(const char* input) {
+  return [text = std::string(input)](const Settings&, std::size_t boxes, std::uint64_t seed) {
+    HardInput wanted = parse_input(text);
+    wanted.dimension = D;
+    wanted.seed = seed;
+    return make_input<D, float>(wanted, boxes, 0).boxes;
+  };
+}
+
+}  // namespace
+
+std::vector<Scene> hard() {
+  std::vector<Scene> scenes;
+  for (const Found& input : found) {
+    scenes.push_back({.name = input.name,
+                      .summary = input.summary,
+                      .source = "Broadside's worst-case hunt",
+                      .boxes_2d = maker<2>(input.input),
+                      .boxes_3d = maker<3>(input.input),
+                      .fixed_seed = input.fixed_seed,
+                      .hard = true});
+  }
+  return scenes;
+}
+
+}  // namespace broadside::lab::generated
