@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include <assimp/Importer.hpp>
@@ -99,12 +100,13 @@ IndexedMesh import_mesh(Input& input) {
   const std::string extension = input.extension();
   const bool is_named = !extension.empty() && importer.IsExtensionSupported(extension);
   const aiScene* scene = nullptr;
+  // A file may name others beside it; what comes through a pipe, or under another name, cannot.
+  const bool is_opened_by_name = is_named && !input.path().empty();
+  const std::string_view bytes = is_opened_by_name ? std::string_view() : input.bytes();
   try {
-    // A file may name others beside it; what comes through a pipe, or under another name, cannot.
-    if (is_named && !input.path().empty()) {
+    if (is_opened_by_name) {
       scene = importer.ReadFile(input.path().string(), 0);
     } else {
-      const std::string_view bytes = input.bytes();
       // Of what was compressed, the name may still tell the kind.
       const std::string kind = content.empty() && is_named ? extension.substr(1) : std::string(content);
       scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, kind.c_str());
@@ -113,6 +115,8 @@ IndexedMesh import_mesh(Input& input) {
     check_corners(input, *scene);
   } catch (const FileError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    refuse(input, "needs more memory than there is", "a mesh that holds no less than it claims to");
   } catch (const std::exception& error) {
     refuse_import(input, error.what());
   }
