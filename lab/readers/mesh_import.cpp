@@ -1,10 +1,15 @@
 // Meshes through assimp: STL, glTF and what else it reads.
 //
 // Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <limits>
 #include <new>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <assimp/Importer.hpp>
@@ -15,6 +20,7 @@
 #include "lab/readers/indexed_mesh.hpp"
 #include "lab/readers/mesh_content.hpp"
 #include "lab/readers/shown.hpp"
+#include "lab/readers/text_words.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -31,6 +37,27 @@ namespace {
            "a file with the extension of its kind");
   while (reason.ends_with('.') || reason.ends_with(' ') || reason.ends_with('\n')) reason.remove_suffix(1);
   refuse(input, fmt::format("cannot be read: {}", plainly(reason)));
+}
+
+/// assimp takes memory for all that an OFF file claims: its first numbers count vertices and faces.
+void check_off_counts(Input& input) {
+  std::string_view rest = input.bytes();
+  const std::size_t bytes = rest.size();
+  int counts = 0;
+  while (counts < 2 && !rest.empty()) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    line = line.substr(0, line.find_first_of("#\r"));
+    for (std::string_view word = next_word(line); counts < 2 && !word.empty(); word = next_word(line)) {
+      std::uint64_t count = 0;
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+      if (end != word.data() + word.size()) continue;  // the word OFF, or one like it
+      if (error != std::errc() || count > bytes)
+        refuse(input, fmt::format("claims {} vertices or faces and has {} bytes", word, bytes),
+               "no more than there is room for");
+      ++counts;
+    }
+  }
 }
 
 /// assimp trusts the numbers of vertices that a file gives.
@@ -102,6 +129,7 @@ IndexedMesh import_mesh(Input& input) {
   const aiScene* scene = nullptr;
   // A file may name others beside it; what comes through a pipe, or under another name, cannot.
   const bool is_opened_by_name = is_named && !input.path().empty();
+  if (content == "off" || (content.empty() && extension == ".off")) check_off_counts(input);
   const std::string_view bytes = is_opened_by_name ? std::string_view() : input.bytes();
   try {
     if (is_opened_by_name) {

@@ -38,23 +38,13 @@ double most(const Tunable& tunable) {
   return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
 }
 
-/// Likewise of a float, which has fewer digits.
-std::string text_of(float value) {
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
-}
-
 /// What a tunable takes, for whoever gave it `found`.
 std::string range(const Tunable& tunable, double found) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
-  // Bounds that only keep a float from becoming 0 or infinite say nothing to a reader who is not beyond them.
-  if (is_unbounded && tunable.least == std::numeric_limits<float>::min()) {
-    if (!(found > 0)) return kind + " above 0";
-    return kind + " from " + text_of(std::numeric_limits<float>::min()) + " to " +
-           text_of(std::numeric_limits<float>::max());
-  }
+  // A bound that only keeps a float from becoming 0 says nothing to a reader who is not near it.
+  if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
+    return kind + " above 0";
   if (most(tunable) == std::numeric_limits<double>::max())
     return kind + " of at least " + text_of(tunable.least);
   return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));

@@ -50,6 +50,16 @@ TEST(InputWithoutEnd, ThroughAPipeIsRefusedOnceMemoryIsShort) {
               AllOf(HasSubstr("standard input: goes on after "), HasSubstr("; expected an end, or a file")));
 }
 
+TEST(InputThatClaimsMore, ThanItHoldsIsRefusedBeforeMemoryIsTakenForIt) {
+  const TemporaryFolder folder;
+  const std::string off = folder.put("a.off", "OFF\n# a comment\n4000000000 1 0\n0 0 0\n");
+  const Ended ended = run({"info", off});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.errors, "broadside: " + off +
+                              ": claims 4000000000 vertices or faces and has 37 bytes; expected no more than "
+                              "there is room for\n");
+}
+
 TEST(Output, FollowsNoLinkThatIsPlantedBesideIt) {
   const TemporaryFolder folder;
   const std::string boxes = folder.put("boxes.csv", two_boxes);
