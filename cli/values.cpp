@@ -14,6 +14,7 @@
 
 #include "cli/unusable.hpp"
 #include "lab/readers/input.hpp"
+#include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
 
@@ -95,6 +96,10 @@ void check_writable(const std::string& option, const std::string& path) {
   if (!std::filesystem::is_directory(folder, ignored))
     throw Unusable(fmt::format("{} is '{}', but there is no folder '{}'; expected one that is there", option,
                                path, folder.string()));
+  if (lab::is_read_only(path) && !lab::is_written_directly(path))
+    throw Unusable(
+        fmt::format("{} is '{}', which is read-only; expected a file that may be written, or another name",
+                    option, path));
   if (!std::filesystem::exists(path, ignored) && access(folder.c_str(), W_OK) != 0)
     throw Unusable(fmt::format(
         "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,

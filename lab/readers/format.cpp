@@ -85,6 +85,9 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   const std::string_view begin = input.beginning();
   if (begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF"))
     throw FileError(fmt::format("{}: begins as text in UTF-16; expected UTF-8", input.name()));
+  if (begin.size() == Input::beginning_bytes && std::ranges::all_of(begin, [](char c) { return c == 0; }))
+    throw FileError(fmt::format("{}: begins with {} zero bytes, as no format does; expected boxes",
+                                input.name(), begin.size()));
   const auto wanted =
       std::ranges::find_if(formats(), [&](const Format& format) { return is_called(format, name); });
   if (name.empty()) refuse_unread(input, "");

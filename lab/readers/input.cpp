@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
@@ -20,6 +21,18 @@ namespace broadside::lab {
 namespace {
 
 constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
+
+/// How much is copied of what cannot be mapped. Nothing useful comes from a device but a terminal, and what
+/// the others give, such as /dev/zero, has no end. A pipe may have none either; its readers need memory as
+/// well.
+std::uint64_t most_copied_bytes(bool is_device) {
+  constexpr std::uint64_t of_a_device = std::uint64_t{1} << 20;
+  if (is_device) return of_a_device;
+  const auto pages = ::sysconf(_SC_PHYS_PAGES);
+  const auto page_bytes = ::sysconf(_SC_PAGE_SIZE);
+  if (pages <= 0 || page_bytes <= 0) return std::uint64_t{1} << 32;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
+}
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -91,6 +104,7 @@ Input::Input(const std::filesystem::path& path, Progress progress)
     errno = EISDIR;
     refuse();
   }
+  is_device_ = S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0;
   // Standard input may begin in the middle of a file.
   is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor, 0, SEEK_CUR) == 0);
   is_regular_ = is_regular_ && !source_->is_compressed();
@@ -133,19 +147,36 @@ std::string_view Input::bytes() {
     ::madvise(mapped_, size_, MADV_SEQUENTIAL);
     return all_ = {static_cast<const char*>(mapped_), size_};
   }
-  kept_ = buffer_->peek(0);
-  std::size_t used = kept_.size();
-  while (true) {
-    kept_.resize(std::max<std::size_t>(2 * used, std::size_t{1} << 16));
-    const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
-    if (got == 0) break;
-    used += got;
-    passed(used);
-  }
-  kept_.resize(used);
-  size_ = used;
+  copy();
+  size_ = kept_.size();
   next_report_ = progress_ ? bytes_a_report : UINT64_MAX;
   return all_ = kept_;
+}
+
+/// Reads all bytes into memory.
+void Input::copy() {
+  kept_ = buffer_->peek(0);
+  const std::uint64_t most = most_copied_bytes(is_device_);
+  std::size_t used = kept_.size();
+  try {
+    while (used <= most) {
+      kept_.resize(std::max<std::size_t>(2 * used, std::size_t{1} << 16));
+      const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
+      if (got == 0) {
+        kept_.resize(used);
+        return;
+      }
+      used += got;
+      passed(used);
+    }
+  } catch (const std::bad_alloc&) {
+    // As too much for the machine's memory.
+  }
+  kept_ = {};
+  throw FileError(fmt::format(
+      "{}: goes on after {} bytes{}; expected {}", name_, used,
+      is_device_ ? ", and is a device" : ", more than memory can hold beside its boxes",
+      is_device_ ? "a file or a pipe, which have an end" : "an end, or a file, which is not copied"));
 }
 
 std::istream& Input::stream() {

@@ -60,7 +60,9 @@ class Input {
   /// The first bytes, which are not consumed.
   std::string_view beginning();
 
-  /// All bytes. A file is mapped, not copied: nobody may shorten it while it is read. Throws FileError.
+  /// All bytes. A file is mapped, not copied: nobody may shorten it while it is read. Of what is copied,
+  /// which is what comes through a pipe or is decompressed, at most half as much as the machine has memory.
+  /// Throws FileError.
   std::string_view bytes();
 
   /// The bytes in sequence, from the first one; as they come, so that a pipe can be followed. What reads from
@@ -75,6 +77,7 @@ class Input {
  private:
   class Buffer;
 
+  void copy();
   void report(std::uint64_t byte);
   [[noreturn]] void refuse() const;
 
@@ -84,6 +87,7 @@ class Input {
   std::uint64_t next_report_ = UINT64_MAX;
   std::unique_ptr<ByteSource> source_;  // null in memory
   bool is_regular_ = false;             // a regular file, whose size is known and which can be mapped
+  bool is_device_ = false;              // and no terminal
   std::uint64_t size_ = 0;
   std::string_view all_;  // once bytes() was called, or from the start in memory
   bool has_all_ = false;

@@ -2,6 +2,7 @@
 #include "lab/readers/map_text.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +30,7 @@ bool is_line_by_line(std::string_view bytes) {
 }  // namespace
 
 MapText::MapText(Input& input) : input_(input), bytes_(input.bytes()) {
+  if (bytes_.data() == nullptr) throw std::bad_alloc();
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string_view bytes(bytes_);
   if (bytes.starts_with(byte_order_mark)) end_ = byte_order_mark.size();
@@ -43,9 +45,11 @@ bool MapText::next() {
   is_in_feature_ = false;
   // simdjson takes no care of what it skips: of wrong brackets there, it would make anything.
   check_json(bytes, begin_, end_, input_.name());
+  take_room_for_strings(end_ - begin_);
   const simdjson::padded_string_view text(bytes.data() + begin_, end_ - begin_,
                                           bytes.size() + simdjson::SIMDJSON_PADDING - begin_);
   if (const auto error = parser_.iterate(text).get(document_)) {
+    if (error == simdjson::MEMALLOC) throw std::bad_alloc();
     throw FileError(
         fmt::format("{}: byte {}: {}; expected JSON", input_.name(), begin_, simdjson::error_message(error)));
   }
@@ -54,6 +58,7 @@ bool MapText::next() {
 
 json::object MapText::root() {
   document_.rewind();
+  next_string_ = strings_.get();
   json::object object;
   if (const auto error = document_.get_object().get(object)) refuse(error, "the object of a map");
   return object;
@@ -90,9 +95,28 @@ json::array MapText::array(json::value value, std::string_view expected) {
 }
 
 std::string_view MapText::string(json::value value, std::string_view expected) {
+  json::raw_json_string raw;
+  if (const auto error = value.get_raw_json_string().get(raw)) refuse(error, expected);
   std::string_view text;
-  if (const auto error = value.get_string().get(text)) refuse(error, expected);
+  if (const auto error = parser_.unescape(raw, next_string_).get(text)) refuse(error, expected);
   return text;
+}
+
+std::string_view MapText::key(json::field& field) {
+  std::string_view text;
+  if (const auto error = parser_.unescape(field.key(), next_string_).get(text)) refuse(error, "JSON");
+  return text;
+}
+
+/// The parser has room of its own, but does not notice where memory is too short for that (simdjson 3.0).
+void MapText::take_room_for_strings(std::size_t text_bytes) {
+  const std::size_t bytes = text_bytes + simdjson::SIMDJSON_PADDING;
+  if (bytes > string_bytes_) {
+    string_bytes_ = 0;
+    strings_ = std::make_unique_for_overwrite<std::uint8_t[]>(bytes);
+    string_bytes_ = bytes;
+  }
+  next_string_ = strings_.get();
 }
 
 std::int64_t MapText::integer(json::value value, std::string_view expected) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +39,7 @@ class MapText {
   json::object object(json::value value, std::string_view expected);
   json::array array(json::value value, std::string_view expected);
   std::string_view string(json::value value, std::string_view expected);
+  std::string_view key(json::field& field);
   std::int64_t integer(json::value value, std::string_view expected);
   double number(json::value value);
   bool is_null(json::value value);
@@ -65,6 +67,7 @@ class MapText {
   [[noreturn]] void refuse(simdjson::error_code error, std::string_view expected);
 
   std::size_t offset();
+  void take_room_for_strings(std::size_t text_bytes);
 
   Input& input_;
   simdjson::padded_string bytes_;
@@ -74,7 +77,10 @@ class MapText {
   std::size_t end_ = 0;    // and ends
   json::parser parser_;
   json::document document_;
-  std::uint64_t features_ = 0;  // those begun
+  std::unique_ptr<std::uint8_t[]> strings_;  // of the text begun last, unescaped
+  std::size_t string_bytes_ = 0;
+  std::uint8_t* next_string_ = nullptr;  // where the next one goes
+  std::uint64_t features_ = 0;           // those begun
   bool is_in_feature_ = false;
 };
 

@@ -1,9 +1,15 @@
 // Meshes through assimp: STL, glTF and what else it reads.
 //
 // Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <limits>
+#include <new>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <assimp/Importer.hpp>
@@ -14,6 +20,7 @@
 #include "lab/readers/indexed_mesh.hpp"
 #include "lab/readers/mesh_content.hpp"
 #include "lab/readers/shown.hpp"
+#include "lab/readers/text_words.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -30,6 +37,27 @@ namespace {
            "a file with the extension of its kind");
   while (reason.ends_with('.') || reason.ends_with(' ') || reason.ends_with('\n')) reason.remove_suffix(1);
   refuse(input, fmt::format("cannot be read: {}", plainly(reason)));
+}
+
+/// assimp takes memory for all that an OFF file claims: its first numbers count vertices and faces.
+void check_off_counts(Input& input) {
+  std::string_view rest = input.bytes();
+  const std::size_t bytes = rest.size();
+  int counts = 0;
+  while (counts < 2 && !rest.empty()) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    line = line.substr(0, line.find_first_of("#\r"));
+    for (std::string_view word = next_word(line); counts < 2 && !word.empty(); word = next_word(line)) {
+      std::uint64_t count = 0;
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+      if (end != word.data() + word.size()) continue;  // the word OFF, or one like it
+      if (error != std::errc() || count > bytes)
+        refuse(input, fmt::format("claims {} vertices or faces and has {} bytes", word, bytes),
+               "no more than there is room for");
+      ++counts;
+    }
+  }
 }
 
 /// assimp trusts the numbers of vertices that a file gives.
@@ -99,12 +127,14 @@ IndexedMesh import_mesh(Input& input) {
   const std::string extension = input.extension();
   const bool is_named = !extension.empty() && importer.IsExtensionSupported(extension);
   const aiScene* scene = nullptr;
+  // A file may name others beside it; what comes through a pipe, or under another name, cannot.
+  const bool is_opened_by_name = is_named && !input.path().empty();
+  if (content == "off" || (content.empty() && extension == ".off")) check_off_counts(input);
+  const std::string_view bytes = is_opened_by_name ? std::string_view() : input.bytes();
   try {
-    // A file may name others beside it; what comes through a pipe, or under another name, cannot.
-    if (is_named && !input.path().empty()) {
+    if (is_opened_by_name) {
       scene = importer.ReadFile(input.path().string(), 0);
     } else {
-      const std::string_view bytes = input.bytes();
       // Of what was compressed, the name may still tell the kind.
       const std::string kind = content.empty() && is_named ? extension.substr(1) : std::string(content);
       scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, kind.c_str());
@@ -113,6 +143,8 @@ IndexedMesh import_mesh(Input& input) {
     check_corners(input, *scene);
   } catch (const FileError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    refuse(input, "needs more memory than there is", "a mesh that holds no less than it claims to");
   } catch (const std::exception& error) {
     refuse_import(input, error.what());
   }

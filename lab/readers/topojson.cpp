@@ -78,7 +78,7 @@ class TopoJson {
     std::string known;
     for (auto result : text_.object(text_.field(root, "objects"), "an object of layers")) {
       json::field field = text_.element(result);
-      const std::string_view name = text_.element(field.unescaped_key());
+      const std::string_view name = text_.key(field);
       if (!wanted.empty() && name != wanted) {
         known += (known.empty() ? "" : ", ") + std::string(name);
         continue;

@@ -8,9 +8,9 @@
 #include <climits>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 #include <optional>
+#include <random>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -32,14 +32,14 @@ namespace {
 
 std::string reason() { return errno != 0 ? std::strerror(errno) : "the stream failed"; }
 
-/// Writes to a descriptor where it stands, and closes it. Its stream cannot go back: what is appended to a
-/// file would be written at its end all the same.
+/// Writes to a descriptor where it stands, which its owner closes. Only the stream of a file of our own can
+/// go back: what is appended to another would be written at its end all the same.
 class DescriptorBuffer final : public std::streambuf {
  public:
-  explicit DescriptorBuffer(int descriptor) : descriptor_(descriptor), bytes_(std::size_t{1} << 16) {
+  DescriptorBuffer(int descriptor, bool can_go_back)
+      : descriptor_(descriptor), can_go_back_(can_go_back), bytes_(std::size_t{1} << 16) {
     setp(bytes_.data(), bytes_.data() + bytes_.size());
   }
-  ~DescriptorBuffer() override { ::close(descriptor_); }
   DescriptorBuffer(const DescriptorBuffer&) = delete;
   DescriptorBuffer& operator=(const DescriptorBuffer&) = delete;
 
@@ -60,8 +60,19 @@ class DescriptorBuffer final : public std::streambuf {
     return 0;
   }
 
+  pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode) override {
+    if (!can_go_back_ || sync() != 0) return {off_type(-1)};
+    const int whence = from == std::ios::beg ? SEEK_SET : from == std::ios::cur ? SEEK_CUR : SEEK_END;
+    return {::lseek(descriptor_, offset, whence)};
+  }
+
+  pos_type seekpos(pos_type place, std::ios::openmode mode) override {
+    return seekoff(off_type(place), std::ios::beg, mode);
+  }
+
  private:
   int descriptor_;
+  bool can_go_back_;
   std::vector<char> bytes_;
 };
 
@@ -101,26 +112,102 @@ bool is_special(const std::filesystem::path& path) {
          (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status));
 }
 
-/// The path of the file that is being written beside its place. It outlives every call of write_file(), since
-/// a signal's handler may look at it at any time.
+/// Closes a descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// The path of the file that is being written beside its place, while it has one. It outlives every call of
+/// write_file(), since a signal's handler may look at it at any time.
 std::array<char, PATH_MAX> unfinished_path;
 std::atomic<bool> has_unfinished_path = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler must not wait");
 
-/// Names the file for remove_unfinished_file() as long as this object is there.
+/// The file that is to stand at a path, until then beside it: without a name where the system can do that
+/// (O_TMPFILE), so that nothing is left even of a process that is killed. Else under a name that nobody can
+/// guess, and so can plant no link at.
 class UnfinishedFile {
  public:
-  explicit UnfinishedFile(const std::filesystem::path& path) {
-    const std::string& text = path.native();
-    // No file can be made at a longer path.
-    if (text.size() >= unfinished_path.size()) return;
-    unfinished_path[text.copy(unfinished_path.data(), text.size())] = '\0';
-    has_unfinished_path = true;
+  UnfinishedFile(const std::filesystem::path& target, mode_t mode)
+      : target_(target),
+        folder_(target.has_parent_path() ? target.parent_path() : "."),
+        file_(opened(mode)) {}
+  ~UnfinishedFile() {
+    remove_unfinished_file();
+    has_unfinished_path = false;
   }
-  ~UnfinishedFile() { has_unfinished_path = false; }
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  /// Negative where none could be made, and errno says why.
+  int descriptor() const { return file_.number(); }
+
+  /// Whether it now stands in its place; where not, errno says why.
+  bool take_place() {
+    // A link cannot replace a file, and a file without a name cannot be renamed.
+    if (!has_unfinished_path) {
+      take_name();
+      if (::linkat(AT_FDCWD, path_of_descriptor(file_.number()).c_str(), AT_FDCWD, unfinished_path.data(),
+                   AT_SYMLINK_FOLLOW) != 0)
+        return false;
+    }
+    if (::rename(unfinished_path.data(), target_.c_str()) != 0) return false;
+    has_unfinished_path = false;
+    return true;
+  }
+
+ private:
+  static std::string path_of_descriptor(int descriptor) {
+    return fmt::format("/proc/self/fd/{}", descriptor);
+  }
+
+  /// Names the file for remove_unfinished_file() as long as it stands beside its place. The name does not
+  /// grow with the target's, which may be as long as the system allows.
+  void take_name() {
+    std::random_device random;
+    const std::string name = fmt::format(".broadside-{:08x}{:08x}.part", random(), random());
+    const std::string path = (folder_ / name).string();
+    const std::size_t length = path.copy(unfinished_path.data(), unfinished_path.size() - 1);
+    unfinished_path[length] = '\0';
+    has_unfinished_path = true;
+  }
+
+  int opened(mode_t mode) {
+    const int unnamed = ::open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
+    if (unnamed >= 0 && ::access(path_of_descriptor(unnamed).c_str(), F_OK) == 0) return unnamed;
+    if (unnamed >= 0) ::close(unnamed);
+    take_name();
+    const int named =
+        ::open(unfinished_path.data(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    if (named < 0) has_unfinished_path = false;
+    return named;
+  }
+
+  std::filesystem::path target_;
+  std::filesystem::path folder_;
+  Descriptor file_;
 };
+
+void write_to(int descriptor, bool can_go_back, const std::filesystem::path& shown,
+              const std::function<void(std::ostream&)>& write) {
+  DescriptorBuffer buffer(descriptor, can_go_back);
+  std::ostream stream(&buffer);
+  errno = 0;
+  write(stream);
+  stream.flush();
+  if (!stream) refuse(shown, reason());
+}
 
 void write_directly(const std::filesystem::path& path, const std::filesystem::path& shown,
                     const std::function<void(std::ostream&)>& write) {
@@ -130,39 +217,36 @@ void write_directly(const std::filesystem::path& path, const std::filesystem::pa
     std::cout.flush();
     std::fflush(stdout);
   }
-  const int descriptor =
-      open ? ::fcntl(*open, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
-  if (descriptor < 0) refuse(shown, reason());
-  DescriptorBuffer buffer(descriptor);
-  std::ostream stream(&buffer);
-  errno = 0;
-  write(stream);
-  stream.flush();
-  if (!stream) refuse(shown, reason());
+  const Descriptor descriptor(open ? ::fcntl(*open, F_DUPFD_CLOEXEC, 0)
+                                   : ::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+  if (descriptor.number() < 0) refuse(shown, reason());
+  write_to(descriptor.number(), false, shown, write);
 }
 
 /// Writes the new file of `path`, which nobody may read who could not read the old one.
-void write_beside(const std::filesystem::path& path, const std::filesystem::path& beside,
-                  const std::filesystem::path& shown, const std::function<void(std::ostream&)>& write) {
+void write_beside(const std::filesystem::path& path, const std::filesystem::path& shown,
+                  const std::function<void(std::ostream&)>& write) {
   struct stat old {};
   const bool is_there = ::stat(path.c_str(), &old) == 0;
   errno = 0;
-  const int descriptor =
-      ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, is_there ? 0600 : 0666);
-  if (descriptor < 0) refuse(shown, reason());
-  ::close(descriptor);
-  std::ofstream file(beside, std::ios::binary);
-  if (!file) refuse(shown, reason());
-  write(file);
-  file.close();
-  if (!file) refuse(shown, reason());
-  if (is_there && ::chmod(beside.c_str(), old.st_mode & 07777) != 0) refuse(shown, reason());
+  UnfinishedFile file(path, is_there ? 0600 : 0666);
+  if (file.descriptor() < 0) refuse(shown, reason());
+  write_to(file.descriptor(), true, shown, write);
+  if (is_there && ::fchmod(file.descriptor(), old.st_mode & 07777) != 0) refuse(shown, reason());
+  if (!file.take_place()) refuse(shown, reason());
 }
 
 }  // namespace
 
 void remove_unfinished_file() noexcept {
   if (has_unfinished_path) ::unlink(unfinished_path.data());
+}
+
+bool is_read_only(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
+  // To the superuser every file may be written; one that nobody may write is meant to stay all the same.
+  return (status.st_mode & 0222) == 0 || ::access(path.c_str(), W_OK) != 0;
 }
 
 bool is_written_directly(const std::filesystem::path& path) {
@@ -178,17 +262,9 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
     write_directly(target, shown, write);
     return;
   }
-  const std::filesystem::path beside = fmt::format("{}.{}.part", target.string(), getpid());
-  std::error_code error;
-  const UnfinishedFile unfinished(beside);
-  try {
-    write_beside(target, beside, path, write);
-    std::filesystem::rename(beside, target, error);
-    if (error) refuse(path, error.message());
-  } catch (...) {
-    std::filesystem::remove(beside, error);
-    throw;
-  }
+  if (is_read_only(target))
+    refuse(shown, "is read-only; expected a file that may be written, or another name");
+  write_beside(target, shown, write);
 }
 
 }  // namespace broadside::lab

@@ -9,9 +9,16 @@ namespace broadside::lab {
 
 /// Writes a file by calling `write` with a stream beside it, which takes its place once it is whole, with the
 /// old file's permissions if there was one. What is_written_directly() is instead written as it comes, and
-/// the stream then cannot be moved. Throws FileError, or what `write` throws; the old file, if there was one,
-/// is then untouched and nothing is left beside it. One call at a time.
+/// the stream then cannot be moved. Throws FileError, also where the old file is read-only, or what `write`
+/// throws; the old file, if there was one, is then untouched and nothing is left beside it. One call at a
+/// time.
+///
+/// Where the file system has files without names (O_TMPFILE), nothing is left of a process that is killed
+/// either. Where it has none, as on NFS, a file named .broadside-XXXXXXXXXXXXXXXX.part may be.
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Whether there is a regular file at a path that this process may not write, or nobody may.
+bool is_read_only(const std::filesystem::path& path);
 
 /// Removes the file that write_file() is writing beside its place, if it is: for a signal's handler that ends
 /// the process. Async-signal-safe.

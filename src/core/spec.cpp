@@ -38,11 +38,13 @@ double most(const Tunable& tunable) {
   return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
 }
 
-std::string range(const Tunable& tunable) {
+/// What a tunable takes, for whoever gave it `found`.
+std::string range(const Tunable& tunable, double found) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
-  // A bound that only keeps a float from becoming 0 says nothing to a reader.
-  if (is_unbounded && tunable.least == std::numeric_limits<float>::min()) return kind + " above 0";
+  // A bound that only keeps a float from becoming 0 says nothing to a reader who is not near it.
+  if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
+    return kind + " above 0";
   if (most(tunable) == std::numeric_limits<double>::max())
     return kind + " of at least " + text_of(tunable.least);
   return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));
@@ -62,7 +64,7 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   const double number = read_number(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
   if (!(number >= tunable.least && number <= most(tunable) && std::isfinite(number) && whole))
-    refuse(range(tunable));
+    refuse(range(tunable, number));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // What a signal, or a pipe that nothing reads any more, leaves of a file that is being written.
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -52,10 +51,6 @@ class UnreadPipe {
   std::atomic<int> descriptor_ = -1;
 };
 
-bool is_being_written(const TemporaryFolder& folder) {
-  return std::ranges::any_of(folder.names(), [](const std::string& name) { return name.ends_with(".part"); });
-}
-
 TEST(Interruption, EndsTheWritingOfOneLargeFrameAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::string boxes = folder.file("boxes.npy");
@@ -66,7 +61,7 @@ TEST(Interruption, EndsTheWritingOfOneLargeFrameAndKeepsTheOldFile) {
         {"convert", boxes, "-o", output},
         {"pairs", boxes, "-o", output}}) {
     Process process(arguments);
-    for (int i = 0; i < 60'000 && !is_being_written(folder); ++i)
+    for (int i = 0; i < 60'000 && !process.has_open_file_in(folder); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     process.signal(SIGINT);
     const Ended ended = process.wait();

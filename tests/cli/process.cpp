@@ -54,6 +54,17 @@ Process::~Process() {
 
 void Process::signal(int number) const { kill(id_, number); }
 
+bool Process::has_open_file_in(const TemporaryFolder& folder) const {
+  std::error_code ignored;
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(id_) + "/fd", ignored)) {
+    const std::filesystem::path to = std::filesystem::read_symlink(entry.path(), ignored);
+    const std::string name = to.filename();
+    if (to.parent_path() == folder.path() && (name.starts_with('#') || name.ends_with(".part"))) return true;
+  }
+  return false;
+}
+
 std::string Process::output() const { return text_of(folder_ / "output"); }
 
 Ended Process::wait() {

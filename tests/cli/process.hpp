@@ -16,6 +16,8 @@ struct Ended {
   std::string errors;
 };
 
+class TemporaryFolder;
+
 /// The program with these arguments, running, its output and errors going to files.
 class Process {
  public:
@@ -25,6 +27,9 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const;
+
+  /// Whether it has a file open that lies in this folder, under a name or under none yet.
+  bool has_open_file_in(const TemporaryFolder& folder) const;
 
   /// What it has written to its output up to now.
   std::string output() const;
@@ -50,6 +55,8 @@ class TemporaryFolder {
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
 

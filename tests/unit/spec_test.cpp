@@ -1,6 +1,8 @@
 // Specs and settings: what is read, and what is refused with which words.
 #include "broadside/spec.hpp"
 
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -114,6 +116,25 @@ TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
         refusal_of(std::string("grid:cell=") + value),
         std::string("grid: cell is '") + value + "'; expected a number from 0.5 to 2147483648, or auto");
   EXPECT_EQ(refusal_of("grid:margin=-1"), "grid: margin is '-1'; expected a number of at least 0");
+}
+
+TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
+  const Tunable above_0{.name = "cell",
+                        .summary = "edge of a cell",
+                        .standard = "auto",
+                        .least = std::numeric_limits<float>::min(),
+                        .most = std::numeric_limits<float>::max()};
+  const auto refusal = [&](const std::string& value) {
+    return message_of<InvalidSpec>(
+        [&] { Settings(Spec::parse("grid:cell=" + value), std::span(&above_0, 1)); });
+  };
+  EXPECT_EQ(refusal("0"), "grid: cell is '0'; expected a number above 0, or auto");
+  for (const std::string value : {"1e-38", "1e39"})
+    EXPECT_EQ(refusal(value),
+              "grid: cell is '" + value +
+                  "'; expected a number from 1.1754943508222875e-38 to 3.4028234663852886e+38, or auto");
+  for (const std::string value : {"1.1754943508222875e-38", "3.4028234663852886e+38"})
+    EXPECT_NO_THROW(Settings(Spec::parse("grid:cell=" + value), std::span(&above_0, 1)));
 }
 
 TEST(Settings, RefuseAnIntegerThatIsNotWholeOrThatADoubleCannotHold) {
