@@ -22,13 +22,13 @@ class Executor {
 
   /// Calls task(i) exactly once for each i < count, and returns when all these calls have returned.
   ///
-  /// Called by the thread that called find(), several times in a search. Calls of `task` may be in any thread,
-  /// in any order, one after another, at the same time or nested in each other; none waits for another one. It
-  /// is faster if this thread takes part, since only there pairs can be delivered while others search. The
-  /// library's tasks throw nothing: what goes wrong in one is thrown by find(), the first such in the order of
-  /// the search. run() may throw anything, before its tasks or after some of them, but not while a task is
-  /// running: find() lets it through and can be called again. An update of a World that throws it can be tried
-  /// again; one that is only about to give memory back keeps the memory instead.
+  /// Called by the thread that called find(), several times in a search. Calls of `task` may be in any
+  /// thread, in any order, one after another, at the same time or nested in each other; none waits for
+  /// another one. It is faster if this thread takes part, since only there pairs can be delivered while
+  /// others search. The library's tasks throw nothing: what goes wrong in one is thrown by find(), the first
+  /// such in the order of the search. run() may throw anything, before its tasks or after some of them, but
+  /// not while a task is running: find() lets it through and can be called again. An update of a World that
+  /// throws it can be tried again; one that is only about to give memory back keeps the memory instead.
   virtual void run(std::size_t count, const std::function<void(std::size_t)>& task) = 0;
 
  protected:

@@ -59,8 +59,9 @@ TEST(Worst, ReadsAnInputBackFromItsText) {
 }
 
 TEST(Worst, SaysWhatIsWrongWithAnInput) {
-  EXPECT_TRUE(message_of<InvalidSpec>([] { parse_input("plate"); })
-                  .starts_with("unknown family 'plate' (did you mean 'plates'?); expected one of: even, "));
+  EXPECT_TRUE(message_of<InvalidSpec>([] {
+                parse_input("plate");
+              }).starts_with("unknown family 'plate' (did you mean 'plates'?); expected one of: even, "));
   EXPECT_THROW(parse_input("plates:regions=0"), InvalidSpec);
   EXPECT_THROW(parse_input("plates:real=half"), InvalidSpec);
   EXPECT_THROW(parse_input("plates:depth=3"), InvalidSpec);
