@@ -103,21 +103,21 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
     if (is_absent(box)) return true;
     core::refuse_box(box, 0, "the box or point asked about");
   }
-  return find_overlapping(box, visitor, asker);
+  return dirty_ || find_overlapping(box, visitor, asker);
 }
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                              const Filter* asker) const {
   check(cast);
-  return find_hits(cast, visitor, asker);
+  return dirty_ || find_hits(cast, visitor, asker);
 }
 
 template <int D, typename Real>
 std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& cast,
                                                       const Filter* asker) const {
   check(cast);
-  return find_first_hit(cast, asker);
+  return dirty_ ? std::nullopt : find_first_hit(cast, asker);
 }
 
 template <int D, typename Real>
@@ -128,7 +128,7 @@ void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vect
   }
   if (!(furthest >= 0)) refuse("the square of the furthest distance", &furthest, 1, "0, more, or infinity");
   found.clear();
-  if (count > 0) find_nearest(point, count, furthest, found, asker);
+  if (count > 0 && !dirty_) find_nearest(point, count, furthest, found, asker);
 }
 
 template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;
