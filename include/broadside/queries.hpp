@@ -71,8 +71,8 @@ class BoxIndex {
   virtual ~BoxIndex() = default;
 
   /// Takes a frame, as a PairTracker does: in the first one everything has changed; ignored pairs are not
-  /// looked at. Throws InvalidInput before anything has changed. Cost: O(changed) for few changes, about as
-  /// much as to find all pairs for many, and now and then.
+  /// looked at. Throws InvalidInput before anything has changed; after running out of memory, queries find
+  /// nothing until an update ends. Cost: O(changed), or for many changes that of finding all pairs.
   void update(const Frame<D, Real>& frame);
 
   /// The boxes that overlap `box`; false if the visitor ended the search. Nothing overlaps an absent box.

@@ -117,6 +117,7 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
     if (is_absent(box)) return true;
     core::refuse_box(box, 0, "the box or point asked about");
   }
+  if (dirty_) return true;
   if (!environment.is_foreign()) return find_overlapping(box, visitor, asker);
   CallersVisitor callers(visitor);
   return find_overlapping(box, callers, asker);
@@ -127,6 +128,7 @@ bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& v
                              const Filter* asker) const {
   const core::DefaultEnvironment environment;
   check(cast);
+  if (dirty_) return true;
   if (!environment.is_foreign()) return find_hits(cast, visitor, asker);
   CallersVisitor callers(visitor);
   return find_hits(cast, callers, asker);
@@ -137,7 +139,7 @@ std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& ca
                                                       const Filter* asker) const {
   const core::DefaultEnvironment environment;
   check(cast);
-  return find_first_hit(cast, asker);
+  return dirty_ ? std::nullopt : find_first_hit(cast, asker);
 }
 
 template <int D, typename Real>
@@ -149,7 +151,7 @@ void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vect
   }
   if (!(furthest >= 0)) refuse("the square of the furthest distance", &furthest, 1, "0, more, or infinity");
   found.clear();
-  if (count > 0) find_nearest(point, count, furthest, found, asker);
+  if (count > 0 && !dirty_) find_nearest(point, count, furthest, found, asker);
 }
 
 template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;

@@ -86,10 +86,10 @@ class FinderFailure : public MemoryTest {
  protected:
   /// Plays each of some histories with each allocation failing, and many with some failing at random.
   template <int D, typename Real>
-  void check(const std::vector<Workers>& all_workers) const {
+  void check(const std::vector<Spec>& specs, const std::vector<Workers>& all_workers) const {
     std::uint64_t failures = 0;
     Dice dice(1);
-    for (const Spec& spec : specs_of(GetParam())) {
+    for (const Spec& spec : specs) {
       for (const Workers& workers : all_workers) {
         const bool is_alone = workers.threads == 1;
         const std::int64_t blocks = blocks_held();
@@ -127,7 +127,7 @@ class FinderFailure : public MemoryTest {
 };
 
 TEST_P(FinderFailure, LosesNothingButItsSearch) {
-  in_case([&]<int D, typename Real>() { check<D, Real>({Workers{}}); });
+  in_case([&]<int D, typename Real>() { check<D, Real>(specs_of(GetParam()), {Workers{}}); });
 }
 
 TEST_P(FinderFailure, LosesNothingInAnyThread) {
@@ -135,7 +135,8 @@ TEST_P(FinderFailure, LosesNothingInAnyThread) {
   TeamExecutor team;
   ReverseExecutor reverse;
   in_case([&]<int D, typename Real>() {
-    check<D, Real>({{.threads = 3, .executor = nullptr, .boxes_per_thread = 4},
+    check<D, Real>(threaded_specs_of(GetParam()),
+                   {{.threads = 3, .executor = nullptr, .boxes_per_thread = 4},
                     {.threads = 3, .executor = &team, .boxes_per_thread = 4},
                     {.threads = 5, .executor = &reverse, .boxes_per_thread = 1}});
   });

@@ -1,6 +1,7 @@
 // What is tried with too little memory.
 #include "memory_case.hpp"
 
+#include <algorithm>
 #include <ostream>
 
 #include "broadside/error.hpp"
@@ -52,6 +53,15 @@ std::vector<Spec> specs_of(const MemoryCase& memory_case) {
       if (is_accepted(memory_case, spec)) specs.push_back(std::move(spec));
     }
   }
+  return specs;
+}
+
+std::vector<Spec> threaded_specs_of(const MemoryCase& memory_case) {
+  std::vector<Spec> specs = specs_of(memory_case);
+  const auto is_other = [](const Spec& spec) {
+    return std::ranges::none_of(spec.values, [](const auto& value) { return value.second == "rebuild"; });
+  };
+  specs.erase(std::remove_if(specs.begin() + 1, specs.end(), is_other), specs.end());
   return specs;
 }
 

@@ -33,6 +33,10 @@ void PrintTo(const MemoryCase& memory_case, std::ostream* out);
 /// The algorithm with nothing set, and with each value of each choice that it takes in this dimension.
 std::vector<Spec> specs_of(const MemoryCase& memory_case);
 
+/// Those of them that differ in how several threads work: the first one, and those that find all pairs anew
+/// in every frame.
+std::vector<Spec> threaded_specs_of(const MemoryCase& memory_case);
+
 /// Boxes on a lattice, many of which overlap, touch or coincide; a few absent, a few large.
 template <int D, typename Real>
 std::vector<Box<D, Real>> lattice_boxes(std::size_t count, Dice& dice) {

@@ -98,10 +98,10 @@ class TrackerFailure : public MemoryTest {
  protected:
   /// Plays histories with each allocation failing, and many with some failing at random.
   template <int D, typename Real>
-  void check(const std::vector<Workers>& all_workers) {
+  void check(const std::vector<Spec>& specs, const std::vector<Workers>& all_workers) {
     std::uint64_t failures = 0;
     Dice dice(2);
-    for (const Spec& spec : specs_of(GetParam())) {
+    for (const Spec& spec : specs) {
       for (const Workers& workers : all_workers) {
         const bool is_alone = workers.threads == 1;
         const std::int64_t blocks = blocks_held();
@@ -135,14 +135,15 @@ class TrackerFailure : public MemoryTest {
 };
 
 TEST_P(TrackerFailure, NeitherLosesNorDoublesEvents) {
-  in_case([&]<int D, typename Real>() { check<D, Real>({Workers{}}); });
+  in_case([&]<int D, typename Real>() { check<D, Real>(specs_of(GetParam()), {Workers{}}); });
 }
 
 TEST_P(TrackerFailure, NeitherLosesNorDoublesEventsInAnyThread) {
   if (!has_threads(algorithm())) GTEST_SKIP() << algorithm().name << " uses one thread";
   ReverseExecutor reverse;
   in_case([&]<int D, typename Real>() {
-    check<D, Real>({{.threads = 3, .executor = nullptr, .boxes_per_thread = 4},
+    check<D, Real>(threaded_specs_of(GetParam()),
+                   {{.threads = 3, .executor = nullptr, .boxes_per_thread = 4},
                     {.threads = 5, .executor = &reverse, .boxes_per_thread = 1}});
   });
 }
