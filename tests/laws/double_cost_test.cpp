@@ -122,6 +122,19 @@ TEST(DoubleCost, IsLowWhereFloatsAboutOneOriginCoincide) {
   }
 }
 
+TEST(Quantiles, LeaveTheOrderOfPairsToTheBoxesAlone) {
+  Boxes<2> boxes = nested<2>();
+  for (DoubleBox2& box : boxes) box.max[0] += 1e-12;
+  std::vector<Pair> of_one;
+  std::vector<Pair> of_three;
+  PairCollector first(of_one);
+  PairCollector second(of_three);
+  make_finder<2, double>("grid:threads=1")->find(boxes, first);
+  make_finder<2, double>("grid:threads=3")->find(boxes, second);
+  EXPECT_GT(of_one.size(), 100u);
+  EXPECT_EQ(of_one, of_three);
+}
+
 /// Boxes are ordinary at the places that a sample of a fixed choice would look at, the others lie in a heap.
 TEST(DoubleCost, IsLowWhereASampleAtKnownPlacesIsFooled) {
   std::vector<bool> is_known(count);
