@@ -44,7 +44,7 @@ TEST(InputWithoutEnd, IsRefusedInEveryFormatBeforeItTakesMemory) {
 TEST(InputWithoutEnd, ThroughAPipeIsRefusedOnceMemoryIsShort) {
   // Under a sanitizer the program needs more memory than it can be given here.
   if (BROADSIDE_SANITIZED != 0) GTEST_SKIP() << "a sanitizer takes terabytes of addresses";
-  const Ended ended = shell("ulimit -v 600000; yes 0,0,1,1, | tr -d '\\n' | $BROADSIDE info --format csv -");
+  const Ended ended = shell("ulimit -v 300000; yes 0,0,1,1, | tr -d '\\n' | $BROADSIDE info --format csv -");
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.errors,
               AllOf(HasSubstr("standard input: goes on after "), HasSubstr("; expected an end, or a file")));
