@@ -16,6 +16,7 @@
 #include "lab/measure/estimate.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/reference.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/numbers.hpp"
 
 namespace broadside::bench {

@@ -13,7 +13,7 @@
 
 #include "bench/worst/hunt.hpp"
 #include "bench/worst/report.hpp"
-#include "lab/measure/benchmark.hpp"
+#include "lab/measure/memory_state.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/worst/fixed_inputs.hpp"
