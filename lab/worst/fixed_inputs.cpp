@@ -53,9 +53,10 @@ std::vector<HardInput> fixed_inputs() {
       for (const bool in_double : {false, true}) {
         for (const Call call : {Call::find, Call::between, Call::track}) {
           if (family.two_sets && call != Call::between) continue;
-          // Plates and lines over each other have too many pairs in 3D.
+          // Plates and lines have too many pairs with each other in 3D.
           Spec spec{family.name, {}};
-          if (family.name == "mixture" && dimension == 3) spec.values.emplace_back("where", "beside");
+          if (family.name == "mixture" && dimension == 3)
+            spec.values = {{"first", "clusters"}, {"second", "plates"}};
           inputs.push_back({.family = std::move(spec),
                             .dimension = dimension,
                             .in_double = in_double,
