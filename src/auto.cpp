@@ -17,8 +17,11 @@
 #include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
+#include "algorithms/segment_join.hpp"
+#include "algorithms/yielding.hpp"
 #include "auto_tracker.hpp"
 #include "core/double_finder.hpp"
+#include "core/filter_sink.hpp"
 #include "core/glance.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -88,10 +91,43 @@ enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_plac
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
 
+/// Passes on those pairs that a search which gave up has left.
+template <int D>
+class LeftSink final : public core::FilterSink {
+ public:
+  LeftSink(const Yielding<D>& search, std::span<const Box<D>> boxes, PairSink& target)
+      : FilterSink(target), search_(&search), boxes_(boxes) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<LeftSink>(*search_, boxes_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) {
+      const Box<D>& first = boxes_[index(pair.first)];
+      const Box<D>& second = boxes_[index(pair.second)];
+      if (search_->is_left(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
+    }
+  }
+
+  const Yielding<D>* search_;
+  std::span<const Box<D>> boxes_;
+};
+
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D> {
  public:
   std::string explanation() const override {
+    std::string text = reason();
+    if (has_handed_over_)
+      text += "; it gave up after " + std::to_string(given_up_after_) +
+              " tests, far more than boxes and pairs account for, and a segment tree found what was left";
+    return text;
+  }
+
+ private:
+  std::string reason() const {
     const auto rounded = [](double number) {
       const std::string text = std::to_string(number);
       return text.substr(0, text.find('.') + 2);
@@ -123,9 +159,22 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     return text;
   }
 
- private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    this->search_with(chosen_for(boxes), boxes, pairs);
+    has_handed_over_ = false;
+    PairFinder<D>& finder = chosen_for(boxes);
+    this->search_with(finder, boxes, pairs);
+    const auto* search = dynamic_cast<const Yielding<D>*>(&finder);
+    if (search == nullptr || !search->has_yielded()) return;
+    has_handed_over_ = true;
+    Statistics statistics = this->statistics().value_or(Statistics{});
+    given_up_after_ = statistics.tests;
+    if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
+    LeftSink<D> left(*search, boxes, pairs);
+    const Statistics more = segments_->join(boxes, this->left_count(), left);
+    left.flush();
+    statistics.tests += more.tests;
+    statistics.references += more.references;
+    this->count(statistics);
   }
 
   PairFinder<D>& chosen_for(std::span<const Box<D>> boxes) {
@@ -135,6 +184,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (!finder) {
       const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
       finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
+      if (auto* search = dynamic_cast<Yielding<D>*>(finder.get())) search->let_yield();
     }
     return *finder;
   }
@@ -221,8 +271,11 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   core::Glance<D> glance_;
   core::Sample<D> sample_;
   std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
+  std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
   Choice choice_ = Choice::few;
   std::size_t count_ = 0;
+  bool has_handed_over_ = false;
+  std::uint64_t given_up_after_ = 0;
   double tests_ = 0;
   double overlaps_ = 0;
   double clustering_ = 0;

@@ -12,6 +12,7 @@
 #include "algorithms/bvh_tracker.hpp"
 #include "algorithms/bvh_tree.hpp"
 #include "algorithms/descriptions.hpp"
+#include "algorithms/yielding.hpp"
 #include "core/outline_text.hpp"
 #include "kernels/box_tree.hpp"
 
@@ -19,12 +20,30 @@ namespace broadside::own {
 namespace {
 
 template <int D>
-class Bvh final : public PairFinder<D>, public Outlined<D> {
+class Bvh final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
+ public:
+  /// A leaf is joined with all behind it.
+  bool is_left(const Box<D>&, BoxId a, const Box<D>&, BoxId b) const override {
+    return !is_joined_[index(a)] && !is_joined_[index(b)];
+  }
+
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    this->set_yielded(false);
     if (boxes.empty()) return this->count({});
     packer_.pack(boxes, this->left_count());
-    this->count({.tests = kernels::join(packer_.tree(), pairs), .references = boxes.size()});
+    const kernels::BoxTree<D>& tree = packer_.tree();
+    kernels::JoinLimit limit;
+    if (this->may_yield()) limit = {tests_per_box * boxes.size(), tests_per_pair};
+    const kernels::JoinWork work = kernels::join(tree, limit, pairs);
+    this->count({.tests = work.tests, .references = boxes.size()});
+    if (work.places >= tree.levels[0].size) return;
+    this->set_yielded(true);
+    is_joined_.assign(boxes.size(), false);
+    for (std::size_t place = 0; place < work.places; ++place) {
+      const float min = tree.levels[0].min[0][place];
+      if (min == min) is_joined_[index(tree.id[place])] = true;  // else it holds no box
+    }
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
@@ -51,6 +70,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D> {
   }
 
   BoxTreePacker<D> packer_;
+  std::vector<bool> is_joined_;  // by id, after a search that gave up
 };
 
 template <int D>

@@ -22,6 +22,7 @@
 #include "algorithms/grid_layout.hpp"
 #include "algorithms/grid_sweep.hpp"
 #include "algorithms/grid_tracker.hpp"
+#include "algorithms/yielding.hpp"
 #include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -31,9 +32,18 @@ namespace broadside::own {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D>, public Outlined<D> {
+class Grid final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
  public:
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
+
+  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
+  bool is_left(const Box<D>& a, BoxId, const Box<D>& b, BoxId) const override {
+    Box<D> corner = a;
+    for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
+    const std::size_t row = layout_.row_of(corner);
+    const std::size_t cell = row * layout_.row_length() + layout_.column_of(corner);
+    return cell >= swept_to_[layout_.slab_of(row)];
+  }
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
@@ -42,16 +52,25 @@ class Grid final : public PairFinder<D>, public Outlined<D> {
     choose_cells(boxes);
     count_boxes(boxes);
     file(boxes);
+    swept_to_.resize(layout_.slabs());
+    const bool may_yield = this->may_yield();
     const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const Statistics of_slab = sweeps_[lane].sweep(layout_, swept_range(), {filed_, begin_}, slab, sink);
+        const GridCells<D> cells{filed_, begin_};
+        const Statistics of_slab =
+            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, may_yield, sink);
+        swept_to_[slab] = sweeps_[lane].swept_to();
         statistics.tests += of_slab.tests;
         statistics.references += of_slab.references;
       }
       return statistics;
     };
     this->count(parallel_.search(layout_.slabs(), pairs, sweep));
+    bool has_yielded = false;
+    for (std::size_t slab = 0; slab < layout_.slabs(); ++slab)
+      has_yielded |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
+    this->set_yielded(has_yielded);
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {
@@ -171,7 +190,8 @@ class Grid final : public PairFinder<D>, public Outlined<D> {
   std::vector<std::uint64_t> next_;
   std::vector<Filed<D>> filed_;
   core::Parallel parallel_;
-  std::vector<GridSweep<D>> sweeps_;  // by lane
+  std::vector<GridSweep<D>> sweeps_;   // by lane
+  std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
 template <int D>

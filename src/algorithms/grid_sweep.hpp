@@ -47,9 +47,12 @@ template <int D>
 class GridSweep {
  public:
   /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
-  /// gridded axis.
+  /// gridded axis. If it may yield, it stops before the cell at which the slab's tests become far too many.
   Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const GridCells<D>& cells,
-                   std::size_t slab, PairSink& pairs);
+                   std::size_t slab, bool may_yield, PairSink& pairs);
+
+  /// The cell behind the last one that was swept.
+  std::size_t swept_to() const noexcept { return swept_to_; }
 
  private:
   /// Boxes on their way to a cell.
@@ -80,8 +83,10 @@ class GridSweep {
   /// A cell's boxes: those filed there, those from the row before and, in 3D, those from along the row.
   using Lists = std::array<std::span<const Filed<D>>, D>;
 
-  /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach.
-  void sweep_cell(const Lists& lists, float column_border, float row_border, PairSink& pairs);
+  /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach. False if the
+  /// cell alone would take more than `most_tests`, few of which find a pair: then it reports none.
+  bool sweep_cell(const Lists& lists, float column_border, float row_border, std::uint64_t most_tests,
+                  PairSink& pairs);
 
   static Buckets cut(const SweptRange& range, std::size_t count);
 
@@ -99,6 +104,7 @@ class GridSweep {
   void file_exactly(const Lists& lists, std::size_t count);
 
   std::array<int, D> axes_{};
+  std::size_t swept_to_ = 0;
   SweptRange range_{};
   Statistics statistics_;
   Carried along_;                      // to this cell, from the one before it in the row

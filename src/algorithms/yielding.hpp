@@ -1,0 +1,53 @@
+// A search that gives up where it makes far more tests than its boxes and pairs account for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "kernels/run.hpp"
+
+namespace broadside::own {
+
+/// The tests that a search may make for each of its boxes and for each pair. Up to these it costs no more than
+/// twice what evenly spread boxes do, so a search that gives up has lost little.
+inline constexpr std::uint64_t tests_per_box = 256;
+inline constexpr std::uint64_t tests_per_pair = 32;
+
+/// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: by an exact count
+/// of the tests and, where these are many, a look at some of them. Cost: O(n log n) at most, O(n / 16) where
+/// tests are few.
+template <int D>
+bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit);
+
+/// What a finder also is whose searches can give up, so that another algorithm finds the pairs that are left.
+/// Whether one gives up, and where, depends on the boxes alone and not on the number of threads.
+template <int D>
+class Yielding {
+ public:
+  Yielding() = default;
+  Yielding(const Yielding&) = delete;
+  Yielding& operator=(const Yielding&) = delete;
+  virtual ~Yielding() = default;
+
+  /// Searches give up from now on; before, none does.
+  void let_yield() noexcept { may_yield_ = true; }
+
+  /// Whether the last search gave up. The pairs that it wrote are then those that are not left.
+  bool has_yielded() const noexcept { return has_yielded_; }
+
+  /// After a search that gave up: whether the pair of these boxes of it, which overlap, is still to be found.
+  virtual bool is_left(const Box<D>& a, BoxId a_id, const Box<D>& b, BoxId b_id) const = 0;
+
+ protected:
+  bool may_yield() const noexcept { return may_yield_; }
+  void set_yielded(bool has_yielded) noexcept { has_yielded_ = has_yielded; }
+
+ private:
+  bool may_yield_ = false;
+  bool has_yielded_ = false;
+};
+
+}  // namespace broadside::own
