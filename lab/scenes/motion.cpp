@@ -21,15 +21,15 @@ void check_range(const char* name, double value, double most) {
   throw InvalidSpec(std::string(name) + " is " + std::to_string(value) + "; expected " + expected);
 }
 
-template <int D>
-bool is_finite(const Box<D>& box) {
+template <int D, typename Real>
+bool is_finite(const Box<D, Real>& box) {
   bool finite = is_present(box);
   for (int axis = 0; axis < D; ++axis) finite &= std::isfinite(box.min[axis]) && std::isfinite(box.max[axis]);
   return finite;
 }
 
-template <int D>
-double mean_extent(const Box<D>& box) {
+template <int D, typename Real>
+double mean_extent(const Box<D, Real>& box) {
   double sum = 0;
   for (int axis = 0; axis < D; ++axis) sum += static_cast<double>(box.max[axis]) - box.min[axis];
   return sum / D;
@@ -55,17 +55,17 @@ struct Way {
   }
 };
 
-template <int D>
+template <int D, typename Real>
 struct Mover {
   BoxId id;
-  Box<D> first;
+  Box<D, Real> first;
   std::array<Way, D> ways;
 
-  Box<D> box() const {
-    Box<D> moved;
+  Box<D, Real> box() const {
+    Box<D, Real> moved;
     for (int axis = 0; axis < D; ++axis) {
-      moved.min[axis] = static_cast<float>(first.min[axis] + ways[axis].offset);
-      moved.max[axis] = static_cast<float>(first.max[axis] + ways[axis].offset);
+      moved.min[axis] = static_cast<Real>(first.min[axis] + ways[axis].offset);
+      moved.max[axis] = static_cast<Real>(first.max[axis] + ways[axis].offset);
     }
     return moved;
   }
@@ -81,10 +81,10 @@ void make_whole(std::array<double, D>& velocity) {
   if (*steepest == 0) *steepest = sign;
 }
 
-template <int D>
-std::vector<Mover<D>> draw_movers(std::span<const Box<D>> boxes, const SceneRequest& request,
-                                  bool whole_steps, Random& random) {
-  Box<D> bounds = absent_box<D>();
+template <int D, typename Real>
+std::vector<Mover<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes, const SceneRequest& request,
+                                        bool whole_steps, Random& random) {
+  Box<D, Real> bounds = absent_box<D, Real>();
   double mean = 0;
   std::vector<BoxId> finite;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -104,15 +104,15 @@ std::vector<Mover<D>> draw_movers(std::span<const Box<D>> boxes, const SceneRequ
   finite.resize(count);
   std::ranges::sort(finite);
 
-  std::vector<Mover<D>> movers;
+  std::vector<Mover<D, Real>> movers;
   movers.reserve(count);
   for (const BoxId id : finite) {
-    const Box<D>& box = boxes[index(id)];
+    const Box<D, Real>& box = boxes[index(id)];
     const double extent = mean_extent(box);
     std::array<double, D> velocity = random.direction<D>();
     for (double& component : velocity) component *= request.drift * (extent > 0 ? extent : mean);
     if (whole_steps && request.drift > 0) make_whole<D>(velocity);
-    Mover<D> mover{id, box, {}};
+    Mover<D, Real> mover{id, box, {}};
     for (int axis = 0; axis < D; ++axis) {
       mover.ways[axis] = {.speed = velocity[axis],
                           .least = static_cast<double>(bounds.min[axis]) - box.min[axis],
@@ -125,36 +125,37 @@ std::vector<Mover<D>> draw_movers(std::span<const Box<D>> boxes, const SceneRequ
 
 }  // namespace
 
-template <int D>
-struct MovingBoxes<D>::State {
+template <int D, typename Real>
+struct MovingBoxes<D, Real>::State {
   SceneRequest request;
   bool whole_steps;
   std::size_t boxes;
   Random random;
-  std::vector<Mover<D>> movers;
-  std::vector<Box<D>> last;
+  std::vector<Mover<D, Real>> movers;
+  std::vector<Box<D, Real>> last;
 };
 
-template <int D>
-MovingBoxes<D>::MovingBoxes(std::span<const Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
+template <int D, typename Real>
+MovingBoxes<D, Real>::MovingBoxes(std::span<const Box<D, Real>> boxes, const SceneRequest& request,
+                                  bool whole_steps) {
   check_range("moving", request.moving, 1);
   check_range("teleport", request.teleport, 1);
   check_range("drift", request.drift, std::numeric_limits<double>::max());
   // Not the stream that the boxes came from: their places must not say where they go.
   state_ = std::make_unique<State>(
       State{request, whole_steps, boxes.size(), Random(request.seed ^ 0x6d6f74696f6e0000U), {}, {}});
-  state_->movers = draw_movers<D>(boxes, request, whole_steps, state_->random);
+  state_->movers = draw_movers<D, Real>(boxes, request, whole_steps, state_->random);
   state_->last.reserve(state_->movers.size());
-  for (const Mover<D>& mover : state_->movers) state_->last.push_back(mover.first);
+  for (const Mover<D, Real>& mover : state_->movers) state_->last.push_back(mover.first);
 }
 
-template <int D>
-MovingBoxes<D>::~MovingBoxes() = default;
+template <int D, typename Real>
+MovingBoxes<D, Real>::~MovingBoxes() = default;
 
-template <int D>
-Step<D> MovingBoxes<D>::next() {
+template <int D, typename Real>
+Step<D, Real> MovingBoxes<D, Real>::next() {
   State& state = *state_;
-  Step<D> step{state.boxes, {}, {}};
+  Step<D, Real> step{state.boxes, {}, {}};
   step.changed.reserve(state.movers.size());
   step.boxes.reserve(state.movers.size());
   for (std::size_t i = 0; i < state.movers.size(); ++i) {
@@ -165,7 +166,7 @@ Step<D> MovingBoxes<D>::next() {
       else
         way.advance();
     }
-    const Box<D> box = state.movers[i].box();
+    const Box<D, Real> box = state.movers[i].box();
     if (box == state.last[i]) continue;
     state.last[i] = box;
     step.changed.push_back(state.movers[i].id);
@@ -174,18 +175,22 @@ Step<D> MovingBoxes<D>::next() {
   return step;
 }
 
-template <int D>
-History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps) {
-  MovingBoxes<D> moving(boxes, request, whole_steps);
-  History<D> history{std::move(boxes), {}};
+template <int D, typename Real>
+History<D, Real> set_moving(std::vector<Box<D, Real>> boxes, const SceneRequest& request, bool whole_steps) {
+  MovingBoxes<D, Real> moving(boxes, request, whole_steps);
+  History<D, Real> history{std::move(boxes), {}};
   history.steps.reserve(request.frames);
   for (std::size_t frame = 0; frame < request.frames; ++frame) history.steps.push_back(moving.next());
   return history;
 }
 
-template class MovingBoxes<2>;
-template class MovingBoxes<3>;
-template History<2> set_moving(std::vector<Box<2>>, const SceneRequest&, bool);
-template History<3> set_moving(std::vector<Box<3>>, const SceneRequest&, bool);
+template class MovingBoxes<2, float>;
+template class MovingBoxes<3, float>;
+template class MovingBoxes<2, double>;
+template class MovingBoxes<3, double>;
+template History<2, float> set_moving(std::vector<Box<2, float>>, const SceneRequest&, bool);
+template History<3, float> set_moving(std::vector<Box<3, float>>, const SceneRequest&, bool);
+template History<2, double> set_moving(std::vector<Box<2, double>>, const SceneRequest&, bool);
+template History<3, double> set_moving(std::vector<Box<3, double>>, const SceneRequest&, bool);
 
 }  // namespace broadside::lab

@@ -21,17 +21,17 @@ namespace broadside::lab {
 ///
 /// With `whole_steps`, a mover goes a whole number a frame on each axis, at least 1 on one, so that integers
 /// remain integers. Memory O(movers), a step costs O(movers).
-template <int D>
+template <int D, typename Real = float>
 class MovingBoxes {
  public:
   /// Throws InvalidSpec if a fraction is not from 0 to 1, or the drift is negative or not finite.
-  MovingBoxes(std::span<const Box<D>> boxes, const SceneRequest& request, bool whole_steps);
+  MovingBoxes(std::span<const Box<D, Real>> boxes, const SceneRequest& request, bool whole_steps);
   ~MovingBoxes();
   MovingBoxes(const MovingBoxes&) = delete;
   MovingBoxes& operator=(const MovingBoxes&) = delete;
 
   /// The step to the next frame: the movers that are elsewhere than before.
-  Step<D> next();
+  Step<D, Real> next();
 
  private:
   struct State;
@@ -39,8 +39,8 @@ class MovingBoxes {
 };
 
 /// The first request.frames steps of MovingBoxes, kept. Cost O(frames x movers) in time and memory.
-template <int D>
-History<D> set_moving(std::vector<Box<D>> boxes, const SceneRequest& request, bool whole_steps);
+template <int D, typename Real = float>
+History<D, Real> set_moving(std::vector<Box<D, Real>> boxes, const SceneRequest& request, bool whole_steps);
 
 /// What a random history is to contain.
 struct Churn {

@@ -41,6 +41,7 @@ const std::vector<Rule>& rules() {
       {"lab/", lab},
       {"cli/", lab + R"(|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/motion/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/worst/", lab + R"(|"bench/worst/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/", lab + R"(|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.

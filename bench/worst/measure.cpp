@@ -1,0 +1,171 @@
+// One algorithm on one input: its time, tests and memory, and the hash of its pairs.
+#include "bench/worst/measure.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/allocation.hpp"
+#include "lab/measure/benchmark.hpp"
+#include "lab/measure/samples.hpp"
+
+namespace broadside::bench {
+namespace {
+
+struct TooManyPairs : std::exception {};
+
+/// Hashes pairs, and stops a search that finds too many.
+class LimitedHasher final : public PairSink {
+ public:
+  explicit LimitedHasher(double most) : most_(most) {}
+
+  std::uint64_t hash() const noexcept { return hash_; }
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) hash_ += broadside::hash(pair);
+    count_ += pairs.size();
+    if (static_cast<double>(count_) > most_) throw TooManyPairs();
+  }
+
+  double most_;
+  std::uint64_t hash_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+template <typename Counting>
+double tests_of(const Counting& algorithm) {
+  const auto& statistics = algorithm.statistics();
+  return statistics ? static_cast<double>(statistics->tests) : -1;
+}
+
+double peak(const lab::AllocationMeter& meter) {
+  const auto memory = meter.read();
+  return memory ? static_cast<double>(memory->peak) : 0;
+}
+
+template <int D, typename Real>
+class Measured {
+ public:
+  Measured(const lab::HardInput& input, const Effort& effort)
+      : effort_(effort),
+        is_tracked_(input.call == lab::Call::track),
+        left_count_(lab::left_count(input, effort.boxes)),
+        history_(lab::make_input<D, Real>(input, effort.boxes, effort.frames)),
+        most_pairs_(effort.most_pairs * static_cast<double>(effort.boxes)) {}
+
+  Run run(const lab::Contender& contender) const {
+    Run counted;
+    try {
+      counted = once(contender, true);
+    } catch (const TooManyPairs&) {
+      return {.end = Run::End::too_many_pairs};
+    }
+    for (std::size_t round = 0; round < effort_.rounds; ++round) {
+      const Run timed = once(contender, false);
+      if (timed.pairs != counted.pairs || timed.hash != counted.hash)
+        throw std::runtime_error("found other pairs in another call; expected the same");
+      if (round == 0 || timed.milliseconds < counted.milliseconds) {
+        counted.milliseconds = timed.milliseconds;
+        counted.worst_milliseconds = timed.worst_milliseconds;
+      }
+    }
+    return counted;
+  }
+
+ private:
+  Run once(const lab::Contender& contender, bool count) const {
+    return is_tracked_ ? track(contender, count) : find(contender, count);
+  }
+
+  Run find(const lab::Contender& contender, bool count) const {
+    LimitedHasher pairs(most_pairs_);
+    std::optional<lab::AllocationMeter> meter;
+    if (count) meter.emplace();
+    const lab::Stopwatch watch;
+    const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+    if (left_count_ > 0)
+      finder->find_between(history_.boxes, left_count_, pairs);
+    else
+      finder->find(history_.boxes, pairs);
+    const double milliseconds = watch.milliseconds();
+    return {.milliseconds = milliseconds,
+            .worst_milliseconds = milliseconds,
+            .tests = tests_of(*finder),
+            .pairs = pairs.count(),
+            .hash = pairs.hash(),
+            .peak_bytes = meter ? peak(*meter) : 0};
+  }
+
+  Run track(const lab::Contender& contender, bool count) const {
+    std::vector<Box<D, Real>> boxes = history_.boxes;
+    Run run;
+    std::vector<double> frames;
+    std::vector<double> tests;
+    std::optional<lab::AllocationMeter> meter;
+    if (count) meter.emplace();
+    const auto tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
+    std::int64_t held = 0;
+    const auto update = [&](std::span<const BoxId> changed, bool is_first) {
+      // A hundred movers may begin a pair each with a giant.
+      const double most =
+          is_first ? most_pairs_ : effort_.most_pairs * (100 + static_cast<double>(changed.size()));
+      LimitedHasher begun(most);
+      LimitedHasher ended(most);
+      const lab::Stopwatch watch;
+      tracker->update({boxes, changed}, begun, ended);
+      const double milliseconds = watch.milliseconds();
+      // The frame counts, and whether a pair began or ended in it.
+      constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
+      run.hash = (run.hash * odd + begun.hash()) * odd + ended.hash();
+      (is_first ? run.pairs : run.events) += begun.count() + ended.count();
+      held += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
+      if (static_cast<double>(held) > most_pairs_) throw TooManyPairs();
+      return milliseconds;
+    };
+    update({}, true);
+    for (const lab::Step<D, Real>& step : history_.steps) {
+      lab::apply(step, boxes);
+      frames.push_back(update(step.changed, false));
+      tests.push_back(tests_of(*tracker));
+    }
+    run.peak_bytes = meter ? peak(*meter) : 0;
+    run.milliseconds = lab::median(frames);
+    run.worst_milliseconds = std::ranges::max(frames);
+    run.tests = lab::median(tests);
+    return run;
+  }
+
+  Effort effort_;
+  bool is_tracked_;
+  std::size_t left_count_;
+  lab::History<D, Real> history_;
+  double most_pairs_;
+};
+
+template <int D, typename Real>
+RunAlgorithm prepare_in(const lab::HardInput& input, const Effort& effort) {
+  const auto measured = std::make_shared<const Measured<D, Real>>(input, effort);
+  return [measured, most_bytes = effort.most_bytes](const lab::Contender& contender, double seconds) {
+    return in_child(seconds, most_bytes, [&] { return measured->run(contender); });
+  };
+}
+
+}  // namespace
+
+RunAlgorithm prepare(const lab::HardInput& input, const Effort& effort) {
+  if (input.in_double)
+    return input.dimension == 2 ? prepare_in<2, double>(input, effort) : prepare_in<3, double>(input, effort);
+  return input.dimension == 2 ? prepare_in<2, float>(input, effort) : prepare_in<3, float>(input, effort);
+}
+
+}  // namespace broadside::bench

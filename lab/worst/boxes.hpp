@@ -1,0 +1,111 @@
+// What the families of hard inputs are made of: small functions on boxes of doubles.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "lab/scenes/scatter.hpp"
+#include "lab/worst/family.hpp"
+
+namespace broadside::lab {
+
+template <int D>
+using Point = std::array<double, D>;
+
+/// The box from `min` on.
+template <int D>
+Box<D, double> box_at(const Point<D>& min, const Size<D>& size) {
+  Box<D, double> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = min[axis];
+    box.max[axis] = min[axis] + size[axis];
+  }
+  return box;
+}
+
+/// All extents alike.
+template <int D>
+Size<D> cube(double side) {
+  Size<D> size;
+  size.fill(side);
+  return size;
+}
+
+/// Anywhere in the unit cube.
+template <int D>
+Point<D> anywhere(Random& random) {
+  Point<D> point;
+  for (double& coordinate : point) coordinate = random.fraction();
+  return point;
+}
+
+/// The side of cubes, of which `count` scattered over the unit cube touch `neighbours` others on average.
+template <int D>
+double side_for(double neighbours, std::size_t count) {
+  return power(neighbours / static_cast<double>(std::max<std::size_t>(count, 1)), 1.0 / D) / 2;
+}
+
+/// Cubes of about one size, scattered over the unit cube.
+template <int D>
+DoubleBoxes<D> even_boxes(std::size_t count, double neighbours, Random& random) {
+  DoubleBoxes<D> boxes;
+  const double side = side_for<D>(neighbours, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point<D> min = anywhere<D>(random);
+    Size<D> size = modest_size<D>(random);
+    for (double& extent : size) extent *= side;
+    boxes.push_back(box_at<D>(min, size));
+  }
+  return boxes;
+}
+
+/// A family whose boxes `Maker::make<D>` makes.
+template <typename Maker>
+InputFamily family_of(std::string name, std::string summary, std::vector<DrawnTunable> tunables) {
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .tunables = std::move(tunables),
+          .boxes_2d = Maker::template make<2>,
+          .boxes_3d = Maker::template make<3>};
+}
+
+inline DrawnTunable number(std::string name, std::string summary, std::string standard, double least,
+                           double most) {
+  return {{.name = std::move(name),
+           .summary = std::move(summary),
+           .standard = std::move(standard),
+           .least = least,
+           .most = most}};
+}
+
+/// A number of any order of magnitude from `least` to `most`.
+inline DrawnTunable magnitude(std::string name, std::string summary, std::string standard, double least,
+                              double most) {
+  DrawnTunable drawn = number(std::move(name), std::move(summary), std::move(standard), least, most);
+  drawn.logarithmic = true;
+  return drawn;
+}
+
+inline DrawnTunable count(std::string name, std::string summary, std::string standard, double least,
+                          double most) {
+  DrawnTunable drawn = magnitude(std::move(name), std::move(summary), std::move(standard), least, most);
+  drawn.tunable.type = Tunable::Type::integer;
+  return drawn;
+}
+
+/// The first choice is the standard one.
+inline DrawnTunable choice(std::string name, std::string summary, std::vector<std::string> choices) {
+  return {{.name = std::move(name),
+           .summary = std::move(summary),
+           .standard = choices.front(),
+           .type = Tunable::Type::choice,
+           .choices = choices}};
+}
+
+inline DrawnTunable neighbours() {
+  return magnitude("neighbours", "how many others a box touches on average, roughly", "1", 1e-3, 6);
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,56 @@
+// Families of inputs on which a broad phase may be slow: what the worst-case hunt draws from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/spec.hpp"
+
+#include "lab/scenes/random.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+template <int D>
+using DoubleBoxes = std::vector<Box<D, double>>;
+
+template <int D>
+using MakeDoubleBoxes = std::function<DoubleBoxes<D>(const Settings&, std::size_t boxes, Random&)>;
+
+/// A tunable, and how the hunt draws a value for it.
+struct DrawnTunable {
+  Tunable tunable;
+  bool logarithmic = false;  ///< every order of magnitude is drawn alike
+};
+
+/// A family of inputs, described. Its boxes lie about the unit cube; scale and order are for make_input().
+struct InputFamily {
+  std::string name;
+  std::string summary;  ///< one line
+  std::vector<DrawnTunable> tunables;
+  MakeDoubleBoxes<2> boxes_2d;
+  MakeDoubleBoxes<3> boxes_3d;
+  bool fixed_order = false;  ///< the order of the boxes is the point of it
+  bool two_sets = false;  ///< few pairs between two halves, about n^2 within each: for find_between() alone
+};
+
+/// All families, in a fixed order. Thread-safe.
+std::span<const InputFamily> input_families();
+
+/// The family of this name. Throws InvalidSpec naming those there are.
+const InputFamily& find_family(std::string_view name);
+
+/// Values for the family's own tunables.
+Spec draw_family(const InputFamily& family, Random& random);
+
+/// The family's boxes with the values in `spec`. Throws InvalidSpec if one is wrong.
+template <int D>
+DoubleBoxes<D> make_family(const Spec& spec, std::size_t boxes, Random& random);
+
+}  // namespace broadside::lab

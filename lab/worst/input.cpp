@@ -1,0 +1,202 @@
+// One input of the worst-case hunt: read, written, drawn and made.
+#include "lab/worst/input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lab/scenes/motion.hpp"
+#include "lab/scenes/scatter.hpp"
+
+namespace broadside::lab {
+namespace {
+
+constexpr double most_exponent = 60;
+
+/// The tunables that every input has.
+const std::vector<Tunable>& common_tunables() {
+  const auto choice = [](std::string name, std::vector<std::string> choices) {
+    const std::string standard = choices.front();
+    return Tunable{.name = std::move(name),
+                   .summary = {},
+                   .standard = standard,
+                   .type = Tunable::Type::choice,
+                   .choices = std::move(choices)};
+  };
+  const auto number = [](std::string name, std::string standard, double least, double most) {
+    return Tunable{.name = std::move(name),
+                   .summary = {},
+                   .standard = std::move(standard),
+                   .least = least,
+                   .most = most};
+  };
+  static const std::vector<Tunable> list = {
+      choice("dimension", {"2", "3"}),
+      choice("real", {"float", "double"}),
+      choice("call", {"find", "between", "track"}),
+      number("left", "0.5", 0, 1),
+      number("moving", "0.1", 0, 1),
+      number("drift", "0.02", 0, 1e6),
+      number("teleport", "0", 0, 1),
+      number("exponent", "0", -most_exponent, most_exponent),
+      number("offset", "0", 0, 1e15),
+      choice("order", {"made", "shuffled", "reversed"}),
+      {.name = "seed", .summary = {}, .standard = "1", .type = Tunable::Type::integer, .most = 0x1p53},
+  };
+  return list;
+}
+
+bool is_common(std::string_view name) {
+  return std::ranges::find(common_tunables(), name, &Tunable::name) != common_tunables().end();
+}
+
+Call call_of(std::string_view name) {
+  return name == "find" ? Call::find : name == "between" ? Call::between : Call::track;
+}
+
+template <typename Real>
+Real rounded(double value) {
+  constexpr double most = std::numeric_limits<Real>::max();
+  return static_cast<Real>(std::clamp(value, -most, most));
+}
+
+template <typename T>
+void arrange(std::vector<T>& boxes, const std::string& order, Random& random) {
+  if (order == "shuffled") random.shuffle(boxes, boxes.size());
+  if (order == "reversed") std::ranges::reverse(boxes);
+}
+
+template <typename Values>
+auto one_of(const Values& values, Random& random) {
+  return values[random.below(values.size())];
+}
+
+}  // namespace
+
+std::string HardInput::text() const {
+  Spec all = family;
+  const auto add = [&](const char* name, const std::string& value) { all.values.emplace_back(name, value); };
+  const auto add_number = [&](const char* name, double value, double standard) {
+    if (value != standard) add(name, fmt::format("{}", value));
+  };
+  constexpr std::array<const char*, 3> calls = {"find", "between", "track"};
+  add("dimension", std::to_string(dimension));
+  add("real", in_double ? "double" : "float");
+  add("call", calls[static_cast<std::size_t>(call)]);
+  if (call == Call::between) add_number("left", left, 0.5);
+  if (call == Call::track) {
+    add_number("moving", moving, 0.1);
+    add_number("drift", drift, 0.02);
+    add_number("teleport", teleport, 0);
+  }
+  add_number("exponent", exponent, 0);
+  add_number("offset", offset, 0);
+  if (order != "made") add("order", order);
+  add("seed", std::to_string(seed));
+  return all.text();
+}
+
+HardInput parse_input(std::string_view text) {
+  const Spec spec = Spec::parse(text);
+  Spec common{spec.name, {}};
+  HardInput input;
+  input.family.name = find_family(spec.name).name;
+  for (const auto& value : spec.values)
+    (is_common(value.first) ? common : input.family).values.push_back(value);
+  const Settings settings(common, common_tunables());
+  Random unused(1);
+  make_family<2>(input.family, 0, unused);  // checks the family's own values
+  input.dimension = settings.text("dimension") == "2" ? 2 : 3;
+  input.in_double = settings.text("real") == "double";
+  input.call = call_of(settings.text("call"));
+  input.left = settings.number("left");
+  input.moving = settings.number("moving");
+  input.drift = settings.number("drift");
+  input.teleport = settings.number("teleport");
+  input.exponent = settings.number("exponent");
+  input.offset = settings.number("offset");
+  input.order = settings.text("order");
+  input.seed = static_cast<std::uint64_t>(settings.integer("seed"));
+  return input;
+}
+
+HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
+  const std::span<const InputFamily> families = input_families();
+  const InputFamily& family = families[random.below(families.size())];
+  HardInput input;
+  input.family = draw_family(family, random);
+  input.dimension = random.chance(0.5) ? 2 : 3;
+  input.in_double = random.chance(0.5);
+  const std::array<Call, 5> calls = {Call::find, Call::find, Call::between, Call::track, Call::track};
+  input.call = family.two_sets ? Call::between : one_of(calls, random);
+  const std::array<double, 4> parts = {0.5, 0.5, 0.02, 0.98};
+  input.left = family.two_sets ? 0.5 : one_of(parts, random);
+  const auto hundred = static_cast<double>(movers) / static_cast<double>(std::max(boxes, movers));
+  const std::array<double, 4> fractions = {0.01, 0.1, 1, hundred};
+  input.moving = one_of(fractions, random);
+  const std::array<double, 3> drifts = {0.002, 0.02, 0.2};
+  input.drift = one_of(drifts, random);
+  const std::array<double, 4> jumps = {0, 0, 0.02, 0.5};
+  input.teleport = one_of(jumps, random);
+  // Within floats, large boxes squared and small ones both fit.
+  const double most = input.in_double ? most_exponent : 30;
+  if (random.chance(0.25)) input.exponent = std::round(random.between(-most, most));
+  if (random.chance(0.15)) input.offset = power(10, std::round(random.between(0, input.in_double ? 9 : 2)));
+  const std::array<std::string, 4> orders = {"made", "shuffled", "shuffled", "reversed"};
+  input.order = one_of(orders, random);
+  if (family.fixed_order) input.order = "made";
+  input.seed = random.below(1'000'000);
+  return input;
+}
+
+template <int D, typename Real>
+History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size_t frames) {
+  Random random(input.seed);
+  DoubleBoxes<D> made = make_family<D>(input.family, boxes, random);
+  arrange(made, input.order, random);
+  // No power of two, so that doubles are none that a float holds.
+  const double scale = power(10, input.exponent) * (input.in_double ? 3.14159265358979324 : 1);
+  std::vector<Box<D, Real>> result(made.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      result[i].min[axis] = rounded<Real>((made[i].min[axis] + input.offset) * scale);
+      result[i].max[axis] = rounded<Real>((made[i].max[axis] + input.offset) * scale);
+    }
+  }
+  if (input.call != Call::track) return {std::move(result), {}};
+  return set_moving(std::move(result),
+                    {.boxes = boxes,
+                     .seed = input.seed,
+                     .frames = frames,
+                     .moving = input.moving,
+                     .drift = input.drift,
+                     .teleport = input.teleport},
+                    false);
+}
+
+std::size_t left_count(const HardInput& input, std::size_t boxes) {
+  if (input.call != Call::between) return 0;
+  const auto count = static_cast<std::size_t>(std::llround(input.left * static_cast<double>(boxes)));
+  return std::clamp<std::size_t>(count, 1, boxes);
+}
+
+HardInput uniform_for(const HardInput& input) {
+  HardInput uniform = input;
+  uniform.family = Spec{"even", {{"neighbours", "4"}}};
+  uniform.exponent = 0;
+  uniform.offset = 0;
+  uniform.order = "made";
+  uniform.seed = 1;
+  return uniform;
+}
+
+template History<2, float> make_input(const HardInput&, std::size_t, std::size_t);
+template History<3, float> make_input(const HardInput&, std::size_t, std::size_t);
+template History<2, double> make_input(const HardInput&, std::size_t, std::size_t);
+template History<3, double> make_input(const HardInput&, std::size_t, std::size_t);
+
+}  // namespace broadside::lab

@@ -1,0 +1,60 @@
+// One input of the worst-case hunt: a family with values, and how it is asked about.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadside/history.hpp"
+#include "broadside/spec.hpp"
+
+#include "lab/scenes/random.hpp"
+#include "lab/scenes/scene.hpp"
+#include "lab/worst/family.hpp"
+
+namespace broadside::lab {
+
+/// What is called with the boxes.
+enum class Call { find, between, track };
+
+/// Boxes, and the call that is made with them. Everything but the number of boxes.
+struct HardInput {
+  Spec family;  ///< and the values of its own tunables
+  int dimension = 2;
+  bool in_double = false;  ///< the precision of the boxes
+  Call call = Call::find;
+  double left = 0.5;           ///< of find_between: the part of the boxes in the left set
+  double moving = 0;           ///< of trackers: the fraction that moves
+  double drift = 0;            ///< how far a mover goes in a frame, in units of its size
+  double teleport = 0;         ///< the fraction of movers that jumps in a frame
+  double exponent = 0;         ///< coordinates are multiplied by 10^exponent
+  double offset = 0;           ///< added to each coordinate before that
+  std::string order = "made";  ///< "made", "shuffled" or "reversed"
+  std::uint64_t seed = 1;
+
+  /// What parse_input() reads back to the same input.
+  std::string text() const;
+};
+
+/// Reads an input such as "plates:regions=4:dimension=3:call=track:moving=0.01". Values that are not given
+/// are the standard ones. Throws InvalidSpec.
+HardInput parse_input(std::string_view text);
+
+/// Draws a family, its values and the rest. Of trackers a hundredth, a tenth, all or `movers` boxes of
+/// `boxes` move.
+HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers = 100);
+
+/// The boxes, set moving for `frames` frames if the call is to a tracker. In floats, coordinates beyond their
+/// range become the largest float. The same on every machine.
+template <int D, typename Real>
+History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size_t frames);
+
+/// How many of `boxes` boxes are in the left set; 0 unless the call is to find_between().
+std::size_t left_count(const HardInput& input, std::size_t boxes);
+
+/// Even boxes, otherwise asked about in the same way: what the input is compared with.
+HardInput uniform_for(const HardInput& input);
+
+}  // namespace broadside::lab
