@@ -53,13 +53,12 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public Yielding<D> 
     count_boxes(boxes);
     file(boxes);
     swept_to_.resize(layout_.slabs());
-    const bool may_yield = this->may_yield();
     const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
         const GridCells<D> cells{filed_, begin_};
         const Statistics of_slab =
-            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, may_yield, sink);
+            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
         swept_to_[slab] = sweeps_[lane].swept_to();
         statistics.tests += of_slab.tests;
         statistics.references += of_slab.references;
@@ -71,6 +70,15 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public Yielding<D> 
     for (std::size_t slab = 0; slab < layout_.slabs(); ++slab)
       has_yielded |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
     this->set_yielded(has_yielded);
+  }
+
+  /// The slab's share of the tests for all boxes, by the boxes filed in it.
+  std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
+    if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
+    const std::size_t length = layout_.row_length();
+    const std::uint64_t filed =
+        begin_[layout_.slab_begin(slab + 1) * length] - begin_[layout_.slab_begin(slab) * length];
+    return tests_per_box * boxes * filed / begin_.back() + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {

@@ -29,7 +29,7 @@ constexpr std::size_t most_in_bucket = 48;
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// What it costs to look at a box in one more cell, in tests of two boxes.
-constexpr std::uint64_t tests_per_reference = 16;
+constexpr std::uint64_t tests_per_reference = 32;
 
 /// Passes pairs on and counts them.
 class CountingSink final : public PairSink {
@@ -56,8 +56,8 @@ class CountingSink final : public PairSink {
 
 template <int D>
 Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
-                               const GridCells<D>& cells, std::size_t slab, bool may_yield,
-                               PairSink& pairs) {
+                               const GridCells<D>& cells, std::size_t slab,
+                               std::uint64_t most_tests, PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
   statistics_ = {};
@@ -66,10 +66,6 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   for (Carried& column : columns_) column.size = 0;
   const std::size_t end = layout.slab_begin(slab + 1);
   swept_to_ = layout.slab_begin(slab) * length;
-  const std::uint64_t boxes = cells.begin[end * length] - cells.begin[swept_to_];
-  const std::uint64_t most_tests =
-      may_yield ? tests_per_box * std::max<std::uint64_t>(boxes, cells.boxes.size() / layout.slabs())
-                : std::numeric_limits<std::uint64_t>::max();
   CountingSink counted(pairs);
   for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
     // What reaches into the next slab is filed there.
@@ -83,7 +79,8 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
       // Pairs are counted once tests are many.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
       const bool is_counting = work > most_tests;
-      if (is_counting && work > 2 * most_tests + tests_per_pair * counted.count()) return statistics_;
+      if (is_counting && work > most_tests + most_tests / 4 + tests_per_pair * counted.count())
+        return statistics_;
       if (!sweep_cell(lists, layout.column_border(column), row_border, most_tests,
                       is_counting ? static_cast<PairSink&>(counted) : pairs))
         return statistics_;

@@ -47,9 +47,10 @@ template <int D>
 class GridSweep {
  public:
   /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
-  /// gridded axis. If it may yield, it stops before the cell at which the slab's tests become far too many.
+  /// gridded axis. Stops before the cell at which tests become more than `most_tests` and than pairs account
+  /// for.
   Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const GridCells<D>& cells,
-                   std::size_t slab, bool may_yield, PairSink& pairs);
+                   std::size_t slab, std::uint64_t most_tests, PairSink& pairs);
 
   /// The cell behind the last one that was swept.
   std::size_t swept_to() const noexcept { return swept_to_; }

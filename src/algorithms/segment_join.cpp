@@ -31,7 +31,7 @@ constexpr std::size_t samples = 32;
 constexpr int depth_of_medians = 48;
 
 /// From so many boxes on a radix sort is the faster one.
-constexpr std::size_t many_to_sort = 1024;
+constexpr std::size_t many_to_sort = 128;
 
 }  // namespace
 
@@ -79,7 +79,7 @@ void SegmentJoin<D>::search(const Node& node) {
 /// All that begin in the region do so at one place: what does not end before it overlaps there.
 template <int D>
 void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
-  const auto reaches = [&](const Reference& reference, std::uint32_t&) {
+  const auto reaches = [&](const Reference& reference) {
     return box(reference).max[cut.axis] >= cut.low;
   };
   const List a = push(node.a, reaches);
@@ -90,38 +90,54 @@ void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
 template <int D>
 void SegmentJoin<D>::cut_in_two(const Node& node, const Cut& cut) {
   const std::uint32_t bit = 1U << cut.axis;
+  const Parts a = part(node.a, cut);
+  const Parts b = node.is_self ? a : part(node.b, cut);
   const std::size_t top = stack_.size();
-  const auto spans = [&](const Reference& reference, std::uint32_t&) { return covers(reference, cut); };
-  const auto begins = [&](const Reference& reference, std::uint32_t&) { return (reference.apart & bit) == 0; };
-  const auto join_spanning = [&](const List& spanning, const List& others) {
-    const List long_ones = push(spanning, spans);
-    if (long_ones.size() > 0)
-      search({long_ones, push(others, begins), false, node.open & ~bit, node.depth + 1});
+  const auto join_covering = [&](const List& covering, const List& others) {
+    if (covering.size() == 0) return;
+    const auto begins = [&](const Reference& reference) { return (reference.apart & bit) == 0; };
+    search({covering, push(others, begins), false, node.open & ~bit, node.depth + 1});
     stack_.resize(top);
   };
-  join_spanning(node.a, node.b);
-  if (!node.is_self) join_spanning(node.b, node.a);
-  const auto search_side = [&](auto wanted) {
-    const List a = push(node.a, wanted);
-    const List b = node.is_self ? a : push(node.b, wanted);
-    search({a, b, node.is_self, node.open, node.depth + 1});
-    stack_.resize(top);
-  };
-  search_side([&](const Reference& reference, std::uint32_t&) {
-    const Box<D>& b = box(reference);
-    return b.min[cut.axis] < cut.at && b.max[cut.axis] >= cut.low && !covers(reference, cut);
-  });
-  search_side([&](const Reference& reference, std::uint32_t& apart) {
-    const Box<D>& b = box(reference);
-    if (b.max[cut.axis] < cut.at || covers(reference, cut)) return false;
-    if (b.min[cut.axis] < cut.at) apart |= bit;
-    return true;
-  });
+  join_covering(a.covering, node.b);
+  if (!node.is_self) join_covering(b.covering, node.a);
+  search({a.below, b.below, node.is_self, node.open, node.depth + 1});
+  search({a.above, b.above, node.is_self, node.open, node.depth + 1});
 }
 
+/// Pushes a list's parts: what covers the region and begins before it, and of the rest what touches the two
+/// sides of the cut.
 template <int D>
-bool SegmentJoin<D>::covers(const Reference& reference, const Cut& cut) const {
-  return (reference.apart >> cut.axis & 1U) != 0 && box(reference).max[cut.axis] >= cut.high;
+auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
+  const std::size_t begin = stack_.size();
+  const std::size_t size = list.size();
+  stack_.resize(begin + 3 * size);
+  Reference* const first = stack_.data() + begin;
+  std::array<Reference*, 3> out = {first, first + size, first + 2 * size};
+  for (const Reference& reference : std::span(stack_).subspan(list.begin, size)) {
+    const float min = box(reference).min[cut.axis];
+    const float max = box(reference).max[cut.axis];
+    const std::uint32_t has_begun = reference.apart >> cut.axis & 1U;
+    const bool covers = has_begun != 0 && max >= cut.high;
+    // Written in any case, and kept if it belongs there: no predictor could know.
+    *out[0] = reference;
+    out[0] += covers ? 1 : 0;
+    *out[1] = reference;
+    out[1] += !covers && min < cut.at && max >= cut.low ? 1 : 0;
+    *out[2] = {reference.place, reference.apart | (min < cut.at ? 1U << cut.axis : 0U)};
+    out[2] += !covers && max >= cut.at ? 1 : 0;
+  }
+  // Without the gaps between them.
+  const auto count = [&](int i) {
+    return static_cast<std::size_t>(out[i] - (first + static_cast<std::size_t>(i) * size));
+  };
+  const std::array<std::size_t, 3> counts = {count(0), count(1), count(2)};
+  std::copy(first + size, out[1], first + counts[0]);
+  std::copy(first + 2 * size, out[2], first + counts[0] + counts[1]);
+  const std::size_t below = begin + counts[0];
+  const std::size_t above = below + counts[1];
+  stack_.resize(above + counts[2]);
+  return {{begin, below}, {below, above}, {above, above + counts[2]}};
 }
 
 template <int D>
@@ -131,10 +147,9 @@ auto SegmentJoin<D>::push(const List& list, Wanted wanted) -> List {
   stack_.resize(begin + list.size());
   Reference* out = stack_.data() + begin;
   for (std::size_t i = list.begin; i < list.end; ++i) {
-    Reference reference = stack_[i];
-    const bool is_wanted = wanted(reference, reference.apart);
+    const Reference reference = stack_[i];
     *out = reference;
-    out += is_wanted ? 1 : 0;
+    out += wanted(reference) ? 1 : 0;
   }
   const auto end = static_cast<std::size_t>(out - stack_.data());
   stack_.resize(end);

@@ -63,6 +63,13 @@ class SegmentJoin {
     float high;
   };
 
+  /// What a cut makes of a list.
+  struct Parts {
+    List covering;
+    List below;
+    List above;
+  };
+
   void search(const Node& node);
   void decide(const Node& node, const Cut& cut);
   void cut_in_two(const Node& node, const Cut& cut);
@@ -70,9 +77,9 @@ class SegmentJoin {
   Cut choose(const Node& node);
   bool set_range(const Node& node, Cut& cut) const;
   void set_exact_median(const Node& node, Cut& cut);
-  bool covers(const Reference& reference, const Cut& cut) const;
+  Parts part(const List& list, const Cut& cut);
 
-  /// Pushes those references of a list that `wanted` maps to a list, with the bits it sets; returns the list.
+  /// Pushes the wanted references of a list.
   template <typename Wanted>
   List push(const List& list, Wanted wanted);
 
