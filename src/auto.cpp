@@ -21,7 +21,6 @@
 #include "algorithms/yielding.hpp"
 #include "auto_tracker.hpp"
 #include "core/double_finder.hpp"
-#include "core/filter_sink.hpp"
 #include "core/glance.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -90,30 +89,6 @@ enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_plac
 
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
-
-/// Passes on those pairs that a search which gave up has left.
-template <int D>
-class LeftSink final : public core::FilterSink {
- public:
-  LeftSink(const Yielding<D>& search, std::span<const Box<D>> boxes, PairSink& target)
-      : FilterSink(target), search_(&search), boxes_(boxes) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<LeftSink>(*search_, boxes_, target);
-  }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    for (const Pair pair : pairs) {
-      const Box<D>& first = boxes_[index(pair.first)];
-      const Box<D>& second = boxes_[index(pair.second)];
-      if (search_->is_left(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
-    }
-  }
-
-  const Yielding<D>* search_;
-  std::span<const Box<D>> boxes_;
-};
 
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D> {
@@ -292,8 +267,8 @@ Way way_of(const Settings& settings) {
   return way == "incremental" ? Way::incremental : Way::automatic;
 }
 
-/// The others come where the first one makes over a thousand tests a mover: by measurements with 50,000 boxes,
-/// one in a hundred moving, in stacks of plates, lines and clusters.
+/// The others come where the first one makes over a thousand tests a mover: by measurements with 50,000
+/// boxes, one in a hundred moving, in stacks of plates, lines and clusters.
 template <int D>
 constexpr std::array<Follower<D, float>, 3> followers = {{
     {.name = "hierarchical_grid",
@@ -322,7 +297,9 @@ constexpr std::array<Follower<D, float>, 3> followers = {{
 template <int D>
 constexpr std::array<Follower<D, double>, 1> double_followers = {{
     {.name = "hierarchical_grid",
-     .make = []() -> std::unique_ptr<PairTracker<D, double>> { return std::make_unique<DoubleFollower<D>>(); },
+     .make = []() -> std::unique_ptr<PairTracker<D, double>> {
+       return std::make_unique<DoubleFollower<D>>();
+     },
      .start = D == 2 ? 15 : 18,
      .mover = D == 2 ? 110 : 140,
      .mover_alone = D == 2 ? 110 : 140,
@@ -333,16 +310,15 @@ constexpr std::array<Follower<D, double>, 1> double_followers = {{
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
   return std::make_unique<AutoTracker<D, float>>(
-      std::make_unique<Auto<D>>(), followers<D>,
-      make_tracker<D>(*find_algorithm("brute_force"), Spec{}), [](std::span<const Box<D>>) { return true; },
-      way_of(settings));
+      std::make_unique<Auto<D>>(), followers<D>, make_tracker<D>(*find_algorithm("brute_force"), Spec{}),
+      [](std::span<const Box<D>>) { return true; }, way_of(settings));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
   return std::make_unique<AutoTracker<D, double>>(
-      std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
-      double_followers<D>, nullptr, floats_suffice<D>, way_of(settings));
+      std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()), double_followers<D>, nullptr,
+      floats_suffice<D>, way_of(settings));
 }
 
 }  // namespace

@@ -21,14 +21,14 @@ namespace {
 template <int D>
 constexpr double cost_of_finding = D == 2 ? 40 : 65;  // a box, but for its pairs
 constexpr double cost_of_a_pair = 7;
-constexpr double cost_of_a_further_test = 0.5;       // beyond those that finding takes where boxes are even
-constexpr double cost_of_a_further_reference = 30;   // and so for a box's entries
+constexpr double cost_of_a_further_test = 0.5;      // beyond those that finding takes where boxes are even
+constexpr double cost_of_a_further_reference = 30;  // and so for a box's entries
 constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
 constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide
 
-/// How much of the way back to what was thought at first a follower's cost goes in each frame that another one
-/// follows: boxes may have changed their character.
+/// How much of the way back to what was thought at first a follower's cost goes in each frame that another
+/// one follows: boxes may have changed their character.
 constexpr double forgotten = 0.01;
 
 /// Below so many boxes that moved nobody needs to think.
@@ -156,7 +156,9 @@ void AutoTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& begu
   has_pairs_ = true;
   followed_ = false;
   this->count(finder_->statistics());
-  const auto a_box = [&](auto count) { return static_cast<double>(count) / std::max<double>(1, change.now.size()); };
+  const auto a_box = [&](auto count) {
+    return static_cast<double>(count) / std::max<double>(1, change.now.size());
+  };
   const double pairs = a_box(pairs_.size());
   cost_of_box_ = cost_of_finding<D> + cost_of_a_pair * pairs;
   if (!this->statistics()) return;

@@ -68,12 +68,12 @@ class AutoTracker final : public PairTracker<D, Real> {
   Suits suits_;
   Way way_;
 
-  bool were_few_ = false;  // whether for_few_ has the boxes of the last frame
-  bool followed_ = false;  // whether the follower has the boxes of the last frame
+  bool were_few_ = false;         // whether for_few_ has the boxes of the last frame
+  bool followed_ = false;         // whether the follower has the boxes of the last frame
   std::size_t current_ = 0;       // which of the followers follower_ is
   std::vector<double> of_mover_;  // by follower: the cost of a mover when it was last used, or thought to be
   double cost_of_box_;            // in nanoseconds of one machine; only their ratios matter
-  double saved_ = 0;    // what following would have saved since it was last done, or another follower
+  double saved_ = 0;     // what following would have saved since it was last done, or another follower
   double patience_ = 1;  // grows with each change of followers, so that they do not take turns
   std::uint64_t seen_movers_ = 0;  // since the follower was last weighed
   double seen_tests_ = 0;

@@ -56,8 +56,8 @@ class CountingSink final : public PairSink {
 
 template <int D>
 Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
-                               const GridCells<D>& cells, std::size_t slab,
-                               std::uint64_t most_tests, PairSink& pairs) {
+                               const GridCells<D>& cells, std::size_t slab, std::uint64_t most_tests,
+                               PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
   statistics_ = {};
@@ -73,7 +73,8 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
     along_.size = 0;
     for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
       Lists lists;
-      lists[0] = cells.boxes.subspan(cells.begin[swept_to_], cells.begin[swept_to_ + 1] - cells.begin[swept_to_]);
+      lists[0] =
+          cells.boxes.subspan(cells.begin[swept_to_], cells.begin[swept_to_ + 1] - cells.begin[swept_to_]);
       lists[1] = columns_[column].list();
       if constexpr (D == 3) lists[2] = along_.list();
       // Pairs are counted once tests are many.

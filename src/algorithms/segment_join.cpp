@@ -79,9 +79,7 @@ void SegmentJoin<D>::search(const Node& node) {
 /// All that begin in the region do so at one place: what does not end before it overlaps there.
 template <int D>
 void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
-  const auto reaches = [&](const Reference& reference) {
-    return box(reference).max[cut.axis] >= cut.low;
-  };
+  const auto reaches = [&](const Reference& reference) { return box(reference).max[cut.axis] >= cut.low; };
   const List a = push(node.a, reaches);
   const List b = node.is_self ? a : push(node.b, reaches);
   search({a, b, node.is_self, node.open & ~(1U << cut.axis), node.depth + 1});
@@ -162,8 +160,7 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
   std::array<Reference, samples> sampled;
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t at = (2 * i + 1) * node.size() / (2 * samples);
-    sampled[i] =
-        stack_[at < node.a.size() ? node.a.begin + at : node.b.begin + (at - node.a.size())];
+    sampled[i] = stack_[at < node.a.size() ? node.a.begin + at : node.b.begin + (at - node.a.size())];
   }
   Cut best{};
   std::size_t most = 0;

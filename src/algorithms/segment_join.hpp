@@ -20,8 +20,8 @@
 
 namespace broadside::own {
 
-/// Cost: O(n log^D n + k) whatever the boxes, where medians of samples halve them. Memory: O(n), kept from one
-/// search to the next.
+/// Cost: O(n log^D n + k) whatever the boxes, where medians of samples halve them. Memory: O(n), kept from
+/// one search to the next.
 template <int D>
 class SegmentJoin {
  public:

@@ -3,16 +3,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/filter_sink.hpp"
 #include "kernels/run.hpp"
 
 namespace broadside::own {
 
-/// The tests that a search may make for each of its boxes and for each pair. Up to these it costs no more than
-/// twice what evenly spread boxes do, so a search that gives up has lost little.
+/// The tests that a search may make for each of its boxes and for each pair. Up to these it costs no more
+/// than twice what evenly spread boxes do, so a search that gives up has lost little.
 inline constexpr std::uint64_t tests_per_box = 256;
 inline constexpr std::uint64_t tests_per_pair = 32;
 
@@ -48,6 +51,30 @@ class Yielding {
  private:
   bool may_yield_ = false;
   bool has_yielded_ = false;
+};
+
+/// Passes on those pairs that a search which gave up has left.
+template <int D>
+class LeftSink final : public core::FilterSink {
+ public:
+  LeftSink(const Yielding<D>& search, std::span<const Box<D>> boxes, PairSink& target)
+      : FilterSink(target), search_(&search), boxes_(boxes) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<LeftSink>(*search_, boxes_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) {
+      const Box<D>& first = boxes_[index(pair.first)];
+      const Box<D>& second = boxes_[index(pair.second)];
+      if (search_->is_left(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
+    }
+  }
+
+  const Yielding<D>* search_;
+  std::span<const Box<D>> boxes_;
 };
 
 }  // namespace broadside::own
