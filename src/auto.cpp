@@ -17,14 +17,14 @@
 #include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
-#include "algorithms/segment_join.hpp"
-#include "algorithms/yielding.hpp"
 #include "auto_tracker.hpp"
 #include "core/double_finder.hpp"
 #include "core/glance.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "core/yielding.hpp"
 #include "double_follower.hpp"
+#include "segment_join.hpp"
 
 namespace broadside::own {
 namespace {
@@ -138,13 +138,13 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     has_handed_over_ = false;
     PairFinder<D>& finder = chosen_for(boxes);
     this->search_with(finder, boxes, pairs);
-    const auto* search = dynamic_cast<const Yielding<D>*>(&finder);
+    const auto* search = dynamic_cast<const core::Yielding<D>*>(&finder);
     if (search == nullptr || !search->has_yielded()) return;
     has_handed_over_ = true;
     Statistics statistics = this->statistics().value_or(Statistics{});
     given_up_after_ = statistics.tests;
     if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
-    LeftSink<D> left(*search, boxes, pairs);
+    core::LeftSink<D> left(*search, boxes, pairs);
     const Statistics more = segments_->join(boxes, this->left_count(), left);
     left.flush();
     statistics.tests += more.tests;
@@ -159,7 +159,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (!finder) {
       const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
       finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
-      if (auto* search = dynamic_cast<Yielding<D>*>(finder.get())) search->let_yield();
+      if (auto* search = dynamic_cast<core::Yielding<D>*>(finder.get())) search->let_yield();
     }
     return *finder;
   }

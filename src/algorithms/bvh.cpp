@@ -12,15 +12,16 @@
 #include "algorithms/bvh_tracker.hpp"
 #include "algorithms/bvh_tree.hpp"
 #include "algorithms/descriptions.hpp"
-#include "algorithms/yielding.hpp"
 #include "core/outline_text.hpp"
+#include "core/yielding.hpp"
 #include "kernels/box_tree.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class Bvh final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
+class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
   /// A leaf is joined with all behind it.
   bool is_left(const Box<D>&, BoxId a, const Box<D>&, BoxId b) const override {
@@ -34,7 +35,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
     packer_.pack(boxes, this->left_count());
     const kernels::BoxTree<D>& tree = packer_.tree();
     kernels::JoinLimit limit;
-    if (this->may_yield()) limit = {tests_per_box * boxes.size(), tests_per_pair};
+    if (this->may_yield()) limit = {kernels::tests_per_box * boxes.size(), kernels::tests_per_pair};
     const kernels::JoinWork work = kernels::join(tree, limit, pairs);
     this->count({.tests = work.tests, .references = boxes.size()});
     if (work.places >= tree.levels[0].size) return;

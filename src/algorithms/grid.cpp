@@ -22,17 +22,18 @@
 #include "algorithms/grid_layout.hpp"
 #include "algorithms/grid_sweep.hpp"
 #include "algorithms/grid_tracker.hpp"
-#include "algorithms/yielding.hpp"
 #include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "core/yielding.hpp"
 #include "kernels/run.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
+class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
 
@@ -78,7 +79,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public Yielding<D> 
     const std::size_t length = layout_.row_length();
     const std::uint64_t filed =
         begin_[layout_.slab_begin(slab + 1) * length] - begin_[layout_.slab_begin(slab) * length];
-    return tests_per_box * boxes * filed / begin_.back() + 1;
+    return kernels::tests_per_box * boxes * filed / begin_.back() + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {

@@ -11,8 +11,8 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/yielding.hpp"
 #include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
@@ -80,7 +80,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
       // Pairs are counted once tests are many.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
       const bool is_counting = work > most_tests;
-      if (is_counting && work > most_tests + most_tests / 4 + tests_per_pair * counted.count())
+      if (is_counting && work > most_tests + most_tests / 4 + kernels::tests_per_pair * counted.count())
         return statistics_;
       if (!sweep_cell(lists, layout.column_border(column), row_border, most_tests,
                       is_counting ? static_cast<PairSink&>(counted) : pairs))
@@ -122,7 +122,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
   const kernels::Run<D> run = run_.view(slack);
-  if (is_wasteful(run, most_tests)) return false;
+  if (kernels::is_wasteful(run, most_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;
 }

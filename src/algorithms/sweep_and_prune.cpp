@@ -20,13 +20,14 @@
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/sweep_and_prune_tracker.hpp"
-#include "algorithms/yielding.hpp"
 #include "core/cell_lists.hpp"
 #include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "core/yielding.hpp"
 #include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
@@ -40,7 +41,7 @@ constexpr std::size_t most_stripes = 256;
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public Yielding<D> {
+class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
   explicit SweepAndPrune(const Settings& settings) {
     if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
@@ -126,7 +127,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public Yie
     for (const core::SortedBox<D>& box : sorted)
       buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
     const kernels::Run<D> run = buffer.view();
-    if (this->may_yield() && is_wasteful(run, tests_per_box * run.size)) {
+    if (this->may_yield() && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
       this->set_yielded(true);
       this->count({.references = run.size});
       return;

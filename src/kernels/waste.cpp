@@ -1,11 +1,9 @@
 // Whether a sweep is worth its tests.
-#include "algorithms/yielding.hpp"
+#include "kernels/waste.hpp"
 
 #include <algorithm>
 
-#include "core/sample.hpp"
-
-namespace broadside::own {
+namespace broadside::kernels {
 namespace {
 
 /// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
@@ -20,9 +18,14 @@ std::size_t end_of(const float* minima, std::size_t size, std::size_t from, floa
   return static_cast<std::size_t>(std::upper_bound(minima + std::min(from, size), end, last) - minima);
 }
 
+/// Places spread over a run: multiples of the golden ratio, which fall in step with no pattern.
+std::size_t place_of(std::size_t i, std::size_t size) {
+  return static_cast<std::size_t>(static_cast<std::uint32_t>(i * 0x9e3779b9U) * std::uint64_t{size} >> 32);
+}
+
 /// At most how many tests a sweep makes, by the greatest maximum of each few boxes. Stops beyond `limit`.
 template <int D>
-std::uint64_t most_tests(const kernels::Run<D>& run, std::uint64_t limit, std::size_t together) {
+std::uint64_t most_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
   std::uint64_t tests = 0;
   for (std::size_t i = 0; i < run.size && tests <= limit; i += together) {
     const std::size_t end = std::min(i + together, run.size);
@@ -35,7 +38,7 @@ std::uint64_t most_tests(const kernels::Run<D>& run, std::uint64_t limit, std::s
 }  // namespace
 
 template <int D>
-bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
+bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
   if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
   if (most_tests(run, limit, 16) <= limit || most_tests(run, limit, 1) <= limit) return false;
   constexpr std::size_t looked_at = 32;
@@ -43,7 +46,7 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   std::uint64_t tests = 0;
   std::uint64_t hits = 0;
   for (std::size_t i = 0; i < looked_at; ++i) {
-    const std::size_t at = core::sampled_place(i, run.size);
+    const std::size_t at = place_of(i, run.size);
     const std::size_t end = end_of(run.min[0], run.size, at, run.max[0][at]);
     const std::size_t stride = (end - at) / most_tests_of_one + 1;
     for (std::size_t other = at + 1; other < end; other += stride) {
@@ -57,7 +60,7 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   return tests > tests_per_pair * hits;
 }
 
-template bool is_wasteful(const kernels::Run<2>&, std::uint64_t);
-template bool is_wasteful(const kernels::Run<3>&, std::uint64_t);
+template bool is_wasteful(const Run<2>&, std::uint64_t);
+template bool is_wasteful(const Run<3>&, std::uint64_t);
 
-}  // namespace broadside::own
+}  // namespace broadside::kernels

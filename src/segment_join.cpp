@@ -6,7 +6,7 @@
 // the other axes alone, and not cut any further. So a long box is in few regions, where a plain tree of cells
 // would hold it in all that it touches. Where one axis is left to tell boxes apart, a sweep along it tests
 // pairs that overlap, and no others.
-#include "algorithms/segment_join.hpp"
+#include "segment_join.hpp"
 
 #include <algorithm>
 #include <bit>

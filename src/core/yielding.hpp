@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -10,20 +9,8 @@
 #include "broadside/pair.hpp"
 
 #include "core/filter_sink.hpp"
-#include "kernels/run.hpp"
 
-namespace broadside::own {
-
-/// The tests that a search may make for each of its boxes and for each pair. Up to these it costs no more
-/// than twice what evenly spread boxes do, so a search that gives up has lost little.
-inline constexpr std::uint64_t tests_per_box = 256;
-inline constexpr std::uint64_t tests_per_pair = 32;
-
-/// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: by an exact count
-/// of the tests and, where these are many, a look at some of them. Cost: O(n log n) at most, O(n / 16) where
-/// tests are few.
-template <int D>
-bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit);
+namespace broadside::core {
 
 /// What a finder also is whose searches can give up, so that another algorithm finds the pairs that are left.
 /// Whether one gives up, and where, depends on the boxes alone and not on the number of threads.
@@ -55,7 +42,7 @@ class Yielding {
 
 /// Passes on those pairs that a search which gave up has left.
 template <int D>
-class LeftSink final : public core::FilterSink {
+class LeftSink final : public FilterSink {
  public:
   LeftSink(const Yielding<D>& search, std::span<const Box<D>> boxes, PairSink& target)
       : FilterSink(target), search_(&search), boxes_(boxes) {}
@@ -77,4 +64,4 @@ class LeftSink final : public core::FilterSink {
   std::span<const Box<D>> boxes_;
 };
 
-}  // namespace broadside::own
+}  // namespace broadside::core
