@@ -19,14 +19,17 @@ namespace {
 
 /// What things cost, in nanoseconds of the machine on which they were measured; only their ratios matter.
 template <int D>
-constexpr double cost_of_filing = D == 2 ? 15 : 18;  // a box, when the follower starts
-template <int D>
-constexpr double cost_of_moving = D == 2 ? 110 : 140;  // a box that moved, but for the tests
-constexpr double cost_of_a_test_of_a_mover = 1.8;
-template <int D>
 constexpr double cost_of_finding = D == 2 ? 40 : 65;  // a box, but for its pairs
 constexpr double cost_of_a_pair = 7;
+constexpr double cost_of_a_further_test = 0.5;      // beyond those that finding takes where boxes are even
+constexpr double cost_of_a_further_reference = 30;  // and so for a box's entries
+constexpr double usual_tests = 64;
+constexpr double usual_references = 4;
 constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide
+
+/// How much of the way back to what was thought at first a follower's cost goes in each frame that another
+/// one follows: boxes may have changed their character.
+constexpr double forgotten = 0.01;
 
 /// Below so many boxes that moved nobody needs to think.
 constexpr std::size_t few = 8;
@@ -40,15 +43,16 @@ constexpr std::size_t most_few_boxes = 400;
 
 template <int D, typename Real>
 AutoTracker<D, Real>::AutoTracker(std::unique_ptr<PairFinder<D, Real>> finder,
-                                  std::unique_ptr<PairTracker<D, Real>> follower,
-                                  std::unique_ptr<PairTracker<D, Real>> for_few, Suits suits, Way way)
+                                  std::span<const Follower<D, Real>> followers,
+                                  std::unique_ptr<PairTracker<D, Real>> for_few, Way way)
     : finder_(std::move(finder)),
-      follower_(std::move(follower)),
+      followers_(followers),
+      follower_(followers[0].make()),
       for_few_(std::move(for_few)),
-      suits_(suits),
       way_(way),
-      cost_of_mover_(cost_of_moving<D>),
-      cost_of_box_(cost_of_finding<D>) {}
+      cost_of_box_(cost_of_finding<D>) {
+  for (const Follower<D, Real>& follower : followers) of_mover_.push_back(follower.mover);
+}
 
 template <int D, typename Real>
 void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
@@ -70,7 +74,7 @@ void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
     rebuild(change, begun, ended);
     // After a first frame come others, most often with few changes: what follows them is made ready with it,
     // so that the second frame does not take longer than those after it.
-    if (change.rebuild && way_ == Way::automatic && suits_(change.now)) start_following(change.now);
+    if (change.rebuild && way_ == Way::automatic) start_following(change.now);
   }
 }
 
@@ -95,20 +99,45 @@ template <int D, typename Real>
 bool AutoTracker<D, Real>::is_incremental(const Change<D, Real>& change) {
   const auto boxes = static_cast<double>(change.now.size());
   const auto movers = static_cast<double>(change.changed.size());
-  break_even_ = static_cast<std::size_t>(boxes * cost_of_box_ / cost_of_mover_);
+  const std::size_t best = cheapest();
+  const double finding = boxes * cost_of_box_;
+  break_even_ = static_cast<std::size_t>(finding / of_mover_[followed_ ? current_ : best]);
   if (way_ != Way::automatic) return way_ == Way::incremental;
   // Of the first frame all boxes are new, and after a failed one nothing is known.
   if (change.rebuild) return false;
-  if (change.changed.size() <= few && followed_) return true;
-  const double saving = boxes * cost_of_box_ - movers * cost_of_mover_;
-  if (saving <= 0) return false;
-  if (followed_) return true;
+  const bool is_best = followed_ && best == current_;
+  if (change.changed.size() <= few && is_best) return true;
+  const double now = followed_ ? std::min(finding, movers * of_mover_[current_]) : finding;
+  const double saving = now - movers * of_mover_[best];
+  if (is_best) return finding > movers * of_mover_[current_];
+  const bool follows = followed_ && now < finding;
+  if (saving <= 0) return follows;
   // To start following costs something as well. It is done at once where the frame is no dearer for it, and
   // else as soon as it would have paid: so nobody loses much who moves few boxes and many by turns.
   saved_ += saving;
-  if (saved_ < boxes * cost_of_filing<D>) return false;
+  const double patience = best == current_ ? 1 : patience_;
+  if (saved_ < patience * boxes * followers_[best].start) return follows;
   saved_ = 0;
-  return suits_(change.now);
+  if (best != current_) use(best);
+  return true;
+}
+
+template <int D, typename Real>
+std::size_t AutoTracker<D, Real>::cheapest() const {
+  return static_cast<std::size_t>(std::ranges::min_element(of_mover_) - of_mover_.begin());
+}
+
+/// Gives up one follower for another, which has to start.
+template <int D, typename Real>
+void AutoTracker<D, Real>::use(std::size_t follower) {
+  // One that has not started keeps no memory.
+  follower_ = followers_[follower].make();
+  followed_ = false;
+  current_ = follower;
+  patience_ *= 2;
+  seen_movers_ = 0;
+  seen_tests_ = 0;
+  seen_hits_ = 0;
 }
 
 template <int D, typename Real>
@@ -125,8 +154,16 @@ void AutoTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& begu
   has_pairs_ = true;
   followed_ = false;
   this->count(finder_->statistics());
-  const double pairs = static_cast<double>(pairs_.size()) / std::max<double>(1, change.now.size());
+  const auto a_box = [&](auto count) {
+    return static_cast<double>(count) / std::max<double>(1, change.now.size());
+  };
+  const double pairs = a_box(pairs_.size());
   cost_of_box_ = cost_of_finding<D> + cost_of_a_pair * pairs;
+  if (!this->statistics()) return;
+  const double tests = a_box(this->statistics()->tests);
+  const double references = a_box(this->statistics()->references);
+  cost_of_box_ += cost_of_a_further_test * std::max(0.0, tests - 2 * pairs - usual_tests) +
+                  cost_of_a_further_reference * std::max(0.0, references - usual_references);
 }
 
 template <int D, typename Real>
@@ -136,13 +173,28 @@ void AutoTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& begun
   this->update_with(*follower_, followed, begun, ended);
   followed_ = true;
   has_pairs_ = false;
-  saved_ = 0;
+  if (cheapest() == current_) saved_ = 0;
+  if (this->statistics()) weigh();
+}
+
+/// Takes what the follower did for what it costs.
+template <int D, typename Real>
+void AutoTracker<D, Real>::weigh() {
   // Few movers tell little about what one costs.
-  constexpr std::size_t telling = 64;
-  if (changed_ < telling || !this->statistics()) return;
-  const double tests = static_cast<double>(this->statistics()->tests) / static_cast<double>(changed_);
-  const double hits = static_cast<double>(this->statistics()->hits) / static_cast<double>(changed_);
-  cost_of_mover_ = cost_of_moving<D> + cost_of_a_test_of_a_mover * tests + cost_of_a_candidate * hits;
+  constexpr std::uint64_t telling = 64;
+  seen_movers_ += changed_;
+  seen_tests_ += static_cast<double>(this->statistics()->tests);
+  seen_hits_ += static_cast<double>(this->statistics()->hits);
+  if (seen_movers_ < telling) return;
+  const auto movers = static_cast<double>(std::exchange(seen_movers_, 0));
+  const double tests = std::exchange(seen_tests_, 0) / movers;
+  const double hits = std::exchange(seen_hits_, 0) / movers;
+  for (std::size_t i = 0; i < followers_.size(); ++i)
+    of_mover_[i] += forgotten * (followers_[i].mover - of_mover_[i]);
+  const Follower<D, Real>& follower = followers_[current_];
+  of_mover_[current_] = follower.mover_alone + follower.test * std::min(tests, usual_tests) +
+                        follower.further_test * std::max(0.0, tests - usual_tests) +
+                        cost_of_a_candidate * hits;
 }
 
 template <int D, typename Real>
@@ -154,7 +206,7 @@ std::string AutoTracker<D, Real>::explanation() const {
                                 ? std::string(", as asked for")
                                 : ", and up to " + std::to_string(std::max(break_even_, few)) +
                                       " that costs less than finding all pairs anew";
-    return "followed by hierarchical_grid, since " + changed + why;
+    return "followed by " + std::string(followers_[current_].name) + ", since " + changed + why;
   }
   std::string found = "all pairs found anew by " + finder_->explanation();
   if (way_ == Way::rebuild) return found;

@@ -13,18 +13,38 @@
 #include "algorithms/bvh_tree.hpp"
 #include "algorithms/descriptions.hpp"
 #include "core/outline_text.hpp"
+#include "core/yielding.hpp"
 #include "kernels/box_tree.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class Bvh final : public PairFinder<D>, public Outlined<D> {
+class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+ public:
+  /// A leaf is joined with all behind it.
+  bool is_left(const Box<D>&, BoxId a, const Box<D>&, BoxId b) const override {
+    return !is_joined_[index(a)] && !is_joined_[index(b)];
+  }
+
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    this->set_yielded(false);
     if (boxes.empty()) return this->count({});
     packer_.pack(boxes, this->left_count());
-    this->count({.tests = kernels::join(packer_.tree(), pairs), .references = boxes.size()});
+    const kernels::BoxTree<D>& tree = packer_.tree();
+    kernels::JoinLimit limit;
+    if (this->may_yield()) limit = {kernels::tests_per_box * boxes.size(), kernels::tests_per_pair};
+    const kernels::JoinWork work = kernels::join(tree, limit, pairs);
+    this->count({.tests = work.tests, .references = boxes.size()});
+    if (work.places >= tree.levels[0].size) return;
+    this->set_yielded(true);
+    is_joined_.assign(boxes.size(), false);
+    for (std::size_t place = 0; place < work.places; ++place) {
+      const float min = tree.levels[0].min[0][place];
+      if (min == min) is_joined_[index(tree.id[place])] = true;  // else it holds no box
+    }
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
@@ -51,6 +71,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D> {
   }
 
   BoxTreePacker<D> packer_;
+  std::vector<bool> is_joined_;  // by id, after a search that gave up
 };
 
 template <int D>

@@ -25,15 +25,26 @@
 #include "core/outline_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "core/yielding.hpp"
 #include "kernels/run.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D>, public Outlined<D> {
+class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
+
+  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
+  bool is_left(const Box<D>& a, BoxId, const Box<D>& b, BoxId) const override {
+    Box<D> corner = a;
+    for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
+    const std::size_t row = layout_.row_of(corner);
+    const std::size_t cell = row * layout_.row_length() + layout_.column_of(corner);
+    return cell >= swept_to_[layout_.slab_of(row)];
+  }
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
@@ -42,16 +53,33 @@ class Grid final : public PairFinder<D>, public Outlined<D> {
     choose_cells(boxes);
     count_boxes(boxes);
     file(boxes);
+    swept_to_.resize(layout_.slabs());
     const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const Statistics of_slab = sweeps_[lane].sweep(layout_, swept_range(), {filed_, begin_}, slab, sink);
+        const GridCells<D> cells{filed_, begin_};
+        const Statistics of_slab =
+            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
+        swept_to_[slab] = sweeps_[lane].swept_to();
         statistics.tests += of_slab.tests;
         statistics.references += of_slab.references;
       }
       return statistics;
     };
     this->count(parallel_.search(layout_.slabs(), pairs, sweep));
+    bool has_yielded = false;
+    for (std::size_t slab = 0; slab < layout_.slabs(); ++slab)
+      has_yielded |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
+    this->set_yielded(has_yielded);
+  }
+
+  /// The slab's share of the tests for all boxes, by the boxes filed in it.
+  std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
+    if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
+    const std::size_t length = layout_.row_length();
+    const std::uint64_t filed =
+        begin_[layout_.slab_begin(slab + 1) * length] - begin_[layout_.slab_begin(slab) * length];
+    return kernels::tests_per_box * boxes * filed / begin_.back() + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {
@@ -171,7 +199,8 @@ class Grid final : public PairFinder<D>, public Outlined<D> {
   std::vector<std::uint64_t> next_;
   std::vector<Filed<D>> filed_;
   core::Parallel parallel_;
-  std::vector<GridSweep<D>> sweeps_;  // by lane
+  std::vector<GridSweep<D>> sweeps_;   // by lane
+  std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
 template <int D>

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
@@ -30,11 +31,36 @@ constexpr std::size_t crowd = 1024;
 
 constexpr float largest = std::numeric_limits<float>::max();
 
+/// What it costs to look at a box in one more cell, in tests of two boxes.
+constexpr std::uint64_t tests_per_reference = 32;
+
+/// Passes pairs on and counts them.
+class CountingSink final : public PairSink {
+ public:
+  explicit CountingSink(PairSink& target) : target_(&target) {}
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    count_ += pairs.size();
+    while (!pairs.empty()) {
+      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
+      std::ranges::copy(some, target_->room(some.size()));
+      target_->commit(some.size());
+      pairs = pairs.subspan(some.size());
+    }
+  }
+
+  PairSink* target_;
+  std::uint64_t count_ = 0;
+};
+
 }  // namespace
 
 template <int D>
 Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
-                               const GridCells<D>& cells, std::size_t slab, PairSink& pairs) {
+                               const GridCells<D>& cells, std::size_t slab, std::uint64_t most_tests,
+                               PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
   statistics_ = {};
@@ -42,17 +68,27 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   columns_.resize(std::max(columns_.size(), length));
   for (Carried& column : columns_) column.size = 0;
   const std::size_t end = layout.slab_begin(slab + 1);
+  swept_to_ = layout.slab_begin(slab) * length;
+  CountingSink counted(pairs);
   for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
     // What reaches into the next slab is filed there.
     const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
     along_.size = 0;
-    for (std::size_t column = 0; column < length; ++column) {
-      const std::size_t cell = row * length + column;
+    for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
       Lists lists;
-      lists[0] = cells.boxes.subspan(cells.begin[cell], cells.begin[cell + 1] - cells.begin[cell]);
+      lists[0] =
+          cells.boxes.subspan(cells.begin[swept_to_], cells.begin[swept_to_ + 1] - cells.begin[swept_to_]);
       lists[1] = columns_[column].list();
       if constexpr (D == 3) lists[2] = along_.list();
-      sweep_cell(lists, layout.column_border(column), row_border, pairs);
+      // Pairs are counted once tests are many.
+      const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
+      const bool is_counting = work > most_tests;
+      if (is_counting && work > most_tests + most_tests / 4 + kernels::tests_per_pair * counted.count())
+        return statistics_;
+      if (!sweep_cell(lists, layout.column_border(column), row_border, most_tests,
+                      is_counting ? static_cast<PairSink&>(counted) : pairs))
+        return statistics_;
+      if (is_counting) counted.flush();
       std::swap(columns_[column], next_up_);
       std::swap(along_, next_along_);
     }
@@ -61,13 +97,14 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
 }
 
 template <int D>
-void GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row_border, PairSink& pairs) {
+bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row_border,
+                              std::uint64_t most_tests, PairSink& pairs) {
   std::size_t count = 0;
   for (const auto& list : lists) count += list.size();
   statistics_.references += count;
   next_up_.size = 0;
   next_along_.size = 0;
-  if (count == 0) return;
+  if (count == 0) return true;
   // Room for one more than there may be: where none goes on, one is written all the same.
   next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
   if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
@@ -83,11 +120,14 @@ void GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
       look_at<false>(lists[i], buckets, column_border, row_border, bucket_of);
     bucket_of += lists[i].size();
   }
-  if (count < 2) return;
+  if (count < 2) return true;
   run_.reserve(count);
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
-  statistics_.tests += kernels::sweep(run_.view(slack), pairs);
+  const kernels::Run<D> run = run_.view(slack);
+  if (kernels::is_wasteful(run, most_tests)) return false;
+  statistics_.tests += kernels::sweep(run, pairs);
+  return true;
 }
 
 template <int D>

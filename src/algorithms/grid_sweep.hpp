@@ -47,9 +47,13 @@ template <int D>
 class GridSweep {
  public:
   /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
-  /// gridded axis.
+  /// gridded axis. Stops before the cell at which tests become more than `most_tests` and than pairs account
+  /// for.
   Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const GridCells<D>& cells,
-                   std::size_t slab, PairSink& pairs);
+                   std::size_t slab, std::uint64_t most_tests, PairSink& pairs);
+
+  /// The cell behind the last one that was swept.
+  std::size_t swept_to() const noexcept { return swept_to_; }
 
  private:
   /// Boxes on their way to a cell.
@@ -80,8 +84,10 @@ class GridSweep {
   /// A cell's boxes: those filed there, those from the row before and, in 3D, those from along the row.
   using Lists = std::array<std::span<const Filed<D>>, D>;
 
-  /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach.
-  void sweep_cell(const Lists& lists, float column_border, float row_border, PairSink& pairs);
+  /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach. False if the
+  /// cell alone would take more than `most_tests`, few of which find a pair: then it reports none.
+  bool sweep_cell(const Lists& lists, float column_border, float row_border, std::uint64_t most_tests,
+                  PairSink& pairs);
 
   /// How many boxes of a cell's `count` reach a border; of a few, perhaps more.
   static std::size_t most_reaching(const Lists& lists, std::size_t count, int axis, float border);
@@ -102,6 +108,7 @@ class GridSweep {
   void file_exactly(const Lists& lists, std::size_t count);
 
   std::array<int, D> axes_{};
+  std::size_t swept_to_ = 0;
   SweptRange range_{};
   Statistics statistics_;
   Carried along_;                      // to this cell, from the one before it in the row

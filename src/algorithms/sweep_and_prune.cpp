@@ -25,7 +25,9 @@
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "core/yielding.hpp"
 #include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
 
 namespace broadside::own {
 namespace {
@@ -39,7 +41,7 @@ constexpr std::size_t most_stripes = 256;
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
+class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
   explicit SweepAndPrune(const Settings& settings) {
     if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
@@ -47,8 +49,12 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
     if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
   }
 
+  /// It gives up before it has searched.
+  bool is_left(const Box<D>&, BoxId, const Box<D>&, BoxId) const override { return true; }
+
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    this->set_yielded(false);
     parallel_.start(this->workers(), boxes.size());
     runs_.resize(std::max(runs_.size(), parallel_.lanes()));
     const std::array<int, D> axes = choose_axes(boxes);
@@ -66,7 +72,9 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
     for (int i = D - 1; i > 0; --i) {
       if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
-    choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
+    // Whoever lets a search give up wants it along one axis, or not at all.
+    borders_.clear();
+    if (!this->may_yield()) choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     return axes;
   }
 
@@ -106,7 +114,6 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
          stripes *= 2) {
       if (cost(stripes) < cost(best)) best = stripes;
     }
-    borders_.clear();
     const std::vector<float>& minima = striped.minima;
     for (std::size_t stripe = 1; stripe < best && !minima.empty(); ++stripe)
       borders_.push_back(minima[minima.size() * stripe / best]);
@@ -120,6 +127,11 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
     for (const core::SortedBox<D>& box : sorted)
       buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
     const kernels::Run<D> run = buffer.view();
+    if (this->may_yield() && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
+      this->set_yielded(true);
+      this->count({.references = run.size});
+      return;
+    }
     const auto sweep = [&](core::Range some, std::size_t, PairSink& sink) {
       const std::size_t begin = some.begin * rows_at_once;
       const std::size_t end = std::min(some.end * rows_at_once, run.size);

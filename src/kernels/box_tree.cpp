@@ -71,19 +71,27 @@ HWY_INLINE NumberVector all_lanes(std::size_t number) {
 template <int D>
 class Join {
  public:
-  Join(const BoxTree<D>& tree, PairSink& sink) : tree_(tree), pairs_(sink) {}
+  Join(const BoxTree<D>& tree, const JoinLimit& limit, PairSink& sink)
+      : tree_(tree), limit_(limit), pairs_(sink) {}
 
-  std::uint64_t run() {
+  JoinWork run() {
     const std::uint32_t root = 0;
-    children_of(0, tree_.level_count - 1, &root, 1);
-    return tests_;
+    const bool is_done = children_of(0, tree_.level_count - 1, &root, 1);
+    return {tests_, is_done ? tree_.levels[0].size : next_leaf_ * fan_out};
   }
 
  private:
   /// Joins what lies below `node`, whose children stand on `level`, with what lies below the nodes of `list`:
-  /// those that touch it and do not stand before it.
-  void children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count) {
-    if (level == 0) return leaf(node, list, count);
+  /// those that touch it and do not stand before it. False where it gave up.
+  bool children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count) {
+    if (level == 0) {
+      leaf(node, list, count);
+      next_leaf_ = node + 1;
+      bounds_ += count;
+      const std::uint64_t work = tests_ + fan_out * bounds_;
+      return HWY_LIKELY(work <= limit_.tests) ||
+             work - limit_.tests <= limit_.tests_per_pair * pairs_.written();
+    }
     const TreeLevel<D>& children = tree_.levels[level];
     std::uint32_t* const touched = tree_.candidates[level];
     const std::size_t border = tree_.left_size >> (4 * level);
@@ -102,8 +110,10 @@ class Join {
           touched_count += hn::CountTrue(Numbers(), hits);
         }
       }
-      children_of(child, level - 1, touched, touched_count);
+      bounds_ += count;
+      if (!children_of(child, level - 1, touched, touched_count)) return false;
     }
+    return true;
   }
 
   /// Joins the boxes of a leaf with each other and with those of the leaves of `list`.
@@ -170,8 +180,11 @@ class Join {
   static constexpr std::size_t most_queries = 1024;
 
   const BoxTree<D>& tree_;
+  const JoinLimit limit_;
   Writer pairs_;
   std::uint64_t tests_ = 0;
+  std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
+  std::size_t next_leaf_ = 0;
   std::uint32_t
       queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
 };
@@ -200,8 +213,12 @@ void bound_level(const BoxTree<D>& tree, std::size_t parent) {
 }  // namespace
 
 // What the dispatch below can name: no templates.
-std::uint64_t join_2(const BoxTree<2>& tree, PairSink& pairs) { return Join<2>(tree, pairs).run(); }
-std::uint64_t join_3(const BoxTree<3>& tree, PairSink& pairs) { return Join<3>(tree, pairs).run(); }
+JoinWork join_2(const BoxTree<2>& tree, const JoinLimit& limit, PairSink& pairs) {
+  return Join<2>(tree, limit, pairs).run();
+}
+JoinWork join_3(const BoxTree<3>& tree, const JoinLimit& limit, PairSink& pairs) {
+  return Join<3>(tree, limit, pairs).run();
+}
 void set_bounds_2(const BoxTree<2>& tree, std::size_t parent) { bound_level(tree, parent); }
 void set_bounds_3(const BoxTree<3>& tree, std::size_t parent) { bound_level(tree, parent); }
 
@@ -217,13 +234,13 @@ HWY_EXPORT(set_bounds_2);
 HWY_EXPORT(set_bounds_3);
 
 template <>
-std::uint64_t join(const BoxTree<2>& tree, PairSink& pairs) {
-  return HWY_DYNAMIC_DISPATCH(join_2)(tree, pairs);
+JoinWork join(const BoxTree<2>& tree, const JoinLimit& limit, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_2)(tree, limit, pairs);
 }
 
 template <>
-std::uint64_t join(const BoxTree<3>& tree, PairSink& pairs) {
-  return HWY_DYNAMIC_DISPATCH(join_3)(tree, pairs);
+JoinWork join(const BoxTree<3>& tree, const JoinLimit& limit, PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_3)(tree, limit, pairs);
 }
 
 template <>

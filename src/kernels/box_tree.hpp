@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "broadside/pair.hpp"
 
@@ -47,9 +48,21 @@ struct BoxTree {
 template <int D>
 void set_bounds(const BoxTree<D>& tree, std::size_t parent);
 
-/// Reports the pairs of overlapping boxes, or those between the two sets. Returns the number of pairs of
-/// boxes compared, where a leaf counts as full.
+/// The work a join may do before it gives up: so many tests, and so many more for each pair that it found.
+/// Comparing bounds counts as comparing boxes.
+struct JoinLimit {
+  std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t tests_per_pair = 0;
+};
+
+/// What a join did.
+struct JoinWork {
+  std::uint64_t tests;  ///< pairs of boxes compared, where a leaf counts as full
+  std::size_t places;   ///< the places of level 0 before this one were joined with all behind them
+};
+
+/// Reports the pairs of overlapping boxes, or those between the two sets, leaf by leaf.
 template <int D>
-std::uint64_t join(const BoxTree<D>& tree, PairSink& pairs);
+JoinWork join(const BoxTree<D>& tree, const JoinLimit& limit, PairSink& pairs);
 
 }  // namespace broadside::kernels

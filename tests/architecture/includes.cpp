@@ -34,8 +34,9 @@ const std::vector<Rule>& rules() {
       {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
       {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
       {"src/double_follower", inner + R"(|"(double_follower|algorithms/hierarchical_grid_tracker)\.hpp")"},
+      {"src/segment_join", inner + R"(|"segment_join\.hpp")"},
       {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")" +
-                   R"(|"(auto_tracker|double_follower|world_state)\.hpp")"},
+                   R"(|"(auto_tracker|double_follower|segment_join|world_state)\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/readers/", lab + "|<assimp/.*>"},

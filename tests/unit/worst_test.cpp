@@ -9,7 +9,7 @@
 
 #include "lab/verify.hpp"
 #include "lab/worst/fixed_inputs.hpp"
-#include "message.hpp"
+#include "tests/message.hpp"
 
 namespace broadside::lab {
 namespace {

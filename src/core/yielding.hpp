@@ -1,0 +1,67 @@
+// A search that gives up where it makes far more tests than its boxes and pairs account for.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "core/filter_sink.hpp"
+
+namespace broadside::core {
+
+/// What a finder also is whose searches can give up, so that another algorithm finds the pairs that are left.
+/// Whether one gives up, and where, depends on the boxes alone and not on the number of threads.
+template <int D>
+class Yielding {
+ public:
+  Yielding() = default;
+  Yielding(const Yielding&) = delete;
+  Yielding& operator=(const Yielding&) = delete;
+  virtual ~Yielding() = default;
+
+  /// Searches give up from now on; before, none does.
+  void let_yield() noexcept { may_yield_ = true; }
+
+  /// Whether the last search gave up. The pairs that it wrote are then those that are not left.
+  bool has_yielded() const noexcept { return has_yielded_; }
+
+  /// After a search that gave up: whether the pair of these boxes of it, which overlap, is still to be found.
+  virtual bool is_left(const Box<D>& a, BoxId a_id, const Box<D>& b, BoxId b_id) const = 0;
+
+ protected:
+  bool may_yield() const noexcept { return may_yield_; }
+  void set_yielded(bool has_yielded) noexcept { has_yielded_ = has_yielded; }
+
+ private:
+  bool may_yield_ = false;
+  bool has_yielded_ = false;
+};
+
+/// Passes on those pairs that a search which gave up has left.
+template <int D>
+class LeftSink final : public FilterSink {
+ public:
+  LeftSink(const Yielding<D>& search, std::span<const Box<D>> boxes, PairSink& target)
+      : FilterSink(target), search_(&search), boxes_(boxes) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<LeftSink>(*search_, boxes_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) {
+      const Box<D>& first = boxes_[index(pair.first)];
+      const Box<D>& second = boxes_[index(pair.second)];
+      if (search_->is_left(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
+    }
+  }
+
+  const Yielding<D>* search_;
+  std::span<const Box<D>> boxes_;
+};
+
+}  // namespace broadside::core

@@ -1,0 +1,66 @@
+// Whether a sweep is worth its tests.
+#include "kernels/waste.hpp"
+
+#include <algorithm>
+
+namespace broadside::kernels {
+namespace {
+
+/// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
+/// stand in their buckets in any order, so the count is right but for a bucket.
+std::size_t end_of(const float* minima, std::size_t size, std::size_t from, float last) {
+  std::size_t step = 16;
+  while (from + step < size && minima[from + step] <= last) {
+    from += step;
+    step *= 2;
+  }
+  const float* const end = minima + std::min(from + step, size);
+  return static_cast<std::size_t>(std::upper_bound(minima + std::min(from, size), end, last) - minima);
+}
+
+/// Places spread over a run: multiples of the golden ratio, which fall in step with no pattern.
+std::size_t place_of(std::size_t i, std::size_t size) {
+  return static_cast<std::size_t>(static_cast<std::uint32_t>(i * 0x9e3779b9U) * std::uint64_t{size} >> 32);
+}
+
+/// At most how many tests a sweep makes, by the greatest maximum of each few boxes. Stops beyond `limit`.
+template <int D>
+std::uint64_t most_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
+  std::uint64_t tests = 0;
+  for (std::size_t i = 0; i < run.size && tests <= limit; i += together) {
+    const std::size_t end = std::min(i + together, run.size);
+    const float last = *std::max_element(run.max[0] + i, run.max[0] + end);
+    tests += (end_of(run.min[0], run.size, i, last) - i) * (end - i);
+  }
+  return tests;
+}
+
+}  // namespace
+
+template <int D>
+bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
+  if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
+  if (most_tests(run, limit, 16) <= limit || most_tests(run, limit, 1) <= limit) return false;
+  constexpr std::size_t looked_at = 32;
+  constexpr std::size_t most_tests_of_one = 4096;
+  std::uint64_t tests = 0;
+  std::uint64_t hits = 0;
+  for (std::size_t i = 0; i < looked_at; ++i) {
+    const std::size_t at = place_of(i, run.size);
+    const std::size_t end = end_of(run.min[0], run.size, at, run.max[0][at]);
+    const std::size_t stride = (end - at) / most_tests_of_one + 1;
+    for (std::size_t other = at + 1; other < end; other += stride) {
+      bool overlaps = (run.apart[at] & run.apart[other]) == 0;
+      for (int axis = 0; axis < D; ++axis)
+        overlaps &= run.min[axis][other] <= run.max[axis][at] && run.min[axis][at] <= run.max[axis][other];
+      tests += stride;
+      hits += overlaps ? stride : 0;
+    }
+  }
+  return tests > tests_per_pair * hits;
+}
+
+template bool is_wasteful(const Run<2>&, std::uint64_t);
+template bool is_wasteful(const Run<3>&, std::uint64_t);
+
+}  // namespace broadside::kernels

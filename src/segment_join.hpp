@@ -1,0 +1,100 @@
+// The join that no boxes slow down: the streamed segment tree of A. Zomorodian and H. Edelsbrunner, "Fast
+// software for box intersections" (2002), with a choice of the axis at each node and sweeps at the leaves.
+//
+// auto hands a search over to it where another algorithm turns out to make far too many tests.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/statistics.hpp"
+
+#include "core/radix_sort.hpp"
+#include "core/sorted_boxes.hpp"
+#include "kernels/run.hpp"
+
+namespace broadside::own {
+
+/// Cost: O(n log^D n + k) whatever the boxes, where medians of samples halve them. Memory: O(n), kept from
+/// one search to the next.
+template <int D>
+class SegmentJoin {
+ public:
+  /// Reports each overlapping pair once, or with `left_count` > 0 each pair of one of the first so many boxes
+  /// and one of the others. Boxes are all present.
+  Statistics join(std::span<const Box<D>> boxes, std::size_t left_count, PairSink& pairs);
+
+ private:
+  /// A box in a node. Bit a of `apart` is set if the box begins before the node's region on axis a; the rest
+  /// as in a run.
+  struct Reference {
+    std::uint32_t place;  // among the sorted boxes
+    std::uint32_t apart;
+  };
+
+  /// References that follow each other on the stack, in the order of the sorted boxes.
+  struct List {
+    std::size_t begin;
+    std::size_t end;
+    std::size_t size() const { return end - begin; }
+  };
+
+  /// The lists of a node: its pairs are those of `a` with `b`, or of `a` with itself.
+  struct Node {
+    List a;
+    List b;
+    bool is_self;
+    std::uint32_t open;  // bit a: boxes of the node may be apart on axis a
+    int depth;
+
+    std::size_t size() const { return is_self ? a.size() : a.size() + b.size(); }
+  };
+
+  /// Where a node is cut, and what minima lie in its region.
+  struct Cut {
+    int axis;
+    float at;
+    float low;
+    float high;
+  };
+
+  /// What a cut makes of a list.
+  struct Parts {
+    List covering;
+    List below;
+    List above;
+  };
+
+  void search(const Node& node);
+  void decide(const Node& node, const Cut& cut);
+  void cut_in_two(const Node& node, const Cut& cut);
+  void sweep(const Node& node);
+  Cut choose(const Node& node);
+  bool set_range(const Node& node, Cut& cut) const;
+  void set_exact_median(const Node& node, Cut& cut);
+  Parts part(const List& list, const Cut& cut);
+
+  /// Pushes the wanted references of a list.
+  template <typename Wanted>
+  List push(const List& list, Wanted wanted);
+
+  kernels::Run<D> run_of(const List& list, int axis, kernels::RunBuffer<D>& run);
+  const Box<D>& box(const Reference& reference) const { return sorted_boxes_[reference.place].box; }
+
+  core::SortedBoxes<D> sorted_;
+  std::span<const core::SortedBox<D>> sorted_boxes_;
+  std::vector<Reference> stack_;
+  std::vector<float> minima_;
+  core::RadixSort radix_;
+  kernels::RunBuffer<D> run_a_;
+  kernels::RunBuffer<D> run_b_;
+  PairSink* pairs_ = nullptr;
+  Statistics statistics_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,214 @@
+// auto notices that its choice was wrong: searches and trackers that take far more tests than boxes and pairs
+// account for are handed over.
+#include <array>
+#include <cstddef>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/sinks.hpp"
+
+#include "core/sample.hpp"
+
+namespace broadside {
+namespace {
+
+using Random = std::mt19937;
+
+float uniform(Random& random, float below) {
+  return static_cast<float>(random() % (1 << 24)) * below / (1 << 24);
+}
+
+Box3 box_at(const std::array<float, 3>& min, const std::array<float, 3>& side) {
+  return {min, {min[0] + side[0], min[1] + side[1], min[2] + side[2]}};
+}
+
+Box3 small_box(Random& random) {
+  return box_at({uniform(random, 1000), uniform(random, 1000), uniform(random, 1000)}, {10, 10, 10});
+}
+
+/// A plate of one of two stacks that stand beside each other, one along x and one along y.
+Box3 plate(Random& random, std::size_t count) {
+  const bool second = random() % 2 == 0;
+  const float thickness = 400 / static_cast<float>(count);
+  const float along = uniform(random, 1000);
+  const float across = uniform(random, 100);
+  const float height = uniform(random, 100);
+  if (second) return box_at({1100 + across, along, height}, {900, thickness, 900});
+  return box_at({along, across, height}, {thickness, 900, 900});
+}
+
+/// A line along one of the three axes.
+Box3 line(Random& random) {
+  std::array<float, 3> min;
+  std::array<float, 3> side{};
+  const std::size_t axis = random() % 3;
+  for (std::size_t i = 0; i < 3; ++i) min[i] = uniform(random, i == axis ? 100 : 1000);
+  side[axis] = 900;
+  return box_at(min, side);
+}
+
+enum class Kind { uniform, plates, lines, row };
+
+/// One of `count` boxes.
+Box3 box_of(Kind kind, std::size_t count, Random& random) {
+  switch (kind) {
+    case Kind::plates:
+      return plate(random, count);
+    case Kind::lines:
+      return line(random);
+    case Kind::row:
+      return box_at({uniform(random, 1000), 0, 0}, {1.0F / 64, 1, 1});
+    default:
+      return small_box(random);
+  }
+}
+
+std::vector<Box3> boxes_of(Kind kind, std::size_t count, Random& random) {
+  std::vector<Box3> boxes(count);
+  for (Box3& box : boxes) box = box_of(kind, count, random);
+  return boxes;
+}
+
+/// Benign boxes where auto and what it chooses look, and others everywhere else.
+std::vector<Box3> fooling(Kind benign, Kind other, std::size_t count, Random& random) {
+  std::vector<Box3> boxes = boxes_of(other, count, random);
+  const std::vector<Box3> seen = boxes_of(benign, 1024, random);
+  for (std::size_t i = 0; i < seen.size(); ++i) boxes[core::sampled_place(i, count)] = seen[i];
+  return boxes;
+}
+
+constexpr std::array<std::pair<Kind, Kind>, 5> deceptions = {{{Kind::uniform, Kind::plates},
+                                                              {Kind::uniform, Kind::lines},
+                                                              {Kind::row, Kind::plates},
+                                                              {Kind::plates, Kind::plates},
+                                                              {Kind::lines, Kind::lines}}};
+
+std::vector<Pair> pairs_of(PairFinder<3>& finder, std::span<const Box3> boxes, std::size_t left_count = 0) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  if (left_count == 0)
+    finder.find(boxes, collector);
+  else
+    finder.find_between(boxes, left_count, collector);
+  return pairs;
+}
+
+TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
+  constexpr std::size_t count = 20'000;
+  for (const auto& [benign, other] : deceptions) {
+    Random random(1);
+    const std::vector<Box3> boxes = fooling(benign, other, count, random);
+    const auto finder = make_finder<3>("auto");
+    const std::size_t pairs = pairs_of(*finder, boxes).size();
+    EXPECT_LE(finder->statistics()->tests, 600 * count + 64 * pairs) << finder->explanation();
+    EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+  }
+}
+
+TEST(AutoHandOver, FindsEachPairOnce) {
+  constexpr std::size_t count = 8'000;
+  const auto definition = make_finder<3>("brute_force");
+  for (const auto& [benign, other] : deceptions) {
+    Random random(2);
+    const std::vector<Box3> boxes = fooling(benign, other, count, random);
+    for (const std::size_t left_count : {std::size_t{0}, count / 3}) {
+      const auto finder = make_finder<3>("auto");
+      const std::vector<Pair> pairs = pairs_of(*finder, boxes, left_count);
+      EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+      std::vector<Pair> sorted = pairs;
+      std::ranges::sort(sorted);
+      std::vector<Pair> expected = pairs_of(*definition, boxes, left_count);
+      std::ranges::sort(expected);
+      EXPECT_TRUE(sorted == expected)
+          << finder->explanation() << ": " << sorted.size() << " pairs; expected " << expected.size();
+      finder->set_workers({.threads = 3, .boxes_per_thread = 100});
+      EXPECT_TRUE(pairs_of(*finder, boxes, left_count) == pairs) << "the order with three threads differs";
+    }
+  }
+}
+
+/// Two trackers of the same boxes, whose events are compared.
+class Followed {
+ public:
+  explicit Followed(std::vector<Box3> boxes) : boxes_(std::move(boxes)) { update({}); }
+
+  /// Replaces or shifts boxes, and checks the events.
+  template <typename Move>
+  void move(std::size_t movers, Random& random, Move move) {
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < movers; ++i) {
+      const std::size_t place = movers == boxes_.size() ? i : random() % boxes_.size();
+      boxes_[place] = move(boxes_[place]);
+      changed.push_back(BoxId(place));
+    }
+    update(changed);
+  }
+
+  PairTracker<3>& tracker() { return *tracker_; }
+
+ private:
+  void update(std::span<const BoxId> changed) {
+    std::array<std::vector<Pair>, 4> events;
+    PairCollector begun(events[0]);
+    PairCollector ended(events[1]);
+    PairCollector expected_begun(events[2]);
+    PairCollector expected_ended(events[3]);
+    tracker_->update({boxes_, changed}, begun, ended);
+    expected_->update({boxes_, changed}, expected_begun, expected_ended);
+    EXPECT_TRUE(events[0] == events[2]) << tracker_->explanation();
+    EXPECT_TRUE(events[1] == events[3]) << tracker_->explanation();
+  }
+
+  std::vector<Box3> boxes_;
+  std::unique_ptr<PairTracker<3>> tracker_ = make_tracker<3>("auto");
+  std::unique_ptr<PairTracker<3>> expected_ = make_tracker<3>("brute_force:update=changed");
+};
+
+Box3 shifted(Box3 box, Random& random) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float side = box.max[axis] - box.min[axis];
+    const float by = (uniform(random, 1) - 0.5F) * side;
+    box.min[axis] += by;
+    box.max[axis] = box.min[axis] + side;
+  }
+  return box;
+}
+
+TEST(AutoTrackerHandOver, BoundsTheTestsOfPlatesAndLines) {
+  constexpr std::size_t count = 10'000;
+  constexpr std::size_t movers = 100;
+  for (const auto& [kind, most] : {std::pair(Kind::plates, 1'500), std::pair(Kind::lines, 5'000)}) {
+    Random random(3);
+    Followed followed(boxes_of(kind, count, random));
+    for (int frame = 0; frame < 30; ++frame)
+      followed.move(movers, random, [&](const Box3& box) { return shifted(box, random); });
+    EXPECT_LE(followed.tracker().statistics()->tests, most * movers) << followed.tracker().explanation();
+  }
+}
+
+TEST(AutoTrackerHandOver, MissesNoEventWhereBoxesChangeTheirCharacter) {
+  constexpr std::size_t count = 4'000;
+  Random random(4);
+  Followed followed(boxes_of(Kind::uniform, count, random));
+  std::string followers;
+  for (const Kind kind : {Kind::plates, Kind::uniform, Kind::lines, Kind::plates}) {
+    followed.move(count, random, [&](const Box3&) { return box_of(kind, count, random); });
+    for (int frame = 0; frame < 25; ++frame) {
+      followed.move(80, random, [&](const Box3& box) { return shifted(box, random); });
+      followers += followed.tracker().explanation() + "\n";
+    }
+  }
+  EXPECT_THAT(followers, testing::HasSubstr("followed by hierarchical_grid"));
+  EXPECT_THAT(followers, testing::AnyOf(testing::HasSubstr("followed by quadtree"),
+                                        testing::HasSubstr("followed by bvh")));
+}
+
+}  // namespace
+}  // namespace broadside
