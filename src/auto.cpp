@@ -267,7 +267,7 @@ Way way_of(const Settings& settings) {
   return way == "incremental" ? Way::incremental : Way::automatic;
 }
 
-/// The others come where the first one makes over a thousand tests a mover: by measurements with 50,000
+/// The others come where the first one makes some five hundred tests a mover: by measurements with 50,000
 /// boxes, one in a hundred moving, in stacks of plates, lines and clusters.
 template <int D>
 constexpr std::array<Follower<D, float>, 3> followers = {{
@@ -281,14 +281,14 @@ constexpr std::array<Follower<D, float>, 3> followers = {{
     {.name = "quadtree",
      .make = [] { return make_tracker<D>("quadtree:update=root"); },
      .start = 300,
-     .mover = 1000,
+     .mover = 600,
      .mover_alone = 300,
      .test = 2,
      .further_test = 2},
     {.name = "bvh",
      .make = [] { return make_tracker<D>("bvh:update=reinsert"); },
      .start = 100,
-     .mover = 1000,
+     .mover = 600,
      .mover_alone = 300,
      .test = 0.9,
      .further_test = 0.9},

@@ -13,6 +13,7 @@
 #include "broadside/sinks.hpp"
 
 #include "core/pair_difference.hpp"
+#include "core/sample.hpp"
 
 namespace broadside::own {
 namespace {
@@ -30,6 +31,9 @@ constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have
 /// How much of the way back to what was thought at first a follower's cost goes in each frame that another
 /// one follows: boxes may have changed their character.
 constexpr double forgotten = 0.01;
+
+/// Fewer movers tell little about what one costs.
+constexpr std::size_t telling = 64;
 
 /// Below so many boxes that moved nobody needs to think.
 constexpr std::size_t few = 8;
@@ -78,15 +82,45 @@ void AutoTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
   }
 }
 
+/// Starts the follower that costs least, by trying one after the other.
 template <int D, typename Real>
 void AutoTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) {
-  // Nothing has changed, so that nobody asks for the flag of a box.
-  const Change<D, Real> nothing{.before = boxes, .now = boxes, .changed = {}, .flags = {}, .rebuild = true};
-  PairCounter none;
   const std::optional<Statistics> statistics = this->statistics();
-  this->update_with(*follower_, nothing, none, none);
+  try_out(boxes);
+  std::vector<bool> was_tried(followers_.size());
+  was_tried[current_] = true;
+  while (cheapest() != current_) {
+    use(cheapest());
+    // The last one may be one that was tried, and turned out to be the best.
+    try_out(boxes);
+    if (was_tried[current_]) break;
+    was_tried[current_] = true;
+  }
+  patience_ = 1;
   this->count(statistics);
   followed_ = true;
+}
+
+/// Starts the follower, and lets it follow some boxes that stay where they are: that tells what a mover
+/// costs.
+template <int D, typename Real>
+void AutoTracker<D, Real>::try_out(std::span<const Box<D, Real>> boxes) {
+  PairCounter none;
+  // Nothing has changed, so that nobody asks for the flag of a box.
+  Change<D, Real> change{.before = boxes, .now = boxes, .changed = {}, .flags = {}, .rebuild = true};
+  this->update_with(*follower_, change, none, none);
+  if (followers_.size() == 1) return;
+  std::vector<std::uint8_t> flags(boxes.size());
+  std::vector<BoxId> changed;
+  for (std::size_t i = 0; i < std::min(telling, boxes.size()); ++i) {
+    const std::size_t place = core::sampled_place(i, boxes.size());
+    if (is_present(boxes[place]) && std::exchange(flags[place], 1) == 0) changed.push_back(BoxId(place));
+  }
+  change.changed = changed;
+  change.flags = flags;
+  change.rebuild = false;
+  this->update_with(*follower_, change, none, none);
+  if (this->statistics()) weigh(changed.size());
 }
 
 /// Who has them keeps some more: boxes may come and go by turns.
@@ -174,15 +208,13 @@ void AutoTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& begun
   followed_ = true;
   has_pairs_ = false;
   if (cheapest() == current_) saved_ = 0;
-  if (this->statistics()) weigh();
+  if (this->statistics()) weigh(changed_);
 }
 
-/// Takes what the follower did for what it costs.
+/// Takes what the follower did for this number of movers for what it costs.
 template <int D, typename Real>
-void AutoTracker<D, Real>::weigh() {
-  // Few movers tell little about what one costs.
-  constexpr std::uint64_t telling = 64;
-  seen_movers_ += changed_;
+void AutoTracker<D, Real>::weigh(std::size_t number) {
+  seen_movers_ += number;
   seen_tests_ += static_cast<double>(this->statistics()->tests);
   seen_hits_ += static_cast<double>(this->statistics()->hits);
   if (seen_movers_ < telling) return;

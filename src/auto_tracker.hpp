@@ -53,9 +53,10 @@ class AutoTracker final : public PairTracker<D, Real> {
   bool is_incremental(const Change<D, Real>& change);
   std::size_t cheapest() const;
   void use(std::size_t follower);
-  void weigh();
+  void weigh(std::size_t number);
   void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void start_following(std::span<const Box<D, Real>> boxes);
+  void try_out(std::span<const Box<D, Real>> boxes);
   void follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
 
   std::unique_ptr<PairFinder<D, Real>> finder_;
