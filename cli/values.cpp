@@ -91,7 +91,8 @@ void check_writable(const std::string& option, const std::string& path) {
         option, path, extension));
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
-  if (path.empty() || path.back() == '/' || std::filesystem::is_directory(path, ignored))
+  if (path.empty()) throw Unusable(fmt::format("{} is ''; expected a file", option));
+  if (path.back() == '/' || std::filesystem::is_directory(path, ignored))
     throw Unusable(fmt::format("{} is '{}', which is a folder; expected a file", option, path));
   if (!std::filesystem::is_directory(folder, ignored))
     throw Unusable(fmt::format("{} is '{}', but there is no folder '{}'; expected one that is there", option,
@@ -100,7 +101,8 @@ void check_writable(const std::string& option, const std::string& path) {
     throw Unusable(
         fmt::format("{} is '{}', which is read-only; expected a file that may be written, or another name",
                     option, path));
-  if (!std::filesystem::exists(path, ignored) && access(folder.c_str(), W_OK) != 0)
+  // An old file is replaced by a new one, which needs the folder as well.
+  if (!lab::is_written_directly(path) && access(folder.c_str(), W_OK) != 0)
     throw Unusable(fmt::format(
         "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,
         path, folder.string()));

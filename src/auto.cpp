@@ -96,8 +96,10 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   std::string explanation() const override {
     std::string text = reason();
     if (has_handed_over_)
-      text += "; it gave up after " + std::to_string(given_up_after_) +
-              " tests, far more than boxes and pairs account for, and a segment tree found what was left";
+      text +=
+          "; it gave up, since its tests were far more than boxes and pairs account for, and a segment tree "
+          "found "
+          "what was left";
     return text;
   }
 
@@ -142,7 +144,6 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (search == nullptr || !search->has_yielded()) return;
     has_handed_over_ = true;
     Statistics statistics = this->statistics().value_or(Statistics{});
-    given_up_after_ = statistics.tests;
     if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
     core::LeftSink<D> left(*search, boxes, pairs);
     const Statistics more = segments_->join(boxes, this->left_count(), left);
@@ -250,7 +251,6 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   Choice choice_ = Choice::few;
   std::size_t count_ = 0;
   bool has_handed_over_ = false;
-  std::uint64_t given_up_after_ = 0;
   double tests_ = 0;
   double overlaps_ = 0;
   double clustering_ = 0;

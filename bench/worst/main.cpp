@@ -53,7 +53,9 @@ CLI::App* describe(CLI::App& program, Arguments& arguments) {
                      "Inputs such as plates:regions=4:dimension=3:call=track, instead of the fixed list");
   program.add_option("--draw", arguments.draw, "Draw so many inputs instead of the fixed list");
   program.add_option("--seed", arguments.seed, "Of the drawn inputs")->capture_default_str();
-  program.add_option("-n", arguments.hunt.effort.boxes, "Boxes of an input")->capture_default_str();
+  program.add_option("-n", arguments.hunt.effort.boxes, "Boxes of an input")
+      ->check(CLI::Range(100, 100'000'000))
+      ->capture_default_str();
   program.add_option("--algorithms", arguments.algorithms, "Algorithms; brute_force is not among `own`")
       ->capture_default_str();
   program.add_option("--rounds", arguments.hunt.effort.rounds, "Timed calls of each")->capture_default_str();

@@ -93,8 +93,13 @@ std::string precision_text(Precision precision, std::string_view importer) {
 }
 
 std::string Rounding::text() const {
-  return fmt::format("{} of {} {} rounded to float", grouped(rounded),
-                     counted(coordinates, "coordinate", "coordinates"), rounded == 1 ? "was" : "were");
+  std::string text =
+      fmt::format("{} of {} {} rounded to float", grouped(rounded),
+                  counted(coordinates, "coordinate", "coordinates"), rounded == 1 ? "was" : "were");
+  if (lost > 0)
+    text += fmt::format(", {} of them to infinity or zero, since floats end at 3.4e38 and 1.4e-45",
+                        grouped(lost));
+  return text;
 }
 
 int dimension_of(const AnyFrameReader& frames) noexcept { return frames.index() % 2 == 0 ? 2 : 3; }

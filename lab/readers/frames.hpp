@@ -1,6 +1,7 @@
 // Boxes as files hold them: frame after frame, in 2D or 3D, as floats or as doubles.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,26 +35,33 @@ constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::floa
 struct Rounding {
   std::uint64_t coordinates = 0;
   std::uint64_t rounded = 0;
+  std::uint64_t lost = 0;  ///< of those rounded: beyond a float's range, where all become infinite or zero
 
   template <int D, typename Real>
   void count(std::span<const Box<D, Real>> boxes) {
-    const auto is_rounded = [](Real number) {
-      return static_cast<Real>(static_cast<float>(number)) != number;
+    const auto count_one = [this](Real number) {
+      const auto near = static_cast<float>(number);
+      const bool is_rounded = static_cast<Real>(near) != number;
+      rounded += std::uint64_t{is_rounded};
+      lost += std::uint64_t{is_rounded && (std::isinf(near) || near == 0)};
     };
     coordinates += 2 * D * boxes.size();
     for (const Box<D, Real>& box : boxes) {
-      for (std::size_t axis = 0; axis < D; ++axis)
-        rounded += std::uint64_t{is_rounded(box.min[axis])} + std::uint64_t{is_rounded(box.max[axis])};
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        count_one(box.min[axis]);
+        count_one(box.max[axis]);
+      }
     }
   }
 
   Rounding& operator+=(const Rounding& other) noexcept {
     coordinates += other.coordinates;
     rounded += other.rounded;
+    lost += other.lost;
     return *this;
   }
 
-  /// "2 of 1,000 coordinates were rounded to float".
+  /// "2 of 1,000 coordinates were rounded to float", and how many of them to infinity or zero.
   std::string text() const;
 };
 

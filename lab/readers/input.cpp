@@ -31,7 +31,7 @@ std::uint64_t most_copied_bytes(bool is_device) {
   const auto pages = ::sysconf(_SC_PHYS_PAGES);
   const auto page_bytes = ::sysconf(_SC_PAGE_SIZE);
   if (pages <= 0 || page_bytes <= 0) return std::uint64_t{1} << 32;
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 4;
 }
 
 std::string lower(std::string text) {
@@ -160,7 +160,9 @@ void Input::copy() {
   std::size_t used = kept_.size();
   try {
     while (used <= most) {
-      kept_.resize(std::max<std::size_t>(2 * used, std::size_t{1} << 16));
+      // Never beyond what may be read, since the old bytes are kept until they are copied.
+      kept_.resize(
+          std::min<std::uint64_t>(std::max<std::uint64_t>(2 * used, std::uint64_t{1} << 16), most + 1));
       const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
       if (got == 0) {
         kept_.resize(used);

@@ -232,7 +232,8 @@ void write_beside(const std::filesystem::path& path, const std::filesystem::path
   UnfinishedFile file(path, is_there ? 0600 : 0666);
   if (file.descriptor() < 0) refuse(shown, reason());
   write_to(file.descriptor(), true, shown, write);
-  if (is_there && ::fchmod(file.descriptor(), old.st_mode & 07777) != 0) refuse(shown, reason());
+  // Not the bits that run a file as its owner: that is another one now, and so are the bytes.
+  if (is_there && ::fchmod(file.descriptor(), old.st_mode & 0777) != 0) refuse(shown, reason());
   if (!file.take_place()) refuse(shown, reason());
 }
 

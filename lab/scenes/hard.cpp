@@ -25,7 +25,8 @@ constexpr std::array found = {
           "plates:neighbours=1:regions=300:layout=row:order=shuffled"},
     Found{"plates_and_lines", "stacks of parallel plates, and long thin boxes through them",
           "mixture:first=plates:second=lines:order=shuffled"},
-    Found{"wires", "lines through the whole world, along each axis", "lines:neighbours=1:order=shuffled"},
+    Found{"wires", "long thin boxes along each axis, in 3D through the whole world",
+          "lines:neighbours=1:order=shuffled"},
     Found{"staircase", "boxes one after the other along the diagonal, in order", "row:overlap=1.5", true},
     Found{"nested_clusters", "clusters of clusters, six times, each a hundredth of the one around it",
           "clusters:levels=6:branches=6:shrink=100:order=shuffled"},
@@ -34,8 +35,10 @@ constexpr std::array found = {
     Found{"many_scales", "places of 20 orders of magnitude, boxes as large as their distance allows",
           "magnitudes:decades=20:order=shuffled"},
     Found{"many_sizes", "sizes of 30 orders of magnitude", "magnitudes:of=sizes:decades=30:order=shuffled"},
-    Found{"misleading_sample", "even boxes where a sample of the array looks, plates elsewhere",
-          "fooled:hidden=plates"},
+    Found{
+        "misleading_sample",
+        "even boxes where a sample of the array looks, plates elsewhere; of some thousands of boxes and more",
+        "fooled:hidden=plates"},
 };
 
 template <int D>

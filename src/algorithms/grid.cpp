@@ -77,9 +77,10 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
   std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
     if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
     const std::size_t length = layout_.row_length();
-    const std::uint64_t filed =
-        begin_[layout_.slab_begin(slab + 1) * length] - begin_[layout_.slab_begin(slab) * length];
-    return kernels::tests_per_box * boxes * filed / begin_.back() + 1;
+    const auto filed = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
+                                           begin_[layout_.slab_begin(slab) * length]);
+    const double share = filed / std::max<double>(1, begin_.back());
+    return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {

@@ -50,6 +50,7 @@ void Delivery::give_up(const Piece& piece) {
   const std::lock_guard lock(mutex_);
   pieces_[piece.number].state = State::open;
   next_ = std::min(next_, piece.number);
+  lanes_left_ = true;
 }
 
 bool Delivery::deliver_next() {

@@ -27,13 +27,18 @@ constexpr double most_false_pairs = 8;
 constexpr double compared_share = 0.75;
 constexpr std::size_t least_compared = 64;
 
-/// Shifts a sample: it depends on all boxes, so that no array can be made up whose samples hide what most of
-/// it is like.
+/// Shifts a sample: it depends on all boxes and their order, so that arrays with a pattern do not hide behind
+/// it. A hash that is easy to turn round is enough for that.
 template <int D>
 std::uint32_t sample_shift(std::span<const Box<D, double>> boxes) {
-  std::uint64_t sum = 0;
-  for (const Box<D, double>& box : boxes) sum += std::bit_cast<std::uint64_t>(box.max[0]);
-  return static_cast<std::uint32_t>(sum * 0x9e3779b97f4a7c15U >> 32);
+  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
+  std::uint64_t hash = boxes.size();
+  for (const Box<D, double>& box : boxes) {
+    // Both zeros are one.
+    hash = (hash ^ std::bit_cast<std::uint64_t>(box.max[0] + 0.0)) * golden;
+    hash ^= hash >> 32;
+  }
+  return static_cast<std::uint32_t>(hash);
 }
 
 double median(std::vector<double>& values) {
@@ -101,6 +106,9 @@ class Columns {
 
 LinearRounding::LinearRounding(double origin, double distance) : origin_(origin) {
   if (!(distance > 0)) return;
+  // Tunables such as a grid's cell are lengths in the boxes' unit, so that one is kept where floats can.
+  constexpr int kept_exponent = 30;
+  if (std::abs(std::ilogb(distance)) <= kept_exponent) return;
   // Beyond that the scale or its inverse would be none.
   const int exponent = std::clamp(std::ilogb(distance), -1022, 1022);
   scale_ = std::ldexp(1.0, -exponent);
@@ -109,7 +117,7 @@ LinearRounding::LinearRounding(double origin, double distance) : origin_(origin)
 
 QuantileRounding::QuantileRounding(std::vector<double> knots) : knots_(std::move(knots)) {
   std::ranges::sort(knots_);
-  knots_.erase(std::ranges::unique(knots_).begin(), knots_.end());
+  knots_.erase(std::unique(knots_.begin(), knots_.end()), knots_.end());
   if (knots_.empty()) knots_.push_back(0);
   const auto count = static_cast<double>(knots_.size());
   middle_ = (count - 1) / 2;

@@ -19,7 +19,8 @@ class LinearRounding {
  public:
   LinearRounding() = default;
 
-  /// Takes values about `distance` away from the origin to floats about 1 away from 0.
+  /// Takes values about `distance` away from the origin to floats about as far away from 0, or where that is
+  /// more than 2^30 or less than 2^-30, to floats about 1 away.
   LinearRounding(double origin, double distance);
 
   /// Finite, for an infinite value as well.

@@ -46,9 +46,10 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
   // Those that are ignored from now on come first.
-  const std::span<const Pair> no_longer =
-      std::ranges::partition(toggled_, [this](Pair pair) { return !ignored_.contains(pair); });
-  const std::span<const Pair> newly = std::span(toggled_).first(toggled_.size() - no_longer.size());
+  const auto middle = std::partition(toggled_.begin(), toggled_.end(),
+                                     [this](Pair pair) { return !ignored_.contains(pair); });
+  const std::span<const Pair> newly(toggled_.begin(), middle);
+  const std::span<const Pair> no_longer(middle, toggled_.end());
   try {
     // Whatever takes memory comes before the events are told: what is told has been taken.
     for (const Pair pair : newly) ignored_.insert(pair);

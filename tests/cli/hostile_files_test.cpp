@@ -100,7 +100,8 @@ TEST(Output, HasThePermissionsOfItsUmaskOrOfTheOldFile) {
   };
   ASSERT_EQ(shell("umask 027; $BROADSIDE convert " + boxes + " -o " + folder.file("new.npy")).status, 0);
   EXPECT_EQ(mode_of(folder.file("new.npy")), 0640u);
-  chmod(folder.put("old.npy", "old").c_str(), 0604);
+  // But not the bits that run it as its owner.
+  chmod(folder.put("old.npy", "old").c_str(), 06604);
   ASSERT_EQ(run({"convert", boxes, "-o", folder.file("old.npy")}).status, 0);
   EXPECT_EQ(mode_of(folder.file("old.npy")), 0604u);
   EXPECT_THAT(folder.names(), ElementsAre("boxes.csv", "new.npy", "old.npy"));

@@ -116,6 +116,8 @@ TEST_F(Csv, OfDoublesSaysAsASceneHowManyCoordinatesAreRounded) {
   EXPECT_THAT(rounded.warning,
               AllOf(HasSubstr("a.csv: 3 of 8 coordinates were rounded to float"), HasSubstr("`pairs`")));
   EXPECT_EQ(file_scene(put("b.csv", "0,0,0.5,16777216\n")).warning, "");
+  EXPECT_THAT(file_scene(put("c.csv", "0,1e-60,0.1,1e60\n")).warning,
+              HasSubstr("3 of 4 coordinates were rounded to float, 2 of them to infinity or zero"));
 }
 
 TEST_F(Csv, IsRecognisedByItsFirstLineWhateverItIsCalled) {

@@ -51,6 +51,13 @@ TEST(LinearRounding, KeepsTheOrderOfAllNumbers) {
   }
 }
 
+TEST(LinearRounding, KeepsTheUnitInWhichTunablesAreGiven) {
+  for (const double distance : {1e-9, 0.3, 250.0, 1e9}) {
+    const LinearRounding rounding(5, distance);
+    EXPECT_EQ(rounding(5 + 2.5), 2.5F) << distance;
+  }
+}
+
 TEST(LinearRounding, TellsNeighboursApartAtEveryScale) {
   for (const double unit : {1.0, 1e60, 1e-60, 1e-300, 1e300}) {
     const LinearRounding rounding(5e6 * unit, unit);
