@@ -64,11 +64,13 @@ DoubleBoxes<D> even_boxes(std::size_t count, double neighbours, Random& random) 
 /// A family whose boxes `Maker::make<D>` makes.
 template <typename Maker>
 InputFamily family_of(std::string name, std::string summary, std::vector<DrawnTunable> tunables) {
-  return {.name = std::move(name),
-          .summary = std::move(summary),
-          .tunables = std::move(tunables),
-          .boxes_2d = Maker::template make<2>,
-          .boxes_3d = Maker::template make<3>};
+  InputFamily family;
+  family.name = std::move(name);
+  family.summary = std::move(summary);
+  family.tunables = std::move(tunables);
+  family.boxes_2d = Maker::template make<2>;
+  family.boxes_3d = Maker::template make<3>;
+  return family;
 }
 
 inline DrawnTunable number(std::string name, std::string summary, std::string standard, double least,

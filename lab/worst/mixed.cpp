@@ -125,7 +125,7 @@ InputFamily fooled() {
 
 InputFamily mixture() {
   std::vector<std::string> second = hard_families();
-  std::ranges::rotate(second, second.begin() + 1);
+  std::rotate(second.begin(), second.begin() + 1, second.end());
   return family_of<Mixture>("mixture", "two families in one scene",
                             {choice("first", "a family, its values drawn", hard_families()),
                              choice("second", "another", std::move(second)),

@@ -180,7 +180,7 @@ class Join {
   static constexpr std::size_t most_queries = 1024;
 
   const BoxTree<D>& tree_;
-  const JoinLimit limit_;
+  JoinLimit limit_;
   Writer pairs_;
   std::uint64_t tests_ = 0;
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
