@@ -3,7 +3,7 @@
 // When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
 // as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
 // memory", VLDB 2013). What ended in a frame that finds all pairs anew is seen from the pairs of the frame
-// before. Nobody keeps these while boxes are followed: that would cost as much again in some frames as it
+// before. These are not kept while boxes are followed: that would cost as much again in some frames as it
 // saves in one, the first that finds all anew, which finds those of the frame before as well.
 #include "auto_tracker.hpp"
 
@@ -35,7 +35,7 @@ constexpr double forgotten = 0.01;
 /// Fewer movers tell little about what one costs.
 constexpr std::size_t telling = 64;
 
-/// Below so many boxes that moved nobody needs to think.
+/// Up to this number of movers the follower is taken without estimating costs.
 constexpr std::size_t few = 8;
 
 /// Up to so many boxes comparing each that changed with all others costs less than keeping cells, or at most
@@ -106,7 +106,7 @@ void AutoTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) 
 template <int D, typename Real>
 void AutoTracker<D, Real>::try_out(std::span<const Box<D, Real>> boxes) {
   PairCounter none;
-  // Nothing has changed, so that nobody asks for the flag of a box.
+  // Nothing has changed, so the follower does not read the flags.
   Change<D, Real> change{.before = boxes, .now = boxes, .changed = {}, .flags = {}, .rebuild = true};
   this->update_with(*follower_, change, none, none);
   if (followers_.size() == 1) return;
@@ -123,7 +123,7 @@ void AutoTracker<D, Real>::try_out(std::span<const Box<D, Real>> boxes) {
   if (this->statistics()) weigh(changed.size());
 }
 
-/// Who has them keeps some more: boxes may come and go by turns.
+/// The limit is higher while boxes are few, so that boxes that come and go by turns do not change it.
 template <int D, typename Real>
 bool AutoTracker<D, Real>::are_few(std::size_t boxes) const {
   return for_few_ && way_ == Way::automatic && boxes <= (were_few_ ? most_few_boxes : few_boxes);
@@ -147,7 +147,7 @@ bool AutoTracker<D, Real>::is_incremental(const Change<D, Real>& change) {
   const bool follows = followed_ && now < finding;
   if (saving <= 0) return follows;
   // To start following costs something as well. It is done at once where the frame is no dearer for it, and
-  // else as soon as it would have paid: so nobody loses much who moves few boxes and many by turns.
+  // else as soon as it would have paid: so little is lost where few boxes and many move by turns.
   saved_ += saving;
   const double patience = best == current_ ? 1 : patience_;
   if (saved_ < patience * boxes * followers_[best].start) return follows;

@@ -20,13 +20,13 @@
 
 namespace broadside::own {
 
-/// Cost: O(n log^D n + k) whatever the boxes, where medians of samples halve them. Memory: O(n), kept from
-/// one search to the next.
+/// Cost: O((n + k) log^D n) whatever the boxes, where medians of samples halve them. Memory: O(n log n), kept
+/// from one search to the next.
 template <int D>
 class SegmentJoin {
  public:
-  /// Reports each overlapping pair once, or with `left_count` > 0 each pair of one of the first so many boxes
-  /// and one of the others. Boxes are all present.
+  /// Reports each overlapping pair once, or with `left_count` > 0 each pair of one of the first `left_count`
+  /// boxes and one of the others. Boxes are all present.
   Statistics join(std::span<const Box<D>> boxes, std::size_t left_count, PairSink& pairs);
 
  private:

@@ -1,5 +1,6 @@
 // The worst-case hunt: inputs on which a broad phase may be slow, and how slow ours are. `worst --help` lists
 // the families.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -138,8 +139,8 @@ int run(int count, char** values) {
   hunted.algorithms = catalogue.select(arguments.algorithms);
   if (arguments.algorithms == "own") hunted.algorithms = without_brute_force(hunted.algorithms);
   // auto first, since how long the others may take depends on it.
-  std::ranges::stable_partition(
-      hunted.algorithms, [](const lab::Contender& contender) { return contender.spec.name == "auto"; });
+  std::stable_partition(hunted.algorithms.begin(), hunted.algorithms.end(),
+                        [](const lab::Contender& contender) { return contender.spec.name == "auto"; });
   if (arguments.judge && hunted.algorithms.front().spec.name != "auto")
     throw std::runtime_error("--judge without auto among --algorithms; expected auto");
   hunted.references = catalogue.select("bvh,quadtree,sweep_and_prune,grid");

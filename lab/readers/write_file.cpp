@@ -135,8 +135,8 @@ std::atomic<bool> has_unfinished_path = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler must not wait");
 
 /// The file that is to stand at a path, until then beside it: without a name where the system can do that
-/// (O_TMPFILE), so that nothing is left even of a process that is killed. Else under a name that nobody can
-/// guess, and so can plant no link at.
+/// (O_TMPFILE), so that nothing is left even of a process that is killed. Else under a name that cannot be
+/// guessed, so that no link can be planted there.
 class UnfinishedFile {
  public:
   UnfinishedFile(const std::filesystem::path& target, mode_t mode)

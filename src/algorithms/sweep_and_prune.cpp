@@ -72,7 +72,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
     for (int i = D - 1; i > 0; --i) {
       if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
-    // Whoever lets a search give up wants it along one axis, or not at all.
+    // A search that may give up is asked for along one axis, or not at all.
     borders_.clear();
     if (!this->may_yield()) choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     return axes;

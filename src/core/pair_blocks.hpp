@@ -23,7 +23,7 @@ struct PairBlock {
 /// The blocks of all lists of a search. Keeps those that are given back. Thread-safe.
 class PairBlocks {
  public:
-  /// So many may be in use at once: 64 MiB.
+  /// The most blocks in use at once: 64 MiB.
   static constexpr std::size_t most = (std::size_t{64} << 20) / sizeof(PairBlock::pairs);
 
   /// An empty block; null where `most` are in use. Throws std::bad_alloc.

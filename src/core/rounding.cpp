@@ -135,7 +135,7 @@ float QuantileRounding::operator()(double value) const {
     const double above = (value - knots_.back()) * slope_;
     return static_cast<float>(std::min(largest, above + middle_));
   }
-  // The last knot that is not above the value, by halving without branches that nobody can predict.
+  // The last knot that is not above the value, by halving without branches that cannot be predicted.
   const double* knot = knots_.data();
   for (std::size_t size = knots_.size() - 1; size > 1;) {
     const std::size_t half = size / 2;

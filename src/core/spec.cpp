@@ -38,11 +38,11 @@ double most(const Tunable& tunable) {
   return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
 }
 
-/// What a tunable takes, for whoever gave it `found`.
+/// What a tunable takes, to be said where `found` was given.
 std::string range(const Tunable& tunable, double found) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
-  // A bound that only keeps a float from becoming 0 says nothing to a reader who is not near it.
+  // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
   if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
     return kind + " above 0";
   if (most(tunable) == std::numeric_limits<double>::max())

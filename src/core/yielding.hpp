@@ -12,8 +12,8 @@
 
 namespace broadside::core {
 
-/// What a finder also is whose searches can give up, so that another algorithm finds the pairs that are left.
-/// Whether one gives up, and where, depends on the boxes alone and not on the number of threads.
+/// A finder whose searches can give up derives from this too; another algorithm then finds the remaining
+/// pairs. Whether one gives up, and where, depends on the boxes alone and not on the number of threads.
 template <int D>
 class Yielding {
  public:
@@ -25,10 +25,10 @@ class Yielding {
   /// Searches give up from now on; before, none does.
   void let_yield() noexcept { may_yield_ = true; }
 
-  /// Whether the last search gave up. The pairs that it wrote are then those that are not left.
+  /// Whether the last search gave up. It has then written some of the pairs; is_left() tells the others.
   bool has_yielded() const noexcept { return has_yielded_; }
 
-  /// After a search that gave up: whether the pair of these boxes of it, which overlap, is still to be found.
+  /// After a search that gave up: whether it did not write the pair of these two boxes, which overlap.
   virtual bool is_left(const Box<D>& a, BoxId a_id, const Box<D>& b, BoxId b_id) const = 0;
 
  protected:
@@ -40,7 +40,7 @@ class Yielding {
   bool has_yielded_ = false;
 };
 
-/// Passes on those pairs that a search which gave up has left.
+/// Passes on the pairs that a search did not write before it gave up.
 template <int D>
 class LeftSink final : public FilterSink {
  public:

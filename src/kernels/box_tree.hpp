@@ -48,7 +48,7 @@ struct BoxTree {
 template <int D>
 void set_bounds(const BoxTree<D>& tree, std::size_t parent);
 
-/// The work a join may do before it gives up: so many tests, and so many more for each pair that it found.
+/// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
 /// Comparing bounds counts as comparing boxes.
 struct JoinLimit {
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
