@@ -135,12 +135,12 @@ TEST(RestoreOutOfMemory, LeavesTheWorldAsItWas) {
     World2 to_world = world_at(to);
     const auto after_was = future(was_world);
     const auto after_to = future(to_world);
-    const int thrown =
-        fail_everywhere([&] { return world_at(was); }, [&to = to](World2& world) { world.restore(to); },
-                        [&, &was = was, &to = to](World2& world, bool has_thrown) {
-                          EXPECT_EQ(world.snapshot(), has_thrown ? was : to);
-                          EXPECT_EQ(future(world), has_thrown ? after_was : after_to);
-                        });
+    const int thrown = fail_everywhere([&, &was = was] { return world_at(was); },
+                                       [&to = to](World2& world) { world.restore(to); },
+                                       [&, &was = was, &to = to](World2& world, bool has_thrown) {
+                                         EXPECT_EQ(world.snapshot(), has_thrown ? was : to);
+                                         EXPECT_EQ(future(world), has_thrown ? after_was : after_to);
+                                       });
     EXPECT_GT(thrown, 20);
   }
 }
