@@ -13,7 +13,8 @@
 
 namespace broadside::core {
 
-/// Boxes of doubles, and the floats that a finder was given for some of them. Must outlive the sinks that read them.
+/// Boxes of doubles, and the floats that a finder was given for some of them. Must outlive the sinks that
+/// read them.
 template <int D>
 struct RoundedBoxes {
   std::span<const Box<D, double>> boxes;
