@@ -30,7 +30,7 @@ constexpr std::size_t samples = 32;
 /// From here on, samples have not halved the boxes: exact medians do.
 constexpr int depth_of_medians = 48;
 
-/// From so many boxes on a radix sort is the faster one.
+/// The least number of boxes for which a radix sort is faster than a comparison sort.
 constexpr std::size_t many_to_sort = 128;
 
 }  // namespace

@@ -223,7 +223,7 @@ void write_directly(const std::filesystem::path& path, const std::filesystem::pa
   write_to(descriptor.number(), false, shown, write);
 }
 
-/// Writes the new file of `path`, which nobody may read who could not read the old one.
+/// Writes the new file of `path`. Only its owner can read it until it has the permissions of the old one.
 void write_beside(const std::filesystem::path& path, const std::filesystem::path& shown,
                   const std::function<void(std::ostream&)>& write) {
   struct stat old {};
@@ -246,7 +246,7 @@ void remove_unfinished_file() noexcept {
 bool is_read_only(const std::filesystem::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
-  // To the superuser every file may be written; one that nobody may write is meant to stay all the same.
+  // The superuser may write every file, but a file without any write permission is meant to stay.
   return (status.st_mode & 0222) == 0 || ::access(path.c_str(), W_OK) != 0;
 }
 

@@ -17,7 +17,8 @@ namespace broadside::lab {
 /// either. Where it has none, as on NFS, a file named .broadside-XXXXXXXXXXXXXXXX.part may be.
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// Whether there is a regular file at a path that this process may not write, or nobody may.
+/// Whether a regular file is at a path that this process may not write, or that has no write permission at
+/// all.
 bool is_read_only(const std::filesystem::path& path);
 
 /// Removes the file that write_file() is writing beside its place, if it is: for a signal's handler that ends

@@ -26,7 +26,8 @@ constexpr std::size_t most_beyond = 32;
 /// A box may stand in a bucket with so many others on average, before it pays to sort them all.
 constexpr std::size_t most_in_bucket = 48;
 
-/// In a cell of so many boxes, to count those that go on costs less than room for all of them.
+/// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
+/// all.
 constexpr std::size_t crowd = 1024;
 
 constexpr float largest = std::numeric_limits<float>::max();

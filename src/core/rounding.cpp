@@ -16,7 +16,7 @@ constexpr double largest_double = std::numeric_limits<double>::max();
 /// How many boxes are sampled to fit an origin and a scale.
 constexpr std::size_t most_fitted = 256;
 
-/// From so many boxes one gives its coordinates for knots: then in each interval are some ten.
+/// One box in sixteen gives its coordinates for knots, so that an interval holds about ten coordinates.
 constexpr std::size_t boxes_per_knot = 16;
 constexpr std::size_t most_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
 

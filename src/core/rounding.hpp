@@ -76,9 +76,9 @@ std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes);
 template <int D>
 std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes);
 
-/// Whether rounding makes so many pairs overlap that do not in double that another rounding pays. Where
-/// `left_count` is not 0, only pairs between the boxes before that place and the others matter. Compares a
-/// sample of about sqrt(n) boxes with each other: O(n).
+/// Whether this rounding makes enough false pairs (they overlap in float, not in double) that another pays.
+/// Where `left_count` is not 0, only pairs between the boxes before that place and the others matter.
+/// Compares a sample of about sqrt(n) boxes with each other: O(n).
 template <int D>
 bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count);

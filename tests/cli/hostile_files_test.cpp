@@ -65,7 +65,7 @@ TEST(Output, FollowsNoLinkThatIsPlantedBesideIt) {
   const std::string boxes = folder.put("boxes.csv", two_boxes);
   const std::string precious = folder.put("precious", "kept\n");
   const std::string output = folder.file("out.npy");
-  // As an attacker would who knows which process comes next: exec keeps the shell's number.
+  // An attacker may know the next process's number. Here exec keeps the shell's.
   const Ended ended = shell("ln -s " + precious + " " + output + ".$$.part; exec $BROADSIDE convert " +
                             boxes + " -o " + output);
   EXPECT_EQ(ended.status, 0) << ended.errors;

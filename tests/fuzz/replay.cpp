@@ -44,7 +44,7 @@ int main(int count, char** values) {
   const auto inputs = count == 3 ? static_cast<std::uint32_t>(std::stoul(values[2])) : 0;
   for (std::uint32_t number = 0; number < inputs; ++number) {
     const std::vector<std::uint8_t> bytes = drawn(number);
-    // Kept for whoever looks at a fault: the last one written brought the body down.
+    // Kept for finding a fault: the last one written brought the body down.
     std::cerr << '\r' << number << std::flush;
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }

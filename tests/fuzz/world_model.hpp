@@ -94,7 +94,7 @@ class WorldModel {
   }
 
   /// Updates the world and compares with the definition all that it says. `before` are the pairs of the last
-  /// update, or null where nobody knows them.
+  /// update, or null where they are not known.
   HandlePairs check_update(World<D, Real>& world, bool keeps_pairs, const HandlePairs* before) const {
     const Events events = world.update();
     const HandlePairs begun(events.begun.begin(), events.begun.end());

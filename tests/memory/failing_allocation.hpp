@@ -23,7 +23,7 @@ class FailingAllocation {
   FailingAllocation(const FailingAllocation&) = delete;
   FailingAllocation& operator=(const FailingAllocation&) = delete;
 
-  /// How many allocations have failed. 0: there were not so many, and all went well.
+  /// How many allocations have failed. 0: the run made fewer allocations than that, and none failed.
   static std::uint64_t failures() noexcept;
 };
 
