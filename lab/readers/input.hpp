@@ -60,9 +60,8 @@ class Input {
   /// The first bytes, which are not consumed.
   std::string_view beginning();
 
-  /// All bytes. A file is mapped, not copied: another process must not shorten it meanwhile. Of what is
-  /// copied, which is what comes through a pipe or is decompressed, at most half as much as the machine has
-  /// memory. Throws FileError.
+  /// All bytes. A file is mapped, not copied: another process must not shorten it meanwhile. What comes
+  /// through a pipe or is decompressed is copied, up to a quarter of the machine's memory. Throws FileError.
   std::string_view bytes();
 
   /// The bytes in sequence, from the first one; as they come, so that a pipe can be followed. What reads from

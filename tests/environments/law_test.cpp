@@ -18,6 +18,7 @@
 
 #include "environment.hpp"
 #include "tests/instruction_sets.hpp"
+#include "tests/laws/found.hpp"
 #include "tests/laws/hard_inputs.hpp"
 #include "tests/laws/harder_histories.hpp"
 #include "tests/laws/law_case.hpp"
@@ -52,19 +53,6 @@ void for_hard_inputs(const Algorithm& algorithm, Body body) {
     body(input.name, input.boxes);
     body(input.name + ", in double", real<D, double>(input.boxes));
   }
-}
-
-/// All that a search gives, in its order; between two sets if `left_count` is not 0.
-template <int D, typename Real>
-std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
-                        std::size_t left_count = 0) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  if (left_count == 0)
-    finder.find(boxes, collector);
-  else
-    finder.find_between(boxes, left_count, collector);
-  return pairs;
 }
 
 class EnvironmentLaw : public Law {};

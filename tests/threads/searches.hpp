@@ -10,6 +10,7 @@
 #include "broadside/sinks.hpp"
 
 #include "dice.hpp"
+#include "found.hpp"
 #include "law_case.hpp"
 
 namespace broadside::laws {
@@ -25,19 +26,6 @@ std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_
     }
   }
   return boxes;
-}
-
-/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
-template <int D, typename Real>
-std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
-                        std::size_t left_count = 0) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  if (left_count == 0)
-    finder.find(boxes, collector);
-  else
-    finder.find_between(boxes, left_count, collector);
-  return pairs;
 }
 
 /// Workers that share even a few boxes.

@@ -16,6 +16,7 @@
 #include "broadside/sinks.hpp"
 
 #include "core/sample.hpp"
+#include "tests/laws/found.hpp"
 
 namespace broadside {
 namespace {
@@ -91,16 +92,6 @@ constexpr std::array<std::pair<Kind, Kind>, 5> deceptions = {{{Kind::uniform, Ki
                                                               {Kind::plates, Kind::plates},
                                                               {Kind::lines, Kind::lines}}};
 
-std::vector<Pair> pairs_of(PairFinder<3>& finder, std::span<const Box3> boxes, std::size_t left_count = 0) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  if (left_count == 0)
-    finder.find(boxes, collector);
-  else
-    finder.find_between(boxes, left_count, collector);
-  return pairs;
-}
-
 TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
   constexpr std::size_t count = 20'000;
   for (const auto& [benign, other] : deceptions) {
@@ -110,7 +101,7 @@ TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
     for (const bool has_floor : {false, true}) {
       // A box that overlaps all others is one that most of its tests find.
       if (has_floor) boxes[1] = {{-2000, -2000, -2000}, {4000, 4000, 4000}};
-      const std::size_t pairs = pairs_of(*finder, boxes).size();
+      const std::size_t pairs = laws::found(*finder, boxes).size();
       EXPECT_LE(finder->statistics()->tests, 600 * count + 64 * pairs) << finder->explanation();
       EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
     }
@@ -125,16 +116,16 @@ TEST(AutoHandOver, FindsEachPairOnce) {
     const std::vector<Box3> boxes = fooling(benign, other, count, random);
     for (const std::size_t left_count : {std::size_t{0}, count / 3}) {
       const auto finder = make_finder<3>("auto");
-      const std::vector<Pair> pairs = pairs_of(*finder, boxes, left_count);
+      const std::vector<Pair> pairs = laws::found(*finder, boxes, left_count);
       EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
       std::vector<Pair> sorted = pairs;
       std::ranges::sort(sorted);
-      std::vector<Pair> expected = pairs_of(*definition, boxes, left_count);
+      std::vector<Pair> expected = laws::found(*definition, boxes, left_count);
       std::ranges::sort(expected);
       EXPECT_TRUE(sorted == expected)
           << finder->explanation() << ": " << sorted.size() << " pairs; expected " << expected.size();
       finder->set_workers({.threads = 3, .boxes_per_thread = 100});
-      EXPECT_TRUE(pairs_of(*finder, boxes, left_count) == pairs) << "the order with three threads differs";
+      EXPECT_TRUE(laws::found(*finder, boxes, left_count) == pairs) << "the order with three threads differs";
     }
   }
 }

@@ -1,0 +1,25 @@
+// The pairs of a search as a list.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "broadside/pair_finder.hpp"
+#include "broadside/sinks.hpp"
+
+namespace broadside::laws {
+
+/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
+template <int D, typename Real>
+std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+                        std::size_t left_count = 0) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  if (left_count == 0)
+    finder.find(boxes, collector);
+  else
+    finder.find_between(boxes, left_count, collector);
+  return pairs;
+}
+
+}  // namespace broadside::laws
