@@ -6,7 +6,7 @@
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
-results := docs/paper/results
+results := paper/results
 sources := find $(wildcard include src lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
@@ -20,7 +20,7 @@ paper: program ## Make docs/paper/paper.md and its figures from the committed re
 	build/release/broadside experiment --from $(results)/experiments.json --json build/paper/experiments.json \
 	  >build/paper/verdicts.txt
 	node web/build.mjs --paper build/paper
-	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json docs/paper/templates docs/paper
+	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json paper/templates docs/paper
 
 paper-results: program ## Measure what the paper quotes, on this machine: half an hour
 	mkdir -p build/paper $(results)

@@ -25,8 +25,8 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
+#include "lab/formats/write_file.hpp"
 #include "lab/measure/processor_share.hpp"
-#include "lab/readers/write_file.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::cli {

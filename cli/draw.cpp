@@ -20,7 +20,7 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/readers/write_file.hpp"
+#include "lab/formats/write_file.hpp"
 #include "lab/report/drawing.hpp"
 #include "lab/report/drawing_svg.hpp"
 #include "lab/scenes/scene.hpp"

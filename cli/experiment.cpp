@@ -15,12 +15,12 @@
 #include "cli/result_files.hpp"
 #include "cli/unusable.hpp"
 #include "cli/verbs.hpp"
-#include "lab/experiments/results.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/input.hpp"
 #include "lab/measure/processor_share.hpp"
 #include "lab/numbers.hpp"
-#include "lab/readers/format.hpp"
-#include "lab/readers/input.hpp"
 #include "lab/report/scene_drawings.hpp"
+#include "paper/experiments/results.hpp"
 
 namespace broadside::cli {
 namespace {

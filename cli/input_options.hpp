@@ -5,7 +5,7 @@
 
 #include <CLI/App.hpp>
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::cli {
 

@@ -9,7 +9,7 @@
 
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
-#include "lab/readers/write_file.hpp"
+#include "lab/formats/write_file.hpp"
 
 namespace broadside::cli {
 namespace {

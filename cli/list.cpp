@@ -13,8 +13,8 @@
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/peers/peers.hpp"
-#include "lab/readers/format.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {

@@ -23,13 +23,13 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/formats/mesh/swept_mesh.hpp"
+#include "lab/formats/write_file.hpp"
 #include "lab/join.hpp"
 #include "lab/join_within.hpp"
 #include "lab/measure/benchmark.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
-#include "lab/readers/swept_mesh.hpp"
-#include "lab/readers/write_file.hpp"
 
 namespace broadside::cli {
 namespace {

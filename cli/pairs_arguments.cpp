@@ -10,9 +10,9 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/formats/csv/text.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
-#include "lab/readers/csv_text.hpp"
 
 namespace broadside::cli {
 

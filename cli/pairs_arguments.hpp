@@ -8,7 +8,7 @@
 
 #include "cli/input_options.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/readers/swept_mesh.hpp"
+#include "lab/formats/mesh/swept_mesh.hpp"
 
 namespace broadside::cli {
 

@@ -8,7 +8,7 @@
 
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
-#include "lab/readers/write_file.hpp"
+#include "lab/formats/write_file.hpp"
 
 namespace broadside::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/convert.hpp"
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::cli {
 namespace {

@@ -13,8 +13,8 @@
 #include "broadside/executor.hpp"
 
 #include "cli/unusable.hpp"
-#include "lab/readers/input.hpp"
-#include "lab/readers/write_file.hpp"
+#include "lab/formats/input.hpp"
+#include "lab/formats/write_file.hpp"
 
 namespace broadside::cli {
 

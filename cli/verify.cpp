@@ -15,7 +15,7 @@
 #include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
-#include "lab/verify_file.hpp"
+#include "lab/verify/verify_file.hpp"
 
 namespace broadside::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::lab {
 

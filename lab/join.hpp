@@ -11,7 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "lab/catalogue.hpp"
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::lab {
 

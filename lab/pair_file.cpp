@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "lab/readers/csv_text.hpp"
-#include "lab/readers/format.hpp"
-#include "lab/readers/write_file.hpp"
+#include "lab/formats/csv/text.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/write_file.hpp"
 
 namespace broadside::lab {
 namespace {

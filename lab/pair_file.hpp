@@ -12,7 +12,7 @@
 
 #include "broadside/pair.hpp"
 
-#include "lab/readers/npy_array.hpp"
+#include "lab/formats/npy/array.hpp"
 
 namespace broadside::lab {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/readers/frames.hpp"
+#include "lab/formats/frames.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "lab/formats/frames.hpp"
 #include "lab/measure/measurement.hpp"
-#include "lab/readers/frames.hpp"
 
 namespace broadside::lab {
 

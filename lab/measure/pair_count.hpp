@@ -2,7 +2,7 @@
 // machine.
 #pragma once
 
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 
 namespace broadside::lab {
 

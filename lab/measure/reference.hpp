@@ -12,7 +12,7 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 
 namespace broadside::lab {
 

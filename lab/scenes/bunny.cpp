@@ -1,5 +1,5 @@
 // The triangles of the Stanford bunny: a surface, where boxes are many in space but few on a line through it.
-#include "lab/readers/descriptions.hpp"
+#include "lab/formats/descriptions.hpp"
 #include "lab/scenes/data_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 

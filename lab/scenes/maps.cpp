@@ -1,5 +1,5 @@
 // Real maps: neighbours that share borders, and coasts, whose lines have segments of every length.
-#include "lab/readers/descriptions.hpp"
+#include "lab/formats/descriptions.hpp"
 #include "lab/scenes/data_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 

@@ -15,7 +15,7 @@
 #include "broadside/error.hpp"
 #include "broadside/suggestion.hpp"
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"

@@ -30,17 +30,11 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The names under which the files of a folder should stand in the registry: all but those that are a part of
-/// another one, as grid_layout.cpp is of grid.cpp.
-std::vector<std::string> names_of_files(const std::string& folder, const std::string& prefix) {
-  const fs::path path = project / "src" / folder;
+/// The names under which the folders in `folder` should stand in the registry.
+std::vector<std::string> names_of_folders(const std::string& folder) {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
-    const std::string stem = entry.path().stem();
-    const bool is_part =
-        fs::exists(path / (stem.substr(0, stem.rfind('_')) + ".cpp")) && stem.find('_') != std::string::npos;
-    if (entry.path().extension() == ".cpp" && !stem.starts_with("printed") && !is_part)
-      names.push_back(prefix + stem);
+  for (const fs::directory_entry& entry : fs::directory_iterator(project / folder)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename());
   }
   return names;
 }
@@ -55,7 +49,7 @@ std::vector<std::string> registered_names(AlgorithmKind kind) {
 
 TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
   std::size_t files = 0;
-  for (const char* const floor : {"include", "src", "lab", "cli", "bench", "tests", "examples"}) {
+  for (const char* const floor : {"include", "src", "paper", "lab", "cli", "bench", "tests", "examples"}) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
       const fs::path& path = entry.path();
       if (!is_source(path)) continue;
@@ -67,15 +61,9 @@ TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
   EXPECT_GT(files, 30U) << "the project's files were not found under " << project;
 }
 
-TEST(Architecture, EveryAlgorithmsFileIsInTheRegistryAndTheOtherWayRound) {
-  std::vector<std::string> names = names_of_files("algorithms", "");
-  names.emplace_back("auto");  // which stands above the others
-  EXPECT_THAT(registered_names(AlgorithmKind::own), UnorderedElementsAreArray(names));
-}
-
-TEST(Architecture, EveryMendedListingsFileIsInTheRegistryAndTheOtherWayRound) {
-  EXPECT_THAT(registered_names(AlgorithmKind::paper),
-              UnorderedElementsAreArray(names_of_files("paper", "paper_")));
+TEST(Architecture, EveryAlgorithmsFolderIsInTheRegistryAndTheOtherWayRound) {
+  EXPECT_THAT(registered_names(AlgorithmKind::own),
+              UnorderedElementsAreArray(names_of_folders("src/algorithms")));
 }
 
 TEST(IncludeRules, SeeEveryFormOfInclude) {
@@ -89,8 +77,8 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
               IsEmpty());
   EXPECT_THAT(breaches("src/kernels/a.cpp", "#include \"broadside/pair.hpp\"\n#include \"kernels/run.hpp\""),
               IsEmpty());
-  EXPECT_THAT(breaches("src/algorithms/tree.cpp",
-                       "#include \"algorithms/tree.hpp\"\n#include \"algorithms/tree_cells.hpp\"\n"
+  EXPECT_THAT(breaches("src/algorithms/tree/tree.cpp",
+                       "#include \"algorithms/tree/tree.hpp\"\n#include \"algorithms/tree/cells.hpp\"\n"
                        "#include \"algorithms/descriptions.hpp\"\n#include \"kernels/run.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(breaches("lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
@@ -116,31 +104,33 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/core/spec.cpp", "\"kernels/run.hpp\""},
       {"src/core/spec.cpp", "\"algorithms/descriptions.hpp\""},
       {"src/kernels/sweep.cpp", "\"broadside/algorithm.hpp\""},
-      {"src/kernels/sweep.cpp", "\"core/input_check.hpp\""},
-      {"src/algorithms/grid.cpp", "\"algorithms/quadtree.hpp\""},
-      {"src/algorithms/grid.cpp", "\"paper/grid.hpp\""},
-      {"src/algorithms/grid.cpp", "\"descriptions.hpp\""},
-      {"src/paper/grid.cpp", "\"algorithms/grid.hpp\""},
-      {"src/paper/grid.cpp", "\"paper/quadtree.hpp\""},
-      {"src/registry.cpp", "\"algorithms/quadtree.hpp\""},
-      {"src/world.cpp", "\"lab/verify.hpp\""},
-      {"lab/verify.cpp", "\"core/input_check.hpp\""},
-      {"lab/verify.cpp", "\"../src/core/input_check.hpp\""},
-      {"lab/verify.cpp", "\"cli/compare.hpp\""},
-      {"lab/verify.cpp", "<box2d/box2d.h>"},
+      {"src/kernels/sweep.cpp", "\"core/parallel.hpp\""},
+      {"src/algorithms/grid/grid.cpp", "\"algorithms/quadtree/nodes.hpp\""},
+      {"src/algorithms/grid/grid.cpp", "\"paper/listings/world.hpp\""},
+      {"src/algorithms/grid/grid.cpp", "\"layout.hpp\""},
+      {"paper/listings/grid.cpp", "\"algorithms/grid/layout.hpp\""},
+      {"paper/listings/grid.cpp", "\"lab/verify/verify.hpp\""},
+      {"src/algorithms/registry.cpp", "\"algorithms/quadtree/nodes.hpp\""},
+      {"src/world/world.cpp", "\"lab/verify/verify.hpp\""},
+      {"src/world/world.cpp", "\"kernels/run.hpp\""},
+      {"src/interface/finder.cpp", "\"world/state.hpp\""},
+      {"lab/verify/verify.cpp", "\"interface/input_check.hpp\""},
+      {"lab/verify/verify.cpp", "\"../src/interface/input_check.hpp\""},
+      {"lab/verify/verify.cpp", "\"cli/compare.hpp\""},
+      {"lab/verify/verify.cpp", "<box2d/box2d.h>"},
       {"lab/scenes/scene.cpp", "<bullet/btBulletDynamicsCommon.h>"},
       {"lab/recordings/box2d.cpp", "<chipmunk/chipmunk.h>"},
       {"lab/catalogue.cpp", "<boost/geometry.hpp>"},
       {"lab/peers/geos_strtree.cpp", "<assimp/scene.h>"},
       {"lab/recordings/box2d.cpp", "<assimp/scene.h>"},
-      {"lab/readers/mesh.cpp", "<box2d/box2d.h>"},
-      {"cli/main.cpp", "\"core/input_check.hpp\""},
+      {"lab/formats/mesh/mesh.cpp", "<box2d/box2d.h>"},
+      {"cli/main.cpp", "\"interface/input_check.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"lab/catalogue.hpp\""},
       {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},
       {"examples/record_box2d/main.cpp", "<broadside/broadside.hpp>"},
-      {"tests/unit/cli_test.cpp", "\"cli/compare.hpp\""},
-      {"tests/unit/engine_test.cpp", "<box2d/box2d.h>"},
+      {"tests/unit/lab/cli_test.cpp", "\"cli/compare.hpp\""},
+      {"tests/unit/lab/engine_test.cpp", "<box2d/box2d.h>"},
       {"tests/laws/oracle_test.cpp", "<embree3/rtcore.h>"},
   };
   for (const auto& [path, include] : wrong) {

@@ -18,30 +18,38 @@ struct Rule {
 /// The first rule whose folder a path lies in is the one that counts.
 const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
-  const std::string library = standard + R"(|"broadside/[a-z_]+\.hpp")";
-  const std::string inner = library + R"(|"(core|kernels)/[a-z_]+\.hpp")";
-  const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
+  const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
+  const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
+  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp")";
+  const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/descriptions\.hpp")";
+  const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
+                          R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
-      {"src/core/float_environment", library + R"(|"core/[a-z_]+\.hpp"|<[a-z]+intrin\.h>)"},
-      {"src/core/", library + R"(|"core/[a-z_]+\.hpp")"},
+      {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
+      {"src/core/", core},
+      {"src/interface/", interface},
       {"src/kernels/",
        standard +
            R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"src/algorithms/", inner + R"(|"algorithms/descriptions\.hpp")"},
-      {"src/paper/", inner + R"(|"paper/(descriptions|shared/[a-z_0-9]+)\.hpp")"},
-      {"src/double_follower", inner + R"(|"(double_follower|algorithms/hierarchical_grid_tracker)\.hpp")"},
-      {"src/segment_join", inner + R"(|"segment_join\.hpp")"},
-      {"src/", library + R"(|"core/[a-z_]+\.hpp"|"(algorithms|paper)/descriptions\.hpp")" +
-                   R"(|"(auto_tracker|double_follower|segment_join|world_state)\.hpp")"},
+      {"src/algorithms/registry", interface + R"(|"(algorithms|paper/listings)/descriptions\.hpp")" +
+                                      R"(|"doubles/double_finder\.hpp")"},
+      {"src/algorithms/auto/", algorithm + R"(|"algorithms/auto/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
+      {"src/algorithms/", algorithm},
+      {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")" +
+                           R"(|"algorithms/hierarchical_grid/tracker\.hpp")"},
+      {"src/world/", interface + R"(|"world/[a-z_]+\.hpp")"},
+      {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
+      {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"interface/outline_text\.hpp")"},
+      {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
-      {"lab/readers/", lab + "|<assimp/.*>"},
+      {"lab/formats/", lab + "|<assimp/.*>"},
       {"lab/", lab},
-      {"cli/", lab + R"(|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/motion/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/worst/", lab + R"(|"bench/worst/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/", lab + R"(|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
@@ -56,16 +64,12 @@ const std::vector<Rule>& rules() {
   return list;
 }
 
-/// Whether `include` is a header of the file's own: one folder, and the name of one begins that of the other
-/// ("algorithms/grid_layout.hpp" from grid.cpp), or they differ in the last word (from grid_sweep.cpp).
-bool is_own_header(const std::filesystem::path& path, std::string_view include) {
+/// Whether `include` names a header in the file's own folder, by its path from `src/` or the project's root.
+bool is_in_own_folder(const std::filesystem::path& path, std::string_view include) {
   const std::filesystem::path header(include.substr(1, include.size() - 2));
-  if (path.parent_path().filename() != header.parent_path()) return false;
-  const std::string file = path.stem();
-  const std::string own = header.stem();
-  const auto family = [](const std::string& name) { return name.substr(0, name.rfind('_')); };
-  return file == own || file.starts_with(own + "_") || own.starts_with(file + "_") ||
-         (family(file) != file && family(own) != own && family(file) == family(own));
+  const std::string folder = path.parent_path();
+  return !header.parent_path().empty() &&
+         (folder == header.parent_path() || folder == "src" / header.parent_path());
 }
 
 }  // namespace
@@ -86,7 +90,7 @@ std::vector<std::string> breaches(std::string_view path, std::string_view text) 
             " lies in no folder with a rule; expected one in tests/architecture/includes.cpp"};
   std::vector<std::string> found;
   for (const std::string& include : includes_of(text)) {
-    if (std::regex_match(include, std::regex(rule->allowed)) || is_own_header(path, include)) continue;
+    if (std::regex_match(include, std::regex(rule->allowed)) || is_in_own_folder(path, include)) continue;
     found.push_back(std::string(path) + " includes " + include + ", which files in " +
                     std::string(rule->folder) + " may not");
   }

@@ -14,7 +14,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/version.hpp"
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/scenes/scene.hpp"
 #include "process.hpp"
 

@@ -1,6 +1,6 @@
 // broadside experiment: its list, its findings, its JSON, what it refuses, and that an interruption leaves
 // nothing behind.
-#include "lab/experiments/experiment.hpp"
+#include "paper/experiments/experiment.hpp"
 
 #include <chrono>
 #include <csignal>

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lab/readers/trace.hpp"
+#include "lab/formats/trace/trace.hpp"
 
 namespace broadside::lab {
 

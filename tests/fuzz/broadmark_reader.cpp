@@ -1,7 +1,7 @@
 // Fuzzes the reader of Broadmark's files.
 #include <cstdint>
 
-#include "lab/readers/input.hpp"
+#include "lab/formats/input.hpp"
 #include "tests/fuzz/format_body.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -8,8 +8,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "lab/readers/format.hpp"
-#include "lab/readers/input.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/input.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -19,12 +19,12 @@
 #include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"
 
-#include "core/byte_stream.hpp"
-#include "core/definition.hpp"
+#include "debug/definition.hpp"
 #include "history_bytes.hpp"
-#include "lab/readers/format.hpp"
-#include "lab/readers/trace.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/trace/trace.hpp"
 #include "sealed_trace.hpp"
+#include "world/byte_stream.hpp"
 
 namespace broadside::fuzz {
 namespace {

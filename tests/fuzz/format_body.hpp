@@ -15,7 +15,7 @@
 
 #include "broadside/box.hpp"
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::lab {
 

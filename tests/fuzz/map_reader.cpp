@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "lab/readers/descriptions.hpp"
+#include "lab/formats/descriptions.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "lab/readers/format.hpp"
-#include "lab/readers/mesh_elements.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/mesh/elements.hpp"
 
 namespace broadside::lab::mesh_fuzzing {
 

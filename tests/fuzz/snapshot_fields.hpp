@@ -12,9 +12,9 @@
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 
-#include "core/byte_stream.hpp"
-#include "core/snapshot_format.hpp"
-#include "core/snapshot_parts.hpp"
+#include "world/byte_stream.hpp"
+#include "world/snapshot_format.hpp"
+#include "world/snapshot_parts.hpp"
 
 namespace broadside::fuzz {
 

@@ -9,8 +9,8 @@
 
 #include "broadside/recorder.hpp"
 
-#include "lab/readers/format.hpp"
-#include "lab/readers/trace.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/trace/trace.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
 
 namespace broadside::lab {

@@ -11,7 +11,7 @@
 #include "broadside/sinks.hpp"
 
 #include "dice.hpp"
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 
 namespace broadside::laws {

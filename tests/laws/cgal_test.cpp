@@ -9,7 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/scenes/scene.hpp"
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 
 namespace broadside::laws {

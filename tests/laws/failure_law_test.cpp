@@ -14,7 +14,7 @@
 
 #include "dice.hpp"
 #include "histories.hpp"
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 
 namespace broadside::laws {

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "dice.hpp"
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -11,7 +11,7 @@
 #include "filtered_frames.hpp"
 #include "generators.hpp"
 #include "hard_inputs.hpp"
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 #include "strained_specs.hpp"
 

@@ -9,7 +9,7 @@
 #include "broadside/history.hpp"
 #include "broadside/minimise.hpp"
 
-#include "lab/verify.hpp"
+#include "lab/verify/verify.hpp"
 
 namespace broadside::laws {
 namespace {

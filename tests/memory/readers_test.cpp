@@ -19,7 +19,7 @@
 #include "broadside/recorder.hpp"
 
 #include "failing_allocation.hpp"
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::laws {
 namespace {

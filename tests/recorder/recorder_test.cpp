@@ -14,7 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/unit/files.hpp"
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "lab/readers/format.hpp"
+#include "lab/formats/format.hpp"
 
 namespace broadside::lab {
 

@@ -18,7 +18,7 @@ export interface Sources {
 /** Paths under docs/paper/ and what stands there. */
 export type Document = Map<string, string>;
 
-const notice = "<!-- Made by `make paper` from docs/paper/templates/ and docs/paper/results/; edit those. -->\n\n";
+const notice = "<!-- Made by `make paper` from paper/templates/ and paper/results/; edit those. -->\n\n";
 const width = 760;
 
 /** The same sources give the same bytes everywhere. Throws Problem. */

@@ -9,7 +9,7 @@ import { project } from "./paper_fixture.ts";
 
 const chapters = ["00_abstract", "07_testing", "08_conclusion", "09_threats", "10_reproduce"];
 
-const file_of = (chapter: string) => `docs/paper/templates/${chapter}.md`;
+const file_of = (chapter: string) => `paper/templates/${chapter}.md`;
 const text_of = (chapter: string) => readFileSync(join(project, file_of(chapter)), "utf8");
 
 for (const chapter of chapters) {

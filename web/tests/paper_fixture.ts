@@ -14,7 +14,7 @@ function folder_with(path: string, from: string): string {
 }
 
 /** The project's folder; tests run in it or below. */
-export const project = folder_with("docs/paper/templates", cwd());
+export const project = folder_with("paper/templates", cwd());
 
 const machine = { cpu: "A CPU", cores: 2, memory_bytes: 4e9, os: "An OS" };
 const build = { version: "0.1.0", revision: "abc", compiler: "GNU 12", type: "Release", flags: "-O3" };

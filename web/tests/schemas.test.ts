@@ -64,7 +64,7 @@ test("experiments fit their schema, those of before it was noted how busy the ma
   const results = experiments();
   assert.equal(faultOfExperiments(results), "");
   assert.equal(faultOfExperiments({ ...results, processor_share: 0.5, busy: true }), "");
-  assert.equal(faultOfExperiments(readJson(join(project, "docs/paper/results/experiments.json"))), "");
+  assert.equal(faultOfExperiments(readJson(join(project, "paper/results/experiments.json"))), "");
   assert.match(faultOfExperiments({ ...results, busy: true }), /must have property processor_share/);
   assert.match(faultOfExperiments({ ...results, experiments: [] }), /must NOT have fewer than 1 items/);
   assert.match(faultOfExperiments({ ...results, schema: "broadside.experiments/2" }), /schema must be equal to constant/);

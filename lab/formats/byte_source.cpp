@@ -1,0 +1,72 @@
+// Bytes of a descriptor, as they come or decompressed.
+#include "lab/formats/byte_source.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "lab/formats/format.hpp"
+
+namespace broadside::lab {
+
+ByteSource::ByteSource(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+
+ByteSource::~ByteSource() {
+  if (descriptor_ != STDIN_FILENO) ::close(descriptor_);
+}
+
+bool ByteSource::is_compressed() {
+  begin();
+  return decompressor_ != nullptr;
+}
+
+std::size_t ByteSource::read(char* to, std::size_t most) {
+  begin();
+  if (decompressor_ == nullptr) {
+    if (rest_.empty()) return read_some(to, most);
+    const std::size_t count = std::min(rest_.size(), most);
+    std::memcpy(to, rest_.data(), count);
+    rest_.remove_prefix(count);
+    return count;
+  }
+  while (true) {
+    if (rest_.empty() && !has_ended_) fill();
+    const auto [taken, given] = decompressor_->decompress(rest_, {to, most});
+    rest_.remove_prefix(taken);
+    if (given > 0) return given;
+    if (!rest_.empty() || !has_ended_) continue;
+    if (!decompressor_->is_whole())
+      throw FileError(fmt::format("{}: the compressed file is cut off; expected all of it", name_));
+    return 0;
+  }
+}
+
+void ByteSource::begin() {
+  if (std::exchange(has_begun_, true)) return;
+  buffer_.resize(std::size_t{1} << 16);
+  while (rest_.size() < compression_magic_bytes && !has_ended_) fill();
+  decompressor_ = make_decompressor(rest_, name_);
+}
+
+/// Reads into the buffer, behind what is there.
+void ByteSource::fill() {
+  if (!rest_.empty()) std::memmove(buffer_.data(), rest_.data(), rest_.size());
+  const std::size_t got = read_some(buffer_.data() + rest_.size(), buffer_.size() - rest_.size());
+  rest_ = {buffer_.data(), rest_.size() + got};
+  has_ended_ = got == 0;
+}
+
+std::size_t ByteSource::read_some(char* to, std::size_t most) {
+  ssize_t got = 0;
+  do {
+    got = ::read(descriptor_, to, most);
+  } while (got < 0 && errno == EINTR);
+  if (got < 0) throw FileError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
+  return static_cast<std::size_t>(got);
+}
+
+}  // namespace broadside::lab

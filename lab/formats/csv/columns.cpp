@@ -1,0 +1,291 @@
+// What the columns of a table mean together.
+#include "lab/formats/csv/columns.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lab/formats/csv/names.hpp"
+#include "lab/formats/shown.hpp"
+
+namespace broadside::lab::readers {
+namespace {
+
+constexpr std::string_view axes = "xyz";
+
+bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
+  return std::ranges::find(list, plain(name)) != list.end();
+}
+
+bool is_frame(std::string_view name) { return plain(name) == "frame"; }
+
+bool is_box(std::string_view name) { return plain(name) == "box"; }
+
+bool is_radius(std::string_view name) { return plain(name) == "radius" || plain(name) == "r"; }
+
+/// Names for what tells the boxes of frames apart, the first one there is used.
+constexpr auto track_names =
+    std::to_array<std::string_view>({"trackid", "track", "objectid", "object", "id"});
+
+/// Names of bounds in one field before those of geometries, which have to be looked through.
+constexpr auto geometry_names =
+    std::to_array<std::string_view>({"bbox", "bounds", "envelope", "wkt", "geometry", "geom", "thegeom"});
+
+constexpr int none = -1;
+
+/// For each role of an axis, the column that has it.
+using Found = std::array<int, roles>;
+
+/// The two columns that give the bounds on an axis.
+struct Choice {
+  BoundsForm form;
+  int first;
+  int second;
+};
+
+int of(const Found& found, Role role) { return found[static_cast<std::size_t>(role)]; }
+
+/// What is wrong if numbers count three points or more, whose first two are no bounds; nothing otherwise.
+std::string points_of(const Found& found, std::span<const std::string_view> names) {
+  std::string list;
+  int count = 0;
+  for (const Role role : {Role::zeroth, Role::first, Role::second, Role::third}) {
+    if (of(found, role) == none) continue;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ",
+                        shown(names[static_cast<std::size_t>(of(found, role))]));
+    ++count;
+  }
+  return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);
+}
+
+/// On a screen y grows downwards: a top that comes with a height and nothing else is where the box begins.
+void read_as_screen(Found& y, std::span<const std::string_view> names) {
+  const int top = of(y, Role::max);
+  if (top == none || !plain(names[static_cast<std::size_t>(top)]).ends_with("top") ||
+      of(y, Role::size) == none)
+    return;
+  for (const Role role : {Role::min, Role::centre}) {
+    if (of(y, role) != none) return;
+  }
+  std::swap(y[static_cast<std::size_t>(Role::min)], y[static_cast<std::size_t>(Role::max)]);
+}
+
+std::optional<Choice> choose(const Found& found, int radius) {
+  struct Way {
+    BoundsForm form;
+    Role first;
+    Role second;
+  };
+  static constexpr auto ways = std::to_array<Way>({
+      {BoundsForm::min_max, Role::min, Role::max},
+      {BoundsForm::min_max, Role::zeroth, Role::first},
+      {BoundsForm::min_max, Role::first, Role::second},
+      {BoundsForm::centre_half_size, Role::centre, Role::half_size},
+      {BoundsForm::centre_half_size, Role::position, Role::half_size},
+      {BoundsForm::centre_size, Role::centre, Role::size},
+      {BoundsForm::min_size, Role::min, Role::size},
+  });
+  for (const Way& way : ways) {
+    if (of(found, way.first) != none && of(found, way.second) != none)
+      return Choice{way.form, of(found, way.first), of(found, way.second)};
+  }
+  for (const Role role : {Role::centre, Role::position, Role::geographic}) {
+    if (radius != none && of(found, role) != none && of(found, Role::size) == none)
+      return Choice{BoundsForm::centre_radius, of(found, role), radius};
+  }
+  return std::nullopt;
+}
+
+/// The column of the only thing that is known on an axis, a position; `none` if more is known or less.
+int point_of(const Found& found) {
+  const int column =
+      of(found, Role::position) != none ? of(found, Role::position) : of(found, Role::geographic);
+  const auto known = std::ranges::count_if(found, [](int other) { return other != none; });
+  return known == 1 ? column : none;
+}
+
+/// The radius, if it is one: beside g and b, r is a colour.
+int radius_of(std::span<const std::string_view> names) {
+  const auto find = [names](std::string_view wanted) {
+    const auto name = std::ranges::find(names, wanted, [](std::string_view text) { return plain(text); });
+    return name == names.end() ? none : static_cast<int>(name - names.begin());
+  };
+  if (const int radius = find("radius"); radius != none) return radius;
+  return find("g") != none && find("b") != none ? none : find("r");
+}
+
+/// The first column of one of these names, the names in order.
+int first_of(std::span<const std::string_view> names, std::span<const std::string_view> wanted) {
+  for (const std::string_view want : wanted) {
+    const auto name = std::ranges::find(names, want, [](std::string_view text) { return plain(text); });
+    if (name != names.end()) return static_cast<int>(name - names.begin());
+  }
+  return none;
+}
+
+/// What is wrong with an axis without bounds; empty for a z axis that need not have any.
+std::string problem_of(const Found& found, std::size_t axis, std::span<const std::string_view> names,
+                       bool is_computed) {
+  const int position = of(found, Role::position);
+  const int size = of(found, Role::size);
+  // Beside bounds on the other two, z and depth need not be those of a box.
+  if (position != none && size != none && (axis < 2 || is_computed))
+    return fmt::format("column {} may be a minimum or a centre",
+                       shown(names[static_cast<std::size_t>(position)]));
+  // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
+  const auto known = std::ranges::find_if(found, [&](int column) {
+    return column != none && column != position && column != of(found, Role::geographic) &&
+           column != of(found, Role::third) && (column != size || axis < 2);
+  });
+  if (known != found.end())
+    return fmt::format("column {} alone does not give bounds on the {} axis",
+                       shown(names[static_cast<std::size_t>(*known)]), axes[axis]);
+  return axis < 2 ? fmt::format("no columns that give bounds on the {} axis", axes[axis]) : "";
+}
+
+/// The columns of boxes without extent, where there are no others; false if there are no such columns.
+bool resolve_points(const std::array<Found, 3>& found, CsvColumns& columns) {
+  const int x = point_of(found[0]);
+  const int y = point_of(found[1]);
+  const int z = point_of(found[2]);
+  if (x == none || y == none) return false;
+  columns.forms.fill(BoundsForm::point);
+  columns.places[static_cast<std::size_t>(x)] = CsvColumns::first;
+  columns.places[static_cast<std::size_t>(y)] = CsvColumns::first + 1;
+  if (z != none) {
+    columns.places[static_cast<std::size_t>(z)] = CsvColumns::first + 2;
+    columns.dimension = 3;
+  }
+  return true;
+}
+
+/// Finds the columns that boxes are made of. Returns what is wrong with them.
+std::string resolve_bounds(std::span<const std::string_view> names, const std::array<Found, 3>& found,
+                           CsvColumns& columns) {
+  const CsvColumns before = columns;
+  const auto place = [&columns](int column, int where) {
+    columns.places[static_cast<std::size_t>(column)] = where;
+  };
+  const int radius = radius_of(names);
+  std::string problem;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Found& of_axis = found[axis];
+    if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
+      std::string points = points_of(of_axis, names);
+      if (!points.empty()) return points;
+    }
+    if (const std::optional<Choice> choice = choose(of_axis, radius)) {
+      const int of_form = static_cast<int>(axis);
+      columns.forms[axis] = choice->form;
+      columns.dimension = std::max(2, of_form + 1);
+      place(choice->first, CsvColumns::first + of_form);
+      place(choice->second,
+            choice->form == BoundsForm::centre_radius ? CsvColumns::radius : CsvColumns::second + of_form);
+    } else if (problem.empty()) {
+      problem = problem_of(of_axis, axis, names, columns.is_computed());
+    }
+  }
+  if (problem.empty()) return {};
+  columns = before;
+  if (const int geometry = first_of(names, geometry_names); geometry != none) {
+    columns.has_geometry = true;
+    place(geometry, CsvColumns::geometry);
+    return {};
+  }
+  if (!resolve_points(found, columns)) return problem;
+  // A z that is not alone says nothing certain of a point.
+  return point_of(found[2]) == none ? problem_of(found[2], 2, names, true) : "";
+}
+
+}  // namespace
+
+bool CsvColumns::is_computed() const noexcept {
+  return std::any_of(forms.begin(), forms.begin() + dimension, [](BoundsForm form) {
+    return form != BoundsForm::min_max && form != BoundsForm::point;
+  });
+}
+
+unsigned CsvColumns::needed() const noexcept {
+  if (has_geometry) return 1U << geometry;
+  unsigned bits = 0;
+  for (int axis = 0; axis < dimension; ++axis) {
+    bits |= 1U << (first + axis);
+    const BoundsForm form = forms[static_cast<std::size_t>(axis)];
+    if (form != BoundsForm::point) bits |= 1U << (form == BoundsForm::centre_radius ? radius : second + axis);
+  }
+  return bits;
+}
+
+std::string CsvColumns::wanted() const {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (places[i] != ignored) list += (list.empty() ? "" : ",") + names[i];
+  }
+  return list;
+}
+
+bool is_column_name(std::string_view name) {
+  return is_frame(name) || is_box(name) || is_radius(name) || meaning_of(name);
+}
+
+bool is_geometry_name(std::string_view name) { return is_one_of(name, geometry_names); }
+
+std::string resolve(std::span<const std::string_view> names, CsvColumns& columns) {
+  columns = {};
+  columns.names.assign(names.begin(), names.end());
+  columns.places.assign(names.size(), CsvColumns::ignored);
+  columns.has_frames = std::ranges::any_of(names, is_frame);
+
+  std::array<Found, 3> found;
+  for (Found& of_axis : found) of_axis.fill(none);
+  int frame = none;
+  int box = none;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    int* column = nullptr;
+    if (const std::optional<Meaning> meaning = meaning_of(names[i]))
+      column = &found[static_cast<std::size_t>(meaning->axis)][static_cast<std::size_t>(meaning->role)];
+    else if (is_frame(names[i]))
+      column = &frame;
+    else if (columns.has_frames && is_box(names[i]))
+      column = &box;
+    else
+      continue;
+    if (*column != none)
+      return fmt::format("columns {} and {} mean the same", shown(names[static_cast<std::size_t>(*column)]),
+                         shown(names[i]));
+    *column = static_cast<int>(i);
+  }
+
+  read_as_screen(found[1], names);
+
+  const auto place = [&columns](int column, int where) {
+    columns.places[static_cast<std::size_t>(column)] = where;
+  };
+  if (columns.has_frames) {
+    const int track = box == none ? first_of(names, track_names) : none;
+    if (box == none && track == none)
+      return fmt::format("column {} without a column 'box' or 'id'",
+                         shown(names[static_cast<std::size_t>(frame)]));
+    columns.has_tracks = track != none;
+    place(frame, CsvColumns::frame);
+    if (columns.has_tracks)
+      place(track, CsvColumns::track);
+    else
+      place(box, CsvColumns::box);
+  }
+  return resolve_bounds(names, found, columns);
+}
+
+std::string positional(std::size_t count, CsvColumns& columns) {
+  static constexpr std::array<std::string_view, 4> flat = {"min_x", "min_y", "max_x", "max_y"};
+  static constexpr std::array<std::string_view, 6> solid = {"min_x", "min_y", "min_z",
+                                                            "max_x", "max_y", "max_z"};
+  if (count == flat.size()) return resolve(flat, columns);
+  if (count == solid.size()) return resolve(solid, columns);
+  return fmt::format("{} column{} of numbers and no names", count, count == 1 ? "" : "s");
+}
+
+}  // namespace broadside::lab::readers

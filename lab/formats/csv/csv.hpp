@@ -1,0 +1,35 @@
+// The parts of the reader and writer of tables.
+#pragma once
+
+#include <memory>
+#include <ostream>
+
+#include "lab/formats/csv/columns.hpp"
+#include "lab/formats/csv/text.hpp"
+#include "lab/formats/frames.hpp"
+#include "lab/formats/input.hpp"
+#include "lab/formats/quarantine.hpp"
+
+namespace broadside::lab::readers {
+
+/// A table whose columns are known.
+struct CsvTable {
+  std::unique_ptr<Input> input;
+  CsvLines lines;  ///< from the first line that holds numbers
+  Separator separator;
+  CsvColumns columns;
+  std::shared_ptr<BoxLabels> labels;
+  bool needs_ids;  ///< a present box without an id is refused
+  Quarantine quarantine;
+};
+
+/// The table's boxes: rounded to the nearest float or double, once, where the table has their bounds; where
+/// they have to be computed, in double. Memory: a frame's boxes.
+AnyFrameReader read_csv(CsvTable table, Precision precision);
+
+/// Begins a table in a stream. One frame becomes plain columns of bounds; with more, the columns frame and
+/// box are before them. Numbers are as short as makes a double of them that has the same value, floats too:
+/// so the boxes are the same in whichever precision they are read.
+AnyFrameWriter write_csv(std::ostream& stream, int dimension, Precision precision);
+
+}  // namespace broadside::lab::readers

@@ -1,0 +1,16 @@
+// The descriptions in which the files of this folder end, for the list of formats.
+#pragma once
+
+#include "lab/formats/format.hpp"
+
+namespace broadside::lab::readers {
+
+Format trace();
+Format csv();
+Format npy();
+Format npz();
+Format broadmark();
+Format map();
+Format mesh();
+
+}  // namespace broadside::lab::readers

@@ -1,0 +1,129 @@
+// The formats of files that people have, and the one list of them: from a file to frames of boxes and back.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/formats/frames.hpp"
+#include "lab/formats/input.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::lab {
+
+/// A file that cannot be read or written. The text names it, the place in it where there is one, what was
+/// found and what was expected.
+class FileError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// How a file is to be read; what is left empty, the file and its format decide.
+struct ReadOptions {
+  std::string format{};   ///< the name of a format; empty: told by the file's content and name
+  std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
+  std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
+  std::string layer{};    ///< of a map with several layers, the one to read (empty: all), or an array of .npz
+  std::string ids{};      ///< a table's column or a map's property of ids, as --ids; empty: not read
+  bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
+  int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
+  std::optional<Precision> precision{};
+  /// Where it is there, invalid boxes are left out, as absent ones where the format can hold those, and the
+  /// first are told one by one; otherwise a file with one is refused.
+  std::function<void(std::string_view why)> say_invalid{};
+  Progress progress{};
+};
+
+/// What the boxes of a file can be: "triangles", say.
+struct Part {
+  std::string name;
+  std::string summary;  ///< one line
+};
+
+/// A file format, described.
+struct Format {
+  std::string name;
+  std::string summary;                  ///< one line
+  std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
+  std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
+  bool has_columns = false;             ///< whether ReadOptions::columns means something
+  bool has_layers = false;              ///< whether ReadOptions::layer means something
+  bool can_skip = false;                ///< whether ReadOptions::say_invalid means something
+  bool has_ids = false;                 ///< whether ReadOptions::ids means something
+  bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
+
+  /// Whether a file that begins with these bytes (Input::beginning_bytes of them) and has this extension is
+  /// of this format.
+  std::function<bool(std::string_view bytes, std::string_view extension)> recognises;
+
+  /// Opens an input. Of the options, those that the format has; dimension and precision only where it has a
+  /// choice: the caller converts. Throws FileError. Memory for what the file holds, not for what its header
+  /// claims.
+  std::function<AnyFrameReader(std::unique_ptr<Input>, const ReadOptions&)> open{};
+
+  /// Begins a file of boxes of this dimension and precision in a stream, which outlives the writer and is
+  /// checked by the caller; empty where the format is only read. Throws FileError if the format cannot hold
+  /// such boxes; the caller adds the file's name.
+  std::function<AnyFrameWriter(std::ostream&, int dimension, Precision precision)> create{};
+
+  bool has_doubles = true;  ///< whether create() takes doubles, in a format that can be written
+  bool keeps_ids = false;   ///< whether what it makes writes the boxes' ids
+
+  std::string missing{};  ///< what is not there and how to get it, where files cannot be read for that reason
+};
+
+/// All formats, in the order in which they are asked whether a file is theirs. Thread-safe.
+std::span<const Format> formats();
+
+/// A file opened for reading, or a scene's boxes in its stead.
+struct BoxFile {
+  std::string name;      ///< what to call it
+  const Format* format;  ///< the one it is in; null for a scene
+  AnyFrameReader frames;
+};
+
+/// Opens a file in whatever format it is, or standard input where the path is "-". Throws FileError, naming
+/// the formats there are if it is in none, and if an option means nothing in its format.
+BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// What a file holds, as the lab's scenes need it: floats, in 2D, in 3D, or in both where 3D is made to be
+/// seen flat.
+struct FileContent {
+  std::optional<History<2>> in_2d;
+  std::optional<History<3>> in_3d;
+  /// What the reader had to leave out of a damaged file, and where, and how many coordinates were rounded to
+  /// float; empty where there is nothing to say.
+  std::string warning{};
+};
+
+/// Reads a file whole. Throws as open_file and its reader do.
+FileContent read_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The format in which a file is written: that of this name or extension, or, where `name` is empty, that of
+/// the path's extension. Throws FileError naming those that can be written.
+const Format& writable_format(const std::filesystem::path& path, std::string_view name = {});
+
+/// Writes a file of frames, or to standard output where the path is "-". The file is whole or not there, and
+/// an old one stays until the new one is whole. Throws FileError. Memory: that of a frame, where the format
+/// does not need to know all before it writes the first.
+void write_frames(AnyFrameReader frames, const std::filesystem::path& path, const Format& format);
+
+/// Writes a history in the format that the path's extension says. Otherwise as write_frames.
+template <int D, typename Real>
+void write_scene(const History<D, Real>& history, const std::filesystem::path& path);
+
+/// Whether `text` is meant as a file's path: it names a file, has a slash or the extension of a format, or is
+/// "-", which stands for standard input.
+bool is_path(std::string_view text);
+
+/// A file as a scene of its own. Boxes that do not move in the file can be set moving; others move as they do
+/// there, for as many frames as the file has. Throws FileError.
+Scene file_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace broadside::lab

@@ -1,0 +1,205 @@
+// The bytes that a reader reads: mapped, kept, or in pieces through a buffer.
+#include "lab/formats/input.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "lab/formats/byte_source.hpp"
+#include "lab/formats/format.hpp"
+
+namespace broadside::lab {
+namespace {
+
+constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
+
+/// How much is copied of what cannot be mapped. Nothing useful comes from a device but a terminal, and what
+/// the others give, such as /dev/zero, has no end. A pipe may have none either; its readers need memory as
+/// well.
+std::uint64_t most_copied_bytes(bool is_device) {
+  constexpr std::uint64_t of_a_device = std::uint64_t{1} << 20;
+  if (is_device) return of_a_device;
+  const auto pages = ::sysconf(_SC_PHYS_PAGES);
+  const auto page_bytes = ::sysconf(_SC_PAGE_SIZE);
+  if (pages <= 0 || page_bytes <= 0) return std::uint64_t{1} << 32;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 4;
+}
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace
+
+std::string compression_extension_of(const std::filesystem::path& path) {
+  std::string extension = lower(path.extension().string());
+  return extension == ".gz" || extension == ".zst" ? extension : "";
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  const bool is_compressed = !compression_extension_of(path).empty();
+  return lower((is_compressed ? path.stem() : path).extension().string());
+}
+
+/// What stands between a source of bytes, or bytes in memory, and a stream.
+class Input::Buffer final : public std::streambuf {
+ public:
+  explicit Buffer(ByteSource& source) : source_(&source), bytes_(std::size_t{1} << 16) {
+    setg(bytes_.data(), bytes_.data(), bytes_.data());
+  }
+
+  explicit Buffer(std::string_view bytes) {
+    // A stream only reads from there.
+    char* const begin = const_cast<char*>(bytes.data());
+    setg(begin, begin, begin + bytes.size());
+  }
+
+  /// The bytes that were read and not taken, at least `count` of them if there are as many. Only before the
+  /// first is taken.
+  std::string_view peek(std::size_t count) {
+    while (source_ != nullptr && static_cast<std::size_t>(egptr() - gptr()) < count) {
+      const std::size_t got =
+          source_->read(egptr(), bytes_.size() - static_cast<std::size_t>(egptr() - eback()));
+      if (got == 0) break;
+      setg(eback(), gptr(), egptr() + got);
+    }
+    return {gptr(), egptr()};
+  }
+
+  std::function<void(std::size_t)> on_read;
+
+ protected:
+  int_type underflow() override {
+    if (source_ == nullptr) return traits_type::eof();
+    const std::size_t got = source_->read(bytes_.data(), bytes_.size());
+    setg(bytes_.data(), bytes_.data(), bytes_.data() + got);
+    if (on_read) on_read(got);
+    return got == 0 ? traits_type::eof() : traits_type::to_int_type(*gptr());
+  }
+
+ private:
+  ByteSource* source_ = nullptr;
+  std::vector<char> bytes_;
+};
+
+Input::Input(const std::filesystem::path& path, Progress progress)
+    : name_(path == "-" ? "standard input" : path.string()), progress_(std::move(progress)) {
+  const int descriptor = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) refuse();
+  source_ = std::make_unique<ByteSource>(descriptor, name_);
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) refuse();
+  if (S_ISDIR(status.st_mode)) {
+    errno = EISDIR;
+    refuse();
+  }
+  is_device_ = S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0;
+  // Standard input may begin in the middle of a file.
+  is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor, 0, SEEK_CUR) == 0);
+  is_regular_ = is_regular_ && !source_->is_compressed();
+  if (is_regular_) {
+    if (path != "-") path_ = path;
+    size_ = static_cast<std::uint64_t>(status.st_size);
+  }
+  if (progress_) next_report_ = bytes_a_report;
+  buffer_ = std::make_unique<Buffer>(*source_);
+}
+
+Input::Input(std::string name, std::string_view bytes)
+    : name_(std::move(name)),
+      size_(bytes.size()),
+      all_(bytes),
+      has_all_(true),
+      buffer_(std::make_unique<Buffer>(bytes)) {}
+
+std::unique_ptr<Input> Input::keeping(std::string name, std::string bytes) {
+  auto input = std::make_unique<Input>(std::move(name), std::string_view());
+  input->kept_ = std::move(bytes);
+  input->all_ = input->kept_;
+  input->size_ = input->kept_.size();
+  input->buffer_ = std::make_unique<Buffer>(input->all_);
+  return input;
+}
+
+Input::~Input() {
+  if (mapped_ != nullptr) ::munmap(mapped_, size_);
+}
+
+std::string_view Input::beginning() { return buffer_->peek(beginning_bytes).substr(0, beginning_bytes); }
+
+std::string_view Input::bytes() {
+  if (std::exchange(has_all_, true)) return all_;
+  if (is_regular_ && size_ > 0) {
+    void* const mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, source_->descriptor(), 0);
+    if (mapped == MAP_FAILED) refuse();
+    mapped_ = mapped;
+    ::madvise(mapped_, size_, MADV_SEQUENTIAL);
+    return all_ = {static_cast<const char*>(mapped_), size_};
+  }
+  copy();
+  size_ = kept_.size();
+  next_report_ = progress_ ? bytes_a_report : UINT64_MAX;
+  return all_ = kept_;
+}
+
+/// Reads all bytes into memory.
+void Input::copy() {
+  kept_ = buffer_->peek(0);
+  const std::uint64_t most = most_copied_bytes(is_device_);
+  std::size_t used = kept_.size();
+  try {
+    while (used <= most) {
+      // Never beyond what may be read, since the old bytes are kept until they are copied.
+      kept_.resize(
+          std::min<std::uint64_t>(std::max<std::uint64_t>(2 * used, std::uint64_t{1} << 16), most + 1));
+      const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
+      if (got == 0) {
+        kept_.resize(used);
+        return;
+      }
+      used += got;
+      passed(used);
+    }
+  } catch (const std::bad_alloc&) {
+    // As too much for the machine's memory.
+  }
+  kept_ = {};
+  throw FileError(fmt::format(
+      "{}: goes on after {} bytes{}; expected {}", name_, used,
+      is_device_ ? ", and is a device" : ", more than memory can hold beside its boxes",
+      is_device_ ? "a file or a pipe, which have an end" : "an end, or a file, which is not copied"));
+}
+
+std::istream& Input::stream() {
+  if (!stream_) {
+    if (progress_) {
+      buffer_->on_read = [this, done = std::uint64_t{0}](std::size_t got) mutable { passed(done += got); };
+    }
+    stream_ = std::make_unique<std::istream>(buffer_.get());
+    // The stream then passes on what the source throws.
+    stream_->exceptions(std::ios::badbit);
+  }
+  return *stream_;
+}
+
+void Input::report(std::uint64_t byte) {
+  next_report_ = byte + bytes_a_report;
+  progress_(byte, size_);
+}
+
+void Input::refuse() const {
+  throw FileError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,107 @@
+// Vertices made one, and the edges of a mesh.
+#include "lab/formats/mesh/indexed_mesh.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+#include "lab/formats/mesh/content.hpp"
+#include "lab/formats/mesh/obj.hpp"
+#include "lab/formats/mesh/ply.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// A place as numbers in which equal ones, and they alone, are equal: -0 is 0, and a NaN is itself.
+std::array<std::uint64_t, 3> place_of(const std::array<double, 3>& vertex) {
+  std::array<std::uint64_t, 3> place{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    place[axis] = vertex[axis] == 0 ? 0 : std::bit_cast<std::uint64_t>(vertex[axis]);
+  return place;
+}
+
+/// For every vertex the first one that is in the same place, in `a` and in `b`.
+std::vector<std::uint32_t> first_in_place(const IndexedMesh& a, const IndexedMesh& b) {
+  std::vector<std::array<std::uint64_t, 6>> places(a.vertices.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto now = place_of(a.vertices[i]);
+    const auto then = place_of(b.vertices[i]);
+    places[i] = {now[0], now[1], now[2], then[0], then[1], then[2]};
+  }
+  std::vector<std::uint32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](std::uint32_t i, std::uint32_t j) {
+    return places[i] < places[j] || (places[i] == places[j] && i < j);
+  });
+  std::vector<std::uint32_t> first(places.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool is_first = i == 0 || places[order[i]] != places[order[i - 1]];
+    first[order[i]] = is_first ? order[i] : first[order[i - 1]];
+  }
+  return first;
+}
+
+/// Keeps the vertices that are the first in their place, and names them by their new numbers.
+void keep_first(IndexedMesh& mesh, const std::vector<std::uint32_t>& first) {
+  std::vector<std::uint32_t> numbers(first.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    if (first[i] == i) {
+      mesh.vertices[count] = mesh.vertices[i];
+      numbers[i] = count++;
+    } else {
+      numbers[i] = numbers[first[i]];
+    }
+  }
+  mesh.vertices.resize(count);
+  for (std::uint32_t& corner : mesh.corners) corner = numbers[corner];
+}
+
+}  // namespace
+
+IndexedMesh read_mesh(Input& input) {
+  const std::string_view content = mesh_content(input.beginning());
+  const std::string extension = input.extension();
+  if (content == "ply" || extension == ".ply") return read_ply(input);
+  return content == "obj" || extension == ".obj" ? read_obj(input) : import_mesh(input);
+}
+
+void weld(IndexedMesh& mesh, IndexedMesh* later) {
+  if (mesh.has_own_vertices) return;
+  const std::vector<std::uint32_t> first = first_in_place(mesh, later == nullptr ? mesh : *later);
+  keep_first(mesh, first);
+  if (later != nullptr) keep_first(*later, first);
+}
+
+void triangulate(IndexedMesh& mesh) {
+  std::vector<std::uint32_t> corners;
+  corners.reserve(mesh.corners.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const std::uint32_t> face = mesh.face(f);
+    for (std::size_t i = 2; i < face.size(); ++i)
+      corners.insert(corners.end(), {face[0], face[i - 1], face[i]});
+  }
+  mesh.corners = std::move(corners);
+  mesh.face_ends.resize(mesh.corners.size() / 3);
+  for (std::size_t f = 0; f < mesh.face_ends.size(); ++f) mesh.face_ends[f] = 3 * (f + 1);
+}
+
+std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(mesh.corners.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const std::uint32_t> face = mesh.face(f);
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const std::uint32_t a = face[i];
+      const std::uint32_t b = face[i + 1 == face.size() ? 0 : i + 1];
+      // A face that names a vertex twice in a row has no side there.
+      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+}  // namespace broadside::lab

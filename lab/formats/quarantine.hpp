@@ -1,0 +1,48 @@
+// Boxes that are invalid and left out, where that is asked for: each of the first is told, and their number.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "lab/formats/format.hpp"
+
+namespace broadside::lab {
+
+/// Refuses the first box that is invalid or, where ReadOptions::say_invalid is there, leaves out all that
+/// are.
+class Quarantine {
+ public:
+  /// How many boxes are told one by one; the rest are only counted.
+  static constexpr std::uint64_t most_told = 20;
+
+  explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
+
+  /// Whether `read()` returned. Where it throws a FileError, the box is left out and its error told; without
+  /// say_invalid, the error goes on to the caller.
+  template <typename Read>
+  bool holds(const Read& read) {
+    if (!say_) {
+      read();
+      return true;
+    }
+    try {
+      read();
+      return true;
+    } catch (const FileError& error) {
+      add(error.what());
+      return false;
+    }
+  }
+
+  /// How many boxes of a file were left out; empty for none.
+  std::string warning(std::string_view file) const;
+
+ private:
+  void add(std::string_view why);
+
+  std::function<void(std::string_view)> say_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace broadside::lab

@@ -1,0 +1,190 @@
+// Reads a trace frame by frame and checks all that docs/trace-format.md promises of it.
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lab/formats/format.hpp"
+#include "lab/formats/trace/trace.hpp"
+
+namespace broadside::lab {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t word_bytes = 4;
+
+}  // namespace
+
+TraceReader::TraceReader(std::istream& stream, std::string name) : stream_(stream), name_(std::move(name)) {
+  read_header();
+}
+
+bool TraceReader::next_frame() {
+  // Until this frame turns out to be whole and right.
+  if (std::exchange(ended_, true)) return false;
+  FrameHeader header;
+  if (!read_frame_header(header)) return false;
+  const std::uint64_t bytes_a_box = word_bytes + 2 * static_cast<unsigned>(dimension_ * coordinate_bytes_);
+  const std::uint64_t size = word_bytes * header.removed + bytes_a_box * header.set;
+  if (!read(size + trace::checksum_bytes)) {
+    return cut_off(header.byte, fmt::format("{} of its {} bytes", trace::header_bytes + bytes_.size(),
+                                            trace::header_bytes + size + trace::checksum_bytes));
+  }
+  check_sum(static_cast<std::size_t>(size));
+  take(header);
+  slots_ = header.slots;
+  ++frames_;
+  ended_ = false;
+  return true;
+}
+
+void TraceReader::read_header() {
+  const bool whole = read(trace::header_bytes);
+  if (bytes_.empty())
+    throw FileError(fmt::format("{}: is empty; expected a trace, which has {} bytes or more", name_,
+                                trace::header_bytes));
+  const std::size_t there = std::min(bytes_.size(), trace::magic.size());
+  if (!std::equal(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(there), trace::magic.begin()))
+    refuse(0, fmt::format("the first bytes are {:02x}", fmt::join(bytes_.data(), bytes_.data() + there, " ")),
+           fmt::format("{:02x}, with which a trace begins", fmt::join(trace::magic, " ")));
+  if (!whole)
+    refuse(bytes_.size(), "the file ends", fmt::format("a header of {} bytes", trace::header_bytes));
+  if (word(8) != trace::version)
+    refuse(8, fmt::format("version {}", word(8)), std::to_string(trace::version));
+  check_sum(trace::header_bytes - trace::checksum_bytes);
+  dimension_ = bytes_[12];
+  coordinate_bytes_ = bytes_[13];
+  if (dimension_ != 2 && dimension_ != 3) refuse(12, fmt::format("dimension {}", dimension_), "2 or 3");
+  if (coordinate_bytes_ != 4 && coordinate_bytes_ != 8)
+    refuse(13, fmt::format("{} bytes a coordinate", coordinate_bytes_), "4 or 8");
+  if (bytes_[14] != 0 || bytes_[15] != 0)
+    refuse(14, fmt::format("{:02x} {:02x}", bytes_[14], bytes_[15]), "00 00");
+}
+
+/// Whether there is a whole header of a frame; if there is a piece of one, warning_ says so.
+bool TraceReader::read_frame_header(FrameHeader& header) {
+  const bool whole = read(trace::header_bytes);
+  const std::size_t there = std::min(bytes_.size(), word_bytes);
+  for (std::size_t i = 0; i < there; ++i) {
+    if (bytes_[i] != (trace::frame_mark >> 8 * i & 0xff))
+      refuse(begin_, fmt::format("{:02x}", fmt::join(bytes_.data(), bytes_.data() + there, " ")),
+             "46 52 41 4d, with which a frame begins, or the end of the file");
+  }
+  if (bytes_.empty()) return false;
+  if (!whole)
+    return cut_off(begin_,
+                   fmt::format("{} of the {} bytes of its header", bytes_.size(), trace::header_bytes));
+  check_sum(trace::header_bytes - trace::checksum_bytes);
+  header = {begin_, word(4), word(8), word(12)};
+  return true;
+}
+
+/// Takes the slots named in a frame, which are in bytes_: those removed and those set, each ascending.
+void TraceReader::take(const FrameHeader& header) {
+  const std::size_t set_begin = word_bytes * header.removed;
+  const std::size_t bytes_a_box = word_bytes + 2 * static_cast<std::size_t>(dimension_ * coordinate_bytes_);
+  const std::size_t end = set_begin + bytes_a_box * header.set;
+  const auto axes = static_cast<std::size_t>(dimension_);
+  changed_.clear();
+  bounds_.clear();
+  std::uint64_t least = 0;  // that the next slot may be
+  std::uint64_t added = 0;
+  std::size_t removed = 0;
+  std::size_t set = set_begin;
+  while (removed < set_begin || set < end) {
+    const bool removes = set == end || (removed < set_begin && word(removed) <= word(set));
+    const std::size_t at = removes ? removed : set;
+    const std::uint32_t slot = word(at);
+    if (slot < least)
+      refuse(begin_ + at, fmt::format("slot {}", slot), "each slot named once, in ascending order");
+    if (slot >= header.slots)
+      refuse(begin_ + at, fmt::format("slot {}", slot), fmt::format("one below {}", header.slots));
+    least = std::uint64_t{slot} + 1;
+    added += slot >= slots_ ? 1 : 0;
+    changed_.push_back(BoxId(slot));
+    if (removes) {
+      bounds_.insert(bounds_.end(), axes, infinity);
+      bounds_.insert(bounds_.end(), axes, -infinity);
+      removed += word_bytes;
+    } else {
+      take_box(slot, at + word_bytes);
+      set += bytes_a_box;
+    }
+  }
+  if (header.slots > slots_ && header.slots - slots_ != added)
+    refuse(header.byte + word_bytes,
+           fmt::format("{} slots, {} before this frame, and {} new ones named", header.slots, slots_, added),
+           "every new slot to be named");
+}
+
+void TraceReader::take_box(std::uint32_t slot, std::size_t at) {
+  const auto axes = static_cast<std::size_t>(dimension_);
+  for (std::size_t i = 0; i < 2 * axes; ++i)
+    bounds_.push_back(coordinate(at + i * static_cast<std::size_t>(coordinate_bytes_)));
+  const std::span<const double> box = std::span(bounds_).last(2 * axes);
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    if (box[axis] <= box[axes + axis]) continue;
+    refuse(begin_ + at,
+           fmt::format("slot {} gets min ({}) and max ({})", slot, fmt::join(box.first(axes), ", "),
+                       fmt::join(box.last(axes), ", ")),
+           "numbers with min <= max");
+  }
+}
+
+/// Reads the next `count` bytes, or those that are left; whether it was all.
+bool TraceReader::read(std::uint64_t count) {
+  begin_ += bytes_.size();
+  bytes_.clear();
+  while (bytes_.size() < count) {
+    // In pieces, which grow as they turn out to be there.
+    constexpr std::uint64_t least = std::uint64_t{1} << 16;
+    const std::size_t before = bytes_.size();
+    const std::uint64_t more = std::min(count - before, std::max<std::uint64_t>(before, least));
+    bytes_.resize(before + static_cast<std::size_t>(more));
+    errno = 0;
+    stream_.read(reinterpret_cast<char*>(bytes_.data() + before), static_cast<std::streamsize>(more));
+    if (stream_.bad())
+      throw FileError(fmt::format("{}: cannot be read at byte {}: {}", name_, begin_ + before,
+                                  errno != 0 ? std::strerror(errno) : "the stream failed"));
+    const auto got = static_cast<std::size_t>(stream_.gcount());
+    bytes_.resize(before + got);
+    if (got < more) return false;
+  }
+  return true;
+}
+
+std::uint32_t TraceReader::word(std::size_t at) const noexcept {
+  std::uint32_t value = 0;
+  for (std::size_t i = word_bytes; i-- > 0;) value = value << 8 | bytes_[at + i];
+  return value;
+}
+
+double TraceReader::coordinate(std::size_t at) const noexcept {
+  if (coordinate_bytes_ == 4) return static_cast<double>(std::bit_cast<float>(word(at)));
+  return std::bit_cast<double>(word(at) | std::uint64_t{word(at + word_bytes)} << 32);
+}
+
+/// Checks the checksum behind the first `count` bytes of those read last.
+void TraceReader::check_sum(std::size_t count) {
+  checksum_.add(bytes_.data(), count);
+  if (word(count) != checksum_.value())
+    refuse(begin_ + count, fmt::format("checksum {:08x}", word(count)),
+           fmt::format("{:08x}, that of the bytes before it", checksum_.value()));
+}
+
+bool TraceReader::cut_off(std::uint64_t frame_byte, const std::string& found) {
+  warning_ = fmt::format("{}: is cut off in frame {}, which begins at byte {}: has {}", name_, frames_,
+                         frame_byte, found);
+  return false;
+}
+
+void TraceReader::refuse(std::uint64_t byte, const std::string& found, const std::string& expected) const {
+  const std::string frame = begin_ == 0 ? "" : fmt::format("frame {}, ", frames_);
+  throw FileError(fmt::format("{}: {}byte {}: {}; expected {}", name_, frame, byte, found, expected));
+}
+
+}  // namespace broadside::lab

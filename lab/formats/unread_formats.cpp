@@ -1,0 +1,87 @@
+// The one table of formats that are not read here, and of their converters.
+#include "lab/formats/unread_formats.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "lab/formats/shown.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+struct UnreadFormat {
+  std::string_view name;
+  std::string_view extensions;  ///< with a blank after each
+  std::string_view magic;    ///< the first bytes; of XML ("<..."), the root element; empty: told by the name
+  std::string_view command;  ///< IN stands for the file
+};
+
+constexpr std::string_view ogr = "ogr2ogr -f GeoJSON out.geojson IN";
+constexpr std::string_view pdal = "pdal translate IN out.ply (then --boxes vertices)";
+constexpr std::string_view office = "libreoffice --headless --convert-to csv IN";
+
+constexpr auto table = std::to_array<UnreadFormat>({
+    {"a shapefile", ".shp .shx .dbf ", "\x00\x00\x27\x0a"sv, ogr},
+    {"a GeoPackage or another database of SQLite", ".gpkg .sqlite ", "SQLite format 3\0"sv, ogr},
+    {"FlatGeobuf", ".fgb ", "fgb\x03", ogr},
+    {"KML", ".kml .kmz ", "<kml", ogr},
+    {"GML", ".gml ", "<gml:", ogr},
+    {"GPX", ".gpx ", "<gpx", "ogr2ogr -f GeoJSON out.geojson IN tracks"},
+    {"OpenStreetMap data", ".osm .pbf ", "<osm", "osmium export IN -o out.geojson"},
+    {"MapInfo data", ".tab .mif ", "", ogr},
+    {"Parquet", ".parquet .geoparquet ", "PAR1\x15",
+     "python3 -c \"import pandas; pandas.read_parquet('IN').to_csv('out.csv', index=False)\""},
+    {"Arrow or Feather", ".arrow .feather ", "ARROW1\0"sv,
+     "python3 -c \"import pandas; pandas.read_feather('IN').to_csv('out.csv', index=False)\""},
+    {"a point cloud (LAS or LAZ)", ".las .laz ", "LASF", pdal},
+    {"a point cloud (PCD)", ".pcd ", "# .PCD", pdal},
+    {"HDF5", ".h5 .hdf5 ", "\x89HDF\r\n\x1a\n",
+     "python3 -c \"import h5py, numpy; numpy.save('out.npy', h5py.File('IN')['NAME'][:])\""},
+    {"a MATLAB file", ".mat ", "MATLAB 5.0 MAT-file",
+     "python3 -c \"import scipy.io, numpy; numpy.save('out.npy', scipy.io.loadmat('IN')['NAME'])\""},
+    {"a pickle of Python", ".pkl .pickle ", "",
+     "python3 -c \"import pickle, numpy; numpy.save('out.npy', pickle.load(open('IN', 'rb')))\""},
+    {"a spreadsheet", ".xls ", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", office},
+    {"a spreadsheet", ".xlsx .ods ", "", office},
+    {"a mesh of VTK", ".vtk .vtu .vtp ", "# vtk DataFile", "meshio convert IN out.ply"},
+    {"a mesh of Gmsh", ".msh ", "$MeshFormat", "meshio convert IN out.ply"},
+    {"compressed by bzip2", ".bz2 ", "BZh", "bunzip2 -k IN"},
+    {"compressed by xz", ".xz ", "\xFD\x37zXZ\x00"sv, "unxz -k IN"},
+    {"compressed by LZ4", ".lz4 ", "\x04\x22\x4D\x18", "lz4 -d IN"},
+    {"a zip archive", ".zip ", "", "unzip IN"},
+});
+
+bool begins_with(std::string_view beginning, std::string_view magic) {
+  if (magic.empty()) return false;
+  if (!magic.starts_with('<')) return beginning.starts_with(magic);
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (beginning.starts_with(byte_order_mark)) beginning.remove_prefix(byte_order_mark.size());
+  return beginning.starts_with('<') && beginning.find(magic) != std::string_view::npos;
+}
+
+std::string command_for(const UnreadFormat& format, std::string_view file) {
+  std::string command(format.command);
+  const std::size_t at = command.find("IN");
+  return command.replace(at, 2, plainly(file));
+}
+
+}  // namespace
+
+std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file) {
+  const std::string wanted = std::string(extension) + ' ';
+  const auto found = std::ranges::find_if(table, [&](const UnreadFormat& format) {
+    return extension.empty() ? begins_with(beginning, format.magic)
+                             : format.extensions.find(wanted) != std::string_view::npos;
+  });
+  if (found == table.end()) return {};
+  return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}", found->name,
+                     command_for(*found, file));
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,107 @@
+// The smallest history of boxes on which an algorithm fails.
+#include "lab/verify/smallest_failure.hpp"
+
+#include <exception>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "broadside/minimise.hpp"
+
+#include "lab/measure/benchmark.hpp"
+#include "lab/measure/reference.hpp"
+#include "lab/verify/verify.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// The most boxes whose expected pairs are the definition's while a failure is made smaller.
+constexpr std::size_t most_boxes_made_smaller_by_definition = 2'000;
+
+}  // namespace
+
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run) {
+  try {
+    return run();
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // the machine's fault
+  } catch (const std::exception& thrown) {
+    return fmt::format("{} threw: {}", algorithm, thrown.what());
+  }
+}
+
+template <int D, typename Real>
+std::string fault_on(const History<D, Real>& history, const Contender& contender,
+                     std::span<const Algorithm> known) {
+  const Algorithm& algorithm = *contender.algorithm;
+  const std::string name = contender.spec.text();
+  const auto expected = [&](std::span<const Box<D, Real>> boxes) {
+    const Reference reference(algorithm, known, boxes.size(), most_boxes_made_smaller_by_definition);
+    return reference.pairs<D, Real>(boxes);
+  };
+  return fault_of(name, [&]() -> std::string {
+    const auto finder = make_finder<D, Real>(algorithm, contender.spec);
+    std::vector<Box<D, Real>> boxes = history.boxes;
+    for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
+      if (frame > 0) lab::apply(history.steps[frame - 1], boxes);
+      if (const auto divergence = check_finder<D, Real>(*finder, boxes, name, expected, frame))
+        return divergence->text;
+    }
+    if (history.steps.empty()) return {};
+    const auto tracker = make_tracker<D, Real>(algorithm, contender.spec);
+    const auto divergence = check_tracker<D, Real>(*tracker, history, name, expected);
+    return divergence ? divergence->text : "";
+  });
+}
+
+template <int D, typename Real>
+std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history, std::size_t frame,
+                                                 const Contender& contender, std::span<const Algorithm> known,
+                                                 const VerifyOptions& options) {
+  const auto fails = [&](const History<D, Real>& some) {
+    options.watch.at(fmt::format("{}, making the failure smaller: {} frames", contender.spec.text(),
+                                 some.steps.size() + 1));
+    return !fault_on<D, Real>(some, contender, known).empty();
+  };
+  const Stopwatch watch;
+  const auto stop = [&] { return watch.milliseconds() > options.budget_seconds * 1e3; };
+  History<D, Real> alone{history.boxes, {}};
+  for (std::size_t i = 0; i < frame; ++i) lab::apply(history.steps[i], alone.boxes);
+  if (fails(alone)) {
+    minimise(
+        alone.boxes,
+        [&](std::span<const Box<D, Real>> boxes) {
+          return fails({{boxes.begin(), boxes.end()}, {}});
+        },
+        stop);
+    return alone;
+  }
+  History<D, Real> all = history;
+  all.steps.resize(frame);
+  if (!fails(all)) return std::nullopt;
+  minimise(all, fails, stop);
+  return all;
+}
+
+template std::string fault_on(const History<2, float>&, const Contender&, std::span<const Algorithm>);
+template std::optional<History<2, float>> smallest_failure(const History<2, float>&, std::size_t,
+                                                           const Contender&, std::span<const Algorithm>,
+                                                           const VerifyOptions&);
+template std::string fault_on(const History<2, double>&, const Contender&, std::span<const Algorithm>);
+template std::optional<History<2, double>> smallest_failure(const History<2, double>&, std::size_t,
+                                                            const Contender&, std::span<const Algorithm>,
+                                                            const VerifyOptions&);
+template std::string fault_on(const History<3, float>&, const Contender&, std::span<const Algorithm>);
+template std::optional<History<3, float>> smallest_failure(const History<3, float>&, std::size_t,
+                                                           const Contender&, std::span<const Algorithm>,
+                                                           const VerifyOptions&);
+template std::string fault_on(const History<3, double>&, const Contender&, std::span<const Algorithm>);
+template std::optional<History<3, double>> smallest_failure(const History<3, double>&, std::size_t,
+                                                            const Contender&, std::span<const Algorithm>,
+                                                            const VerifyOptions&);
+
+}  // namespace broadside::lab

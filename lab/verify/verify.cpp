@@ -1,0 +1,162 @@
+// The law, checked: pairs and events against the definition, as sets, each pair exactly once.
+#include "lab/verify/verify.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "broadside/sinks.hpp"
+
+namespace broadside::lab {
+namespace {
+
+template <int D, typename Real>
+std::string text_of(const Box<D, Real>& box) {
+  return fmt::format("[({}), ({})]", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
+}
+
+}  // namespace
+
+template <int D, typename Real>
+std::vector<Pair> reference_pairs(BoxSpan<D, Real> boxes) {
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_present(boxes[i])) continue;
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      if (is_present(boxes[j]) && overlap(boxes[i], boxes[j])) pairs.push_back({BoxId(i), BoxId(j)});
+    }
+  }
+  return pairs;
+}
+
+std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected) {
+  std::sort(found.begin(), found.end());
+  const auto diverging = [](Divergence::Kind kind, Pair pair, std::string_view how) {
+    return Divergence{kind, pair, 0,
+                      fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
+  };
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (i > 0 && found[i] == found[i - 1])
+      return diverging(Divergence::Kind::repeated, found[i], "is reported more than once; expected once");
+    if (at == expected.size() || found[i] < expected[at])
+      return diverging(Divergence::Kind::extra, found[i], "is reported; expected not to be");
+    if (expected[at] < found[i]) break;
+    ++at;
+  }
+  if (at < expected.size())
+    return diverging(Divergence::Kind::missing, expected[at], "is missing; expected to be reported");
+  return std::nullopt;
+}
+
+template <int D, typename Real>
+Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
+                     BoxSpan<D, Real> boxes) {
+  divergence.frame = frame;
+  divergence.text = fmt::format("{}: frame {}, {} {}", name, frame, what, divergence.text);
+  for (const BoxId id : {divergence.pair.first, divergence.pair.second}) {
+    if (index(id) < boxes.size())
+      divergence.text += fmt::format("; box {} is {}", index(id), text_of(boxes[index(id)]));
+  }
+  return divergence;
+}
+
+template <int D, typename Real>
+std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
+                                       std::string_view name, const ExpectedPairs<D, Real>& expected,
+                                       std::size_t frame) {
+  std::vector<Pair> found;
+  PairCollector collector(found);
+  finder.find(boxes, collector);
+  if (auto divergence = compare_pairs(std::move(found), expected(boxes)))
+    return explained<D, Real>(*std::move(divergence), name, "search:", frame, boxes);
+  return std::nullopt;
+}
+
+template <int D, typename Real>
+std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
+                                       std::span<const Pair> before, std::span<const Pair> now,
+                                       std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes) {
+  std::vector<Pair> expected_begun;
+  std::vector<Pair> expected_ended;
+  std::ranges::set_difference(now, before, std::back_inserter(expected_begun));
+  std::ranges::set_difference(before, now, std::back_inserter(expected_ended));
+  for (const auto& [events, expected, what] :
+       {std::tuple(&begun, &expected_begun, "begun:"), std::tuple(&ended, &expected_ended, "ended:")}) {
+    if (auto divergence = compare_pairs(*events, *expected))
+      return explained<D, Real>(*std::move(divergence), name, what, frame, boxes);
+    if (!std::ranges::is_sorted(*events)) {
+      const auto unsorted = std::ranges::is_sorted_until(*events);
+      return explained<D, Real>({Divergence::Kind::extra, *unsorted, frame, "events are not sorted by id"},
+                                name, what, frame, boxes);
+    }
+  }
+  return std::nullopt;
+}
+
+template <int D, typename Real>
+std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const History<D, Real>& history,
+                                        std::string_view name, const ExpectedPairs<D, Real>& expected) {
+  std::vector<Box<D, Real>> boxes = history.boxes;
+  std::vector<Pair> before;
+  for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
+    if (frame > 0) lab::apply(history.steps[frame - 1], boxes);
+    const std::span<const BoxId> changed =
+        frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed;
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    PairCollector begun_pairs(begun);
+    PairCollector ended_pairs(ended);
+    tracker.update({boxes, changed}, begun_pairs, ended_pairs);
+    std::vector<Pair> now = expected(boxes);
+    if (auto divergence = check_events<D, Real>(begun, ended, before, now, name, frame, boxes))
+      return divergence;
+    before = std::move(now);
+  }
+  return std::nullopt;
+}
+
+template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
+template Divergence explained<2, float>(Divergence, std::string_view, std::string_view, std::size_t,
+                                        BoxSpan<2, float>);
+template std::optional<Divergence> check_finder(PairFinder<2, float>&, BoxSpan<2, float>, std::string_view,
+                                                const ExpectedPairs<2, float>&, std::size_t);
+template std::optional<Divergence> check_tracker(PairTracker<2, float>&, const History<2, float>&,
+                                                 std::string_view, const ExpectedPairs<2, float>&);
+template std::optional<Divergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
+                                                          std::span<const Pair>, std::span<const Pair>,
+                                                          std::string_view, std::size_t, BoxSpan<2, float>);
+template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
+template Divergence explained<2, double>(Divergence, std::string_view, std::string_view, std::size_t,
+                                         BoxSpan<2, double>);
+template std::optional<Divergence> check_finder(PairFinder<2, double>&, BoxSpan<2, double>, std::string_view,
+                                                const ExpectedPairs<2, double>&, std::size_t);
+template std::optional<Divergence> check_tracker(PairTracker<2, double>&, const History<2, double>&,
+                                                 std::string_view, const ExpectedPairs<2, double>&);
+template std::optional<Divergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
+                                                           std::span<const Pair>, std::span<const Pair>,
+                                                           std::string_view, std::size_t, BoxSpan<2, double>);
+template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
+template Divergence explained<3, float>(Divergence, std::string_view, std::string_view, std::size_t,
+                                        BoxSpan<3, float>);
+template std::optional<Divergence> check_finder(PairFinder<3, float>&, BoxSpan<3, float>, std::string_view,
+                                                const ExpectedPairs<3, float>&, std::size_t);
+template std::optional<Divergence> check_tracker(PairTracker<3, float>&, const History<3, float>&,
+                                                 std::string_view, const ExpectedPairs<3, float>&);
+template std::optional<Divergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
+                                                          std::span<const Pair>, std::span<const Pair>,
+                                                          std::string_view, std::size_t, BoxSpan<3, float>);
+template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
+template Divergence explained<3, double>(Divergence, std::string_view, std::string_view, std::size_t,
+                                         BoxSpan<3, double>);
+template std::optional<Divergence> check_finder(PairFinder<3, double>&, BoxSpan<3, double>, std::string_view,
+                                                const ExpectedPairs<3, double>&, std::size_t);
+template std::optional<Divergence> check_tracker(PairTracker<3, double>&, const History<3, double>&,
+                                                 std::string_view, const ExpectedPairs<3, double>&);
+template std::optional<Divergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,
+                                                           std::span<const Pair>, std::span<const Pair>,
+                                                           std::string_view, std::size_t, BoxSpan<3, double>);
+
+}  // namespace broadside::lab

@@ -1,0 +1,143 @@
+// The law on somebody's own file.
+#include "lab/verify/verify_file.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+#include "lab/verify/smallest_failure.hpp"
+#include "lab/verify/verify_history.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// What is wrong with the contender on the boxes of a file; empty if nothing is.
+template <int D, typename Real>
+std::string fault_in(BoxFile file, const Contender& contender, std::span<const Algorithm> known) {
+  auto& frames = std::get<std::unique_ptr<FrameReader<D, Real>>>(file.frames);
+  return fault_on<D, Real>(read_all(*frames), contender, known);
+}
+
+/// A name that no file in the current folder has: what is there may be the very file that was verified.
+std::filesystem::path free_name(std::string_view extension) {
+  std::filesystem::path path = fmt::format("counterexample{}", extension);
+  for (int number = 2; std::filesystem::exists(path); ++number)
+    path = fmt::format("counterexample_{}{}", number, extension);
+  return path;
+}
+
+template <int D, typename Real>
+Counterexample write(const History<D, Real>& smallest, const Contender& contender, const Catalogue& catalogue,
+                     std::filesystem::path path) {
+  if (path.empty()) path = free_name(smallest.steps.empty() ? ".csv" : ".btrace");
+  write_scene(smallest, path);
+  Counterexample written{contender.spec.text(), path, places_of(smallest), smallest.steps.size() + 1, {}, {}};
+  written.command = fmt::format("verify {} --algorithms {}", path.string(), written.algorithm);
+  ReadOptions options;
+  // What the file does not say of itself.
+  const auto add = [&](std::string_view option) { written.command += fmt::format(" {}", option); };
+  BoxFile again = open_file(path);
+  if (precision_of_frames(again.frames) != precision_of<Real>) {
+    options.precision = precision_of<Real>;
+    add(fmt::format("--precision {}", name(precision_of<Real>)));
+  }
+  if (dimension_of(again.frames) != D) {
+    options.dimension = D;
+    add(fmt::format("--dimension {}", D));
+  }
+  written.fault = fault_in<D, Real>(open_file(path, options), contender, catalogue.algorithms());
+  return written;
+}
+
+template <int D, typename Real>
+void verify(Verification& verification, FrameReader<D, Real>& frames, const Catalogue& catalogue,
+            const VerifyOptions& options) {
+  const History<D, Real> history = read_all(frames);
+  verification.warning = frames.warning();
+  verification.boxes = places_of(history);
+  verification.frames = history.steps.size() + 1;
+  std::vector<Contender> contenders = catalogue.select(options.algorithms);
+  const std::span<const Algorithm> known = catalogue.algorithms();
+  HistoryVerdicts checked = verify_history<D, Real>(history, contenders, known, options);
+  verification.verdicts = std::move(checked.verdicts);
+  verification.pairs = checked.pairs;
+  const auto failed = std::ranges::find(verification.verdicts, Outcome::failed, &Verdict::outcome);
+  if (failed == verification.verdicts.end()) return;
+  const Contender contender = catalogue.select(failed->algorithm).front();
+  const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, contender, known, options);
+  if (smallest)
+    verification.counterexample = write<D, Real>(*smallest, contender, catalogue, options.counterexample);
+}
+
+std::string text_of(const Counterexample& counterexample, std::string_view program) {
+  std::string text =
+      fmt::format("{}: {}", counterexample.path.string(), counted(counterexample.boxes, "box", "boxes"));
+  if (counterexample.frames > 1) text += fmt::format(", {} frames", counterexample.frames);
+  text += fmt::format(", on which {} fails\n", counterexample.algorithm);
+  if (counterexample.fault.empty())
+    text += "  but not once they are read back from the file: it fails on something no file holds\n";
+  else
+    text += fmt::format("  {}\n  to see it again: {} {}\n", counterexample.fault, program,
+                        counterexample.command);
+  return text;
+}
+
+}  // namespace
+
+bool Verification::all_verified() const {
+  return std::ranges::count(verdicts, Outcome::verified, &Verdict::outcome) > 0 &&
+         std::ranges::count(verdicts, Outcome::failed, &Verdict::outcome) == 0;
+}
+
+Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options) {
+  catalogue.select(options.algorithms);  // what is wrong there is known before anything is read
+  Verification verification{.file = file.name,
+                            .dimension = dimension_of(file.frames),
+                            .precision = precision_of_frames(file.frames),
+                            .importer = std::string(importer_of(file.frames))};
+  std::visit([&](const auto& frames) { verify(verification, *frames, catalogue, options); }, file.frames);
+  return verification;
+}
+
+std::string text_of(const Verification& verification, std::string_view program) {
+  std::string text =
+      fmt::format("{}: {} in {}D, {}, {}", verification.file, counted(verification.boxes, "box", "boxes"),
+                  verification.dimension, precision_text(verification.precision, verification.importer),
+                  counted(verification.frames, "frame", "frames"));
+  if (verification.pairs)
+    text += fmt::format(", {}{}", counted(*verification.pairs, "pair", "pairs"),
+                        verification.frames > 1 ? " in the last" : "");
+  text += '\n';
+  Columns table("<<<");
+  std::string faults;
+  for (const Verdict& verdict : verification.verdicts) {
+    switch (verdict.outcome) {
+      case Outcome::verified:
+        table.add({verdict.algorithm, "verified",
+                   fmt::format("against {}{}{}", verdict.verified_by, verdict.reason.empty() ? "" : "; ",
+                               verdict.reason)});
+        break;
+      case Outcome::skipped:
+        table.add({verdict.algorithm, "skipped", verdict.reason});
+        break;
+      case Outcome::failed:
+        table.add({verdict.algorithm, "FAILED", fmt::format("against {}", verdict.verified_by)});
+        faults += verdict.reason + '\n';
+        break;
+    }
+  }
+  text += table.text("  ");
+  const auto is_skipped = [](const Verdict& verdict) { return verdict.outcome == Outcome::skipped; };
+  if (std::ranges::all_of(verification.verdicts, is_skipped))
+    text += "\nnothing was verified: every algorithm was skipped\n";
+  if (!faults.empty()) text += '\n' + faults;
+  if (verification.counterexample) text += '\n' + text_of(*verification.counterexample, program);
+  return text;
+}
+
+}  // namespace broadside::lab

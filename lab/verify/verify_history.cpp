@@ -1,0 +1,273 @@
+// The law on a history of boxes: every algorithm in every frame.
+#include "lab/verify/verify_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/estimate.hpp"
+#include "lab/measure/reference.hpp"
+#include "lab/verify/smallest_failure.hpp"
+#include "lab/verify/verify.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// What the definition may take over all frames, in tests of two boxes: some seconds.
+constexpr double most_tests_by_definition = 4e9;
+
+/// In how many frames a reference is sampled.
+constexpr std::size_t sampled_frames = 20;
+
+/// The pairs that are expected of some contenders in the frame that is being looked at.
+struct Expectation {
+  Reference reference;
+  std::vector<Pair> before{};  // sorted
+  std::vector<Pair> now{};
+  Verdict fault{};  // of the reference itself; without an algorithm as long as there is none
+};
+
+template <int D, typename Real>
+struct Contestant {
+  const Contender* contender;
+  std::size_t verdict;  // its place in the list
+  Expectation* expected;
+  std::unique_ptr<PairFinder<D, Real>> finder{};
+  std::unique_ptr<PairTracker<D, Real>> tracker{};
+  double spent_ms = 0;
+  bool done = false;
+};
+
+template <int D, typename Real>
+class HistoryCheck {
+ public:
+  HistoryCheck(const History<D, Real>& history, std::span<const Contender> contenders,
+               std::span<const Algorithm> known, const VerifyOptions& options)
+      : history_(history), known_(known), options_(options) {
+    look_through();
+    for (const Contender& contender : contenders) let_in(contender);
+  }
+
+  HistoryVerdicts run() {
+    std::vector<Box<D, Real>> boxes = history_.boxes;
+    for (std::size_t frame = 0; frame <= history_.steps.size(); ++frame) {
+      if (frame > 0) lab::apply(history_.steps[frame - 1], boxes);
+      if (std::ranges::all_of(contestants_, &Contestant<D, Real>::done)) break;
+      check_frame(boxes, frame);
+    }
+    for (const auto& expected : expectations_) {
+      add_fault(expected->fault);
+      if (!expected->fault.algorithm.empty()) result_.pairs.reset();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// Finds the fullest frame, and what may be beyond limits.
+  void look_through() {
+    std::vector<Box<D, Real>> boxes = history_.boxes;
+    fullest_ = boxes;
+    extremes_.take<D, Real>(boxes);
+    for (const Step<D, Real>& step : history_.steps) {
+      lab::apply(step, boxes);
+      extremes_.take<D, Real>(step.boxes);
+      extremes_.boxes = std::max(extremes_.boxes, boxes.size());
+      if (boxes.size() > fullest_.size()) fullest_ = boxes;
+    }
+  }
+
+  void let_in(const Contender& contender) {
+    Verdict verdict{.algorithm = contender.spec.text()};
+    verdict.reason = unfit(contender, D, extremes_);
+    if (verdict.reason.empty()) verdict.reason = too_slow(contender);
+    if (!verdict.reason.empty()) {
+      verdict.outcome = Outcome::skipped;
+    } else {
+      Expectation& expected = expectation_for(*contender.algorithm);
+      verdict.verified_by = expected.reference.text();
+      Contestant<D, Real> contestant{&contender, result_.verdicts.size(), &expected};
+      contestant.finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+      if (!history_.steps.empty())
+        contestant.tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
+      contestants_.push_back(std::move(contestant));
+    }
+    result_.verdicts.push_back(std::move(verdict));
+  }
+
+  /// Why the budget does not do for one search of the fullest frame; empty if it does.
+  std::string too_slow(const Contender& contender) {
+    const std::string name = contender.spec.text();
+    const auto seconds_for = [&](std::size_t count) {
+      options_.watch.at(fmt::format("{}, trying {} boxes", name, count));
+      std::vector<Box<D, Real>> some;
+      for (const std::size_t i : sample_of(fullest_.size(), count)) some.push_back(fullest_[i]);
+      PairCounter counter;
+      const Stopwatch watch;
+      make_finder<D, Real>(*contender.algorithm, contender.spec)->find(some, counter);
+      return watch.milliseconds() / 1e3;
+    };
+    std::string reason;
+    const std::string fault = fault_of(name, [&]() -> std::string {
+      if (const auto estimate = estimate_above(options_.budget_seconds, fullest_.size(), seconds_for))
+        reason = fmt::format("{}; budget {:g} s", text(*estimate), options_.budget_seconds);
+      return {};
+    });
+    // What it throws on some boxes, it is to throw where it can be looked into.
+    return fault.empty() ? reason : "";
+  }
+
+  Expectation& expectation_for(const Algorithm& algorithm) {
+    const double frames = static_cast<double>(history_.steps.size()) + 1;
+    const auto most = static_cast<std::size_t>(std::sqrt(2 * most_tests_by_definition / frames));
+    const Reference reference(algorithm, known_, fullest_.size(), std::min(most, most_boxes_by_definition));
+    for (const auto& known : expectations_) {
+      if (known->reference == reference) return *known;
+    }
+    expectations_.push_back(std::make_unique<Expectation>(Expectation{reference}));
+    return *expectations_.back();
+  }
+
+  void check_frame(std::span<const Box<D, Real>> boxes, std::size_t frame) {
+    for (const auto& expected : expectations_) {
+      options_.watch.at(fmt::format("{}, frame {}", expected->reference.text(), frame));
+      expected->before = std::move(expected->now);
+      expected->now = expected->reference.template pairs<D, Real>(boxes);
+      check_reference(*expected, boxes, frame);
+      if (frame == history_.steps.size()) result_.pairs = expected->now.size();
+    }
+    for (Contestant<D, Real>& contestant : contestants_) {
+      if (contestant.done) continue;
+      Verdict& verdict = result_.verdicts[contestant.verdict];
+      options_.watch.at(fmt::format("{}, frame {}", verdict.algorithm, frame));
+      verdict.frames = frame + 1;
+      const std::string fault = fault_of(verdict.algorithm, [&] { return check(contestant, boxes, frame); });
+      const bool is_last = frame == history_.steps.size();
+      if (!fault.empty()) {
+        verdict.outcome = Outcome::failed;
+        verdict.reason = fault;
+        contestant.done = true;
+      } else if (!contestant.expected->fault.algorithm.empty()) {
+        verdict.outcome = Outcome::skipped;
+        verdict.reason = contestant.expected->fault.algorithm + ", which it was compared with, failed";
+        contestant.done = true;
+      } else if (!is_last && contestant.spent_ms > options_.budget_seconds * 1e3) {
+        verdict.reason = fmt::format("frames 0 to {} of {}; budget {:g} s", frame, history_.steps.size(),
+                                     options_.budget_seconds);
+        contestant.done = true;
+      }
+    }
+  }
+
+  /// Compares a sample with the definition where the expected pairs are not its own.
+  void check_reference(Expectation& expected, std::span<const Box<D, Real>> boxes, std::size_t frame) {
+    if (expected.reference.is_definition()) return;
+    const std::size_t every = std::max<std::size_t>(history_.steps.size() / sampled_frames, 1);
+    if (frame % every != 0 && frame != history_.steps.size()) return;
+    auto divergence = check_sample<D, Real>(boxes, expected.now);
+    if (divergence) blame_reference(expected, *std::move(divergence), boxes, frame);
+  }
+
+  /// Notes that a reference is wrong.
+  void blame_reference(Expectation& expected, Divergence divergence, std::span<const Box<D, Real>> boxes,
+                       std::size_t frame) {
+    const std::string& name = expected.reference.algorithm()->name;
+    expected.fault = {.algorithm = name,
+                      .outcome = Outcome::failed,
+                      .verified_by = "the definition",
+                      .reason = explained<D, Real>(std::move(divergence), name, "search:", frame, boxes).text,
+                      .frames = frame + 1};
+  }
+
+  /// Adds what is wrong with a reference, unless it has failed as a contender already.
+  void add_fault(const Verdict& fault) {
+    const auto same = [&](const Verdict& other) {
+      return other.algorithm == fault.algorithm && other.outcome == Outcome::failed;
+    };
+    if (!fault.algorithm.empty() && std::ranges::none_of(result_.verdicts, same))
+      result_.verdicts.push_back(fault);
+  }
+
+  /// What is wrong with one frame of a contestant's.
+  std::string check(Contestant<D, Real>& contestant, std::span<const Box<D, Real>> boxes, std::size_t frame) {
+    const std::string name = contestant.contender->spec.text();
+    Expectation& expected = *contestant.expected;
+    std::vector<Pair> found;
+    PairCollector collector(found);
+    const Stopwatch search;
+    contestant.finder->find(boxes, collector);
+    contestant.spent_ms += search.milliseconds();
+    if (auto divergence = compare_pairs(std::move(found), expected.now)) {
+      if (is_right_about(*divergence, boxes)) {
+        blame_reference(expected, swapped(*divergence), boxes, frame);
+        return {};
+      }
+      return explained<D, Real>(*std::move(divergence), name, "search:", frame, boxes).text;
+    }
+    if (!contestant.tracker) return {};
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    PairCollector begun_pairs(begun);
+    PairCollector ended_pairs(ended);
+    const Stopwatch update;
+    contestant.tracker->update(
+        {boxes, frame == 0 ? std::span<const BoxId>() : history_.steps[frame - 1].changed}, begun_pairs,
+        ended_pairs);
+    contestant.spent_ms += update.milliseconds();
+    const auto divergence =
+        check_events<D, Real>(begun, ended, expected.before, expected.now, name, frame, boxes);
+    return divergence ? divergence->text : "";
+  }
+
+  /// Whether, by the definition, the contestant is right and what was expected of it wrong.
+  static bool is_right_about(const Divergence& divergence, std::span<const Box<D, Real>> boxes) {
+    const std::size_t first = index(divergence.pair.first);
+    const std::size_t second = index(divergence.pair.second);
+    if (divergence.kind == Divergence::Kind::repeated || first >= second || second >= boxes.size())
+      return false;
+    const bool is_pair =
+        is_present(boxes[first]) && is_present(boxes[second]) && overlap(boxes[first], boxes[second]);
+    return is_pair == (divergence.kind == Divergence::Kind::extra);
+  }
+
+  /// The divergence as seen from the other side.
+  static Divergence swapped(const Divergence& divergence) {
+    return *compare_pairs(
+        divergence.kind == Divergence::Kind::extra ? std::vector<Pair>() : std::vector<Pair>{divergence.pair},
+        divergence.kind == Divergence::Kind::extra ? std::span(&divergence.pair, 1)
+                                                   : std::span<const Pair>());
+  }
+
+  const History<D, Real>& history_;
+  std::span<const Algorithm> known_;
+  const VerifyOptions& options_;
+  std::vector<Box<D, Real>> fullest_;  // the boxes of the frame with the most places
+  Extremes extremes_;
+  std::vector<std::unique_ptr<Expectation>> expectations_;
+  std::vector<Contestant<D, Real>> contestants_;
+  HistoryVerdicts result_;
+};
+
+}  // namespace
+
+template <int D, typename Real>
+HistoryVerdicts verify_history(const History<D, Real>& history, std::span<const Contender> contenders,
+                               std::span<const Algorithm> known, const VerifyOptions& options) {
+  return HistoryCheck<D, Real>(history, contenders, known, options).run();
+}
+
+template HistoryVerdicts verify_history(const History<2, float>&, std::span<const Contender>,
+                                        std::span<const Algorithm>, const VerifyOptions&);
+template HistoryVerdicts verify_history(const History<2, double>&, std::span<const Contender>,
+                                        std::span<const Algorithm>, const VerifyOptions&);
+template HistoryVerdicts verify_history(const History<3, float>&, std::span<const Contender>,
+                                        std::span<const Algorithm>, const VerifyOptions&);
+template HistoryVerdicts verify_history(const History<3, double>&, std::span<const Contender>,
+                                        std::span<const Algorithm>, const VerifyOptions&);
+
+}  // namespace broadside::lab

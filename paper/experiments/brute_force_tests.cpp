@@ -1,0 +1,65 @@
+// Section II: brute force takes n (n - 1) / 2 tests, since unique pairs halve n^2.
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "lab/numbers.hpp"
+#include "paper/experiments/descriptions.hpp"
+#include "paper/experiments/growth.hpp"
+
+namespace broadside::lab {
+namespace {
+
+std::vector<Table> measure(const Laboratory& laboratory) {
+  Table table{.name = "tests",
+              .title = "Tests and time of the paper's brute force, by the number of boxes",
+              .columns = {{"boxes"}, {"all pairs"}, {"unique pairs"}, {"tests"}, {"time", "ms"}},
+              .charts = {log_log_chart("Time over the number of boxes", "boxes", "time")}};
+  for (std::size_t boxes = 250; boxes <= laboratory.either<std::size_t>(16'000, 4'000); boxes *= 2) {
+    const CaseResult result = laboratory.measure("paper_brute_force", {.scene = "uniform", .boxes = boxes});
+    const Measurement& measured = measurement_of(result, "paper_brute_force");
+    const auto n = static_cast<double>(boxes);
+    table.add({n, n * n, n * (n - 1) / 2, tests_cell(measured), time_cell(measured)});
+  }
+  return {table};
+}
+
+Finding judge(const std::vector<Table>& tables) {
+  const Table& table = table_named(tables, "tests");
+  std::size_t exact = 0;
+  double share = 0;
+  for (const auto& [unique, tests] : table.points("unique pairs", "tests")) exact += unique == tests ? 1 : 0;
+  for (const auto& [all, tests] : table.points("all pairs", "tests")) share = tests / all;
+  const double growth = growth_of(table.points("boxes", "time"));
+  const std::vector<double> boxes = table.numbers("boxes");
+
+  Finding finding;
+  const bool is_exact = exact == table.rows.size();
+  const bool is_half = std::abs(share - 0.5) < 0.01;
+  finding.verdict = is_exact && is_half ? Verdict::holds : Verdict::does_not_hold;
+  finding.reason = fmt::format(
+      "{} of {} numbers of boxes took exactly n (n - 1) / 2 tests; with {} boxes that is {:.4f} of n^2, and "
+      "time grows as n^{:.2f}.",
+      exact, table.rows.size(), whole(boxes.back()), share, growth);
+  finding.figures = {
+      {"most_boxes", boxes.back(), "boxes"}, {"share_of_all_pairs", share}, {"growth", growth}};
+  return finding;
+}
+
+}  // namespace
+
+Experiment brute_force_tests() {
+  return {.number = 1,
+          .name = "brute_force_tests",
+          .title = "Brute force tests every unique pair",
+          .claim =
+              "To test all pairs of objects in a collection would require n^2 tests for n items in a "
+              "collection. We can drop that amount by roughly half by only testing unique pairs of objects.",
+          .section = "II",
+          .measured = "The tests that the mended Algorithm 1 counts, and its time, on uniform boxes in 2D.",
+          .measure = measure,
+          .judge = judge};
+}
+
+}  // namespace broadside::lab

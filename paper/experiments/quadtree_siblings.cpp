@@ -1,0 +1,277 @@
+// Section VI-D: a box that moves in a quadtree is filed anew relative to where it was, by way of siblings and
+// cousins, or from the root; and what that means for boxes that span many leaves.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "lab/numbers.hpp"
+#include "paper/experiments/descriptions.hpp"
+#include "paper/experiments/following.hpp"
+#include "paper/experiments/growth.hpp"
+
+namespace broadside::lab {
+namespace {
+
+constexpr double moving = 0.1;
+constexpr double usual_drift = 0.2;
+
+/// What is less than this faster is as fast.
+constexpr double margin = 0.1;
+
+/// A way that takes so many times as long as the one from the root is horrible.
+constexpr double horrible = 2;
+
+struct Trial {
+  int dimension;
+  std::size_t boxes;
+  int capacity;
+  double neighbours;
+  double drift;
+};
+
+/// The two ways that are no descent from the root, by the columns in which they are compared with it.
+const std::string relative_gain = "from the root over relative";
+const std::string siblings_gain = "from the root over siblings";
+
+/// What varies, and then what the three ways cost.
+std::vector<Column> columns_after(std::vector<Column> first) {
+  first.insert(first.end(), {{"leaves a box"},
+                             {"from the root", "ns"},
+                             {"relative", "ns"},
+                             {"siblings", "ns"},
+                             {relative_gain},
+                             {siblings_gain},
+                             {"tests a mover"}});
+  return first;
+}
+
+std::vector<Cell> row_of(const Laboratory& laboratory, const Trial& trial, std::vector<Cell> first) {
+  const auto spec = [&](const char* update) {
+    return fmt::format("quadtree:capacity={}:update={}", trial.capacity, update);
+  };
+  const std::string root = spec("root");
+  const std::string relative = spec("relative");
+  const std::string siblings = spec("siblings");
+  const CaseResult result =
+      laboratory.measure(root + "," + relative + "," + siblings,
+                         {.scene = fmt::format("uniform:neighbours={}", trial.neighbours),
+                          .dimension = trial.dimension,
+                          .boxes = trial.boxes,
+                          .moving = moving,
+                          .frames = laboratory.either<std::size_t>(15, 5),
+                          .drift = trial.drift},
+                         effort_to_follow(laboratory));
+  const Cell slow = mover_cell(result, root);
+  const Cell common = mover_cell(result, relative);
+  const Cell across = mover_cell(result, siblings);
+  const Measurement& measured = measurement_of(result, siblings);
+  const auto boxes = static_cast<double>(trial.boxes);
+  first.insert(first.end(), {scaled_cell(references_cell(measured), 1 / boxes), slow, common, across,
+                             ratio_cell(slow, common), ratio_cell(slow, across),
+                             scaled_cell(tests_cell(measured), 1 / (moving * boxes))});
+  return first;
+}
+
+Chart chart_of(const std::string& title, const std::string& x, const std::string& gain) {
+  return {.title = fmt::format("{}: {}, above 1 the root loses", title, gain),
+          .x = x,
+          .y = gain,
+          .series = "tree",
+          .log_x = true};
+}
+
+std::vector<Table> measure(const Laboratory& laboratory) {
+  Table depth{.name = "depth",
+              .title =
+                  "A mover filed anew, by the number of boxes: the deeper the tree, the longer the way "
+                  "from the root",
+              .columns = columns_after({{"tree"}, {"boxes"}}),
+              .charts = {chart_of("By the number of boxes", "boxes", siblings_gain)}};
+  Table step{.name = "step",
+             .title = "A mover filed anew, by how far it goes in a frame",
+             .columns = columns_after({{"tree"}, {"drift", "of a box"}}),
+             .charts = {chart_of("By how far a mover goes", "drift", siblings_gain)}};
+  Table spanning{.name = "spanning",
+                 .title =
+                     "A mover filed anew, by the leaves that a box is in: neighbours make boxes larger "
+                     "against leaves",
+                 .columns = columns_after({{"tree"}, {"neighbours"}}),
+                 .charts = {chart_of("By the leaves a box is in", "leaves a box", siblings_gain),
+                            chart_of("By the leaves a box is in", "leaves a box", relative_gain)}};
+  for (const int dimension : {2, 3}) {
+    const auto many =
+        laboratory.either<std::vector<std::size_t>>({1'000, 6'000, 25'000, 100'000}, {6'000, 25'000});
+    for (const int capacity : {32, 4}) {
+      const std::string tree = fmt::format("{}, capacity {}", dimension_text(dimension), capacity);
+      for (const std::size_t boxes : many)
+        depth.add(row_of(laboratory, {dimension, boxes, capacity, 4, usual_drift},
+                         {tree, static_cast<double>(boxes)}));
+    }
+    const std::string tree = fmt::format("{}, capacity 32", dimension_text(dimension));
+    const std::size_t boxes = laboratory.either<std::size_t>(10'000, 6'000);
+    for (const double drift : laboratory.either<std::vector<double>>({0.02, 0.1, 0.5, 2, 10}, {0.05, 5}))
+      step.add(row_of(laboratory, {dimension, boxes, 32, 4, drift}, {tree, drift}));
+    for (const int capacity : {32, 4}) {
+      const std::string small = fmt::format("{}, capacity {}", dimension_text(dimension), capacity);
+      for (const double neighbours :
+           laboratory.either<std::vector<double>>({0.5, 2, 8, 32, 128}, {0.5, 2, 8, 32}))
+        spanning.add(
+            row_of(laboratory, {dimension, boxes, capacity, neighbours, usual_drift}, {small, neighbours}));
+    }
+  }
+  return {depth, step, spanning};
+}
+
+/// A way in a tree, from the boxes in the fewest leaves to those in the most.
+struct Line {
+  std::string tree;
+  std::vector<std::pair<double, double>> gains;  ///< leaves a box, from the root over this way
+  double until = 0;  ///< leaves a box from which on it is not faster by the margin
+
+  double fewest() const { return gains.front().second; }
+  double most() const { return gains.back().second; }
+  /// Where it gains least.
+  std::pair<double, double> worst() const {
+    return std::ranges::min(gains, {}, &std::pair<double, double>::second);
+  }
+  double least() const { return worst().second; }
+  bool pays() const { return fewest() > 1 + margin; }
+};
+
+std::vector<std::pair<double, double>> gains_over(const Table& table, const std::string& x,
+                                                  const std::string& gain) {
+  auto gains = table.points(x, gain);
+  if (gains.size() < 2)
+    throw std::invalid_argument(
+        fmt::format("table '{}': {} rows with '{}'; expected two a tree", table.name, gains.size(), gain));
+  std::ranges::sort(gains);
+  return gains;
+}
+
+std::vector<Line> lines_of(const Table& table, const std::string& gain) {
+  std::vector<Line> lines;
+  for (const std::string& tree : table.distinct_texts("tree")) {
+    Line line{.tree = tree, .gains = gains_over(table.where("tree", tree), "leaves a box", gain)};
+    std::vector<std::pair<double, double>> enough = line.gains;
+    for (auto& [leaves, least] : enough) least = 1 + margin;
+    line.until = crossover(line.gains, enough).value_or(line.gains.back().first);
+    lines.push_back(line);
+  }
+  if (lines.empty())
+    throw std::invalid_argument(fmt::format("table '{}' has no rows; expected two a tree", table.name));
+  return lines;
+}
+
+/// "2d_capacity_32" of "2D, capacity 32".
+std::string figure_name(const std::string& tree) {
+  std::string name;
+  for (const char letter : tree) {
+    if (letter == ' ') name += '_';
+    if (letter != ' ' && letter != ',') name += letter == 'D' ? 'd' : letter;
+  }
+  return name;
+}
+
+/// From the least to the greatest of what lines gain.
+std::string range_text(const std::vector<Line>& lines, double (Line::*gain)() const) {
+  const auto [least, most] = std::ranges::minmax(lines, {}, gain);
+  return fmt::format("{:.2f} ({}) to {:.2f} ({})", (least.*gain)(), least.tree, (most.*gain)(), most.tree);
+}
+
+/// What becomes of boxes in many leaves, by how many times as long as from the root they take at worst.
+std::string spanning_text(double slowdown) {
+  if (slowdown > 1 + margin)
+    return fmt::format(
+        "in more it takes up to {:.2f} times as long as from the root, a loss but not horrible", slowdown);
+  return "in more it gains nothing, but is not horrible";
+}
+
+Finding judge(const std::vector<Table>& tables) {
+  const Table& depth = table_named(tables, "depth");
+  const Table& step = table_named(tables, "step");
+  const Table& spanning = table_named(tables, "spanning");
+  const std::vector<Line> across = lines_of(spanning, siblings_gain);
+  const std::vector<Line> common = lines_of(spanning, relative_gain);
+
+  double until = INFINITY;
+  for (const Line& line : across) {
+    if (line.pays()) until = std::min(until, line.until);
+  }
+  const Line worst = std::ranges::min(across, {}, &Line::least);
+  const auto [worst_leaves, least] = worst.worst();
+  const double slowdown = 1 / least;
+  const std::string first = depth.distinct_texts("tree").at(0);
+  const auto by_depth = gains_over(depth.where("tree", first), "boxes", siblings_gain);
+  const auto by_step =
+      gains_over(step.where("tree", step.distinct_texts("tree").at(0)), "drift", siblings_gain);
+
+  Finding finding;
+  if (std::ranges::none_of(across, &Line::pays)) {
+    finding.verdict = Verdict::does_not_hold;
+  } else if (slowdown >= horrible) {
+    finding.verdict = Verdict::holds;
+  } else {
+    finding.verdict = Verdict::holds_when;
+    finding.condition =
+        fmt::format("boxes are in fewer than {:.1f} leaves on average; {}", until, spanning_text(slowdown));
+  }
+  finding.reason = fmt::format(
+      "Times as fast as from the root, a mover whose references are carried across to siblings and cousins: "
+      "with boxes in the fewest leaves {}, in the most {}. At its worst, in {:.1f} leaves ({}), it takes "
+      "{:.2f} "
+      "times as long as from the root: horrible would be {} times. The way by the one node that holds both "
+      "places is {} times as fast in the fewest leaves, and {} in the most. Across to siblings, steps of {} "
+      "of a box gain {:.2f} times, those of {} boxes {:.2f}; from {} to {} boxes the gain goes from {:.2f} "
+      "to {:.2f} ({}).",
+      range_text(across, &Line::fewest), range_text(across, &Line::most), worst_leaves, worst.tree, slowdown,
+      rounded(horrible), range_text(common, &Line::fewest), range_text(common, &Line::most),
+      rounded(by_step.front().first), by_step.front().second, rounded(by_step.back().first),
+      by_step.back().second, whole(by_depth.front().first), whole(by_depth.back().first),
+      by_depth.front().second, by_depth.back().second, first);
+  const auto add_gains = [&](const std::string& way, const std::vector<Line>& lines) {
+    for (const Line& line : lines) {
+      finding.figures.push_back({way + "_fewest_leaves_" + figure_name(line.tree), line.fewest()});
+      finding.figures.push_back({way + "_most_leaves_" + figure_name(line.tree), line.most()});
+    }
+  };
+  add_gains("siblings", across);
+  add_gains("relative", common);
+  finding.figures.insert(finding.figures.end(), {{"pays_below", std::isfinite(until) ? until : 0, "leaves"},
+                                                 {"worst_leaves", worst_leaves, "leaves"},
+                                                 {"worst_slowdown", slowdown},
+                                                 {"horrible", horrible},
+                                                 {"gain_least_drift", by_step.front().second},
+                                                 {"gain_greatest_drift", by_step.back().second},
+                                                 {"gain_fewest_boxes", by_depth.front().second},
+                                                 {"gain_most_boxes", by_depth.back().second}});
+  return finding;
+}
+
+}  // namespace
+
+Experiment quadtree_siblings() {
+  return {
+      .number = 14,
+      .name = "quadtree_siblings",
+      .title = "Quadtree: by way of siblings or from the root",
+      .claim =
+          "So instead of reinserting at the root which can take O(lg(n)) time to search for the correct "
+          "node for each element ..., we can insert based on relative position. ... we can insert "
+          "references to siblings ... If sibling is not available then we can go to the cousin by "
+          "traversing through the parent. This, however is a horrible idea for spanning elements.",
+      .section = "VI-D",
+      .measured =
+          "A mover of our quadtree, kept from frame to frame, on uniform boxes of which a tenth moves: "
+          "filed anew from the root (update=root); from its leaf up to the first node that holds its old "
+          "and its new box, and down from there (update=relative); or by the claim's words "
+          "(update=siblings): the reference of each leaf that it leaves goes up to the parent, or "
+          "further, and down to the nearest leaf that it is in now, and leaves without one get it from "
+          "those beside them. By the number of boxes, by how far they go, and by how many leaves they are "
+          "in.",
+      .measure = measure,
+      .judge = judge};
+}
+
+}  // namespace broadside::lab

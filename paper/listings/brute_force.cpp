@@ -1,0 +1,44 @@
+// Brute force as section II of paper.md has it: Algorithm 1 over all boxes. What was mended, and why, is in
+// docs/paper/errata.md.
+#include <memory>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+
+#include "paper/listings/algorithm_1.hpp"
+#include "paper/listings/descriptions.hpp"
+
+namespace broadside::paper {
+namespace {
+
+template <int D>
+class BruteForce final : public PairFinder<D> {
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    e_.clear();
+    for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
+    Statistics statistics{.references = e_.size()};
+    algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) {
+      ++statistics.tests;
+      if (overlap(boxes[index(a)], boxes[index(b)])) pairs.add(a, b);
+    });
+    this->count(statistics);
+  }
+
+  std::vector<BoxId> e_;
+};
+
+}  // namespace
+
+Algorithm brute_force() {
+  return {
+      .name = "paper_brute_force",
+      .summary = "every box against every later one, as the paper lists it, mended",
+      .source = "paper.md, section II, Algorithm 1",
+      .kind = AlgorithmKind::paper,
+      .finder_2d = [](const Settings&) { return std::make_unique<BruteForce<2>>(); },
+      .finder_3d = [](const Settings&) { return std::make_unique<BruteForce<3>>(); },
+  };
+}
+
+}  // namespace broadside::paper

@@ -1,0 +1,60 @@
+// The world of the paper's grid and quadtree.
+#include "paper/listings/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace broadside::paper {
+namespace {
+
+std::optional<double> given(const Settings& settings, std::string_view tunable) {
+  if (settings.is_auto(tunable)) return std::nullopt;
+  return settings.number(tunable);
+}
+
+/// Begin and length of the world on one axis.
+std::pair<double, double> extent(std::span<const Box2> boxes, int axis, std::optional<double> begin,
+                                 std::optional<double> length) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity;
+  double most = -infinity;
+  for (const Box2& box : boxes) {
+    for (const float x : {box.min[axis], box.max[axis]}) {
+      if (!std::isfinite(x)) continue;
+      least = std::min<double>(least, x);
+      most = std::max<double>(most, x);
+    }
+  }
+  if (least > most) least = most = begin.value_or(0);
+  const double from = begin.value_or(least);
+  const double wide = length.value_or(most - from);
+  return {from, wide > 0 ? wide : 1};
+}
+
+}  // namespace
+
+std::vector<Tunable> world_tunables() {
+  constexpr double most = std::numeric_limits<float>::max();
+  return {
+      {.name = "left", .summary = "least x of the world", .standard = "auto", .least = -most, .most = most},
+      {.name = "top", .summary = "least y of the world", .standard = "auto", .least = -most, .most = most},
+      {.name = "width", .summary = "extent of the world in x", .standard = "auto", .most = most},
+      {.name = "height", .summary = "extent of the world in y", .standard = "auto", .most = most},
+  };
+}
+
+WorldSettings::WorldSettings(const Settings& settings)
+    : left_(given(settings, "left")),
+      top_(given(settings, "top")),
+      width_(given(settings, "width")),
+      height_(given(settings, "height")) {}
+
+World WorldSettings::around(std::span<const Box2> boxes) const {
+  const auto [left, width] = extent(boxes, 0, left_, width_);
+  const auto [top, height] = extent(boxes, 1, top_, height_);
+  return {left, top, width, height};
+}
+
+}  // namespace broadside::paper

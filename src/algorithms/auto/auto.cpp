@@ -1,0 +1,348 @@
+// auto: looks at a sample of the boxes, and lets the algorithm search that suits them.
+//
+// The rules are from measurements over the generated scenes and the maps, with 16 to 1,000,000 boxes; how
+// near they come is a line of every comparison. They ask for what boxes are like, never for a clock: the same
+// boxes are always searched the same way.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
+
+#include "algorithms/auto/auto_tracker.hpp"
+#include "algorithms/auto/glance.hpp"
+#include "algorithms/auto/segment_join.hpp"
+#include "algorithms/descriptions.hpp"
+#include "core/parallel.hpp"
+#include "core/sample.hpp"
+#include "doubles/double_finder.hpp"
+#include "doubles/double_follower.hpp"
+#include "interface/yielding.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// Up to here comparing all costs less than any order.
+template <int D>
+constexpr std::size_t few_boxes = D == 2 ? 256 : 400;
+
+/// And up to here where this part of all pairs overlaps, which then are most of the work.
+constexpr std::size_t few_boxes_in_one_place = 1000;
+constexpr double most_pairs = 0.5;
+
+/// Up to here a grid's cells cost more to lay out than they save over a tree.
+constexpr std::size_t boxes_for_cells = 6000;
+
+/// But for shapes for which a tree's bounds overlap, and for boxes of one size in 3D: cells pay from fewer
+/// boxes on where a box's longest side is so many times its shortest, where the mean of the sides' squares is
+/// so many times their mean's square, and where so many pairs overlap on some axis.
+constexpr double long_boxes = 4;
+constexpr double uneven_boxes = 1.6;
+constexpr double most_uneven_boxes = 40;
+constexpr double of_one_size = 1.0001;
+constexpr double flat = 0.9;
+template <int D>
+constexpr std::size_t long_boxes_for_cells = D == 2 ? 4000 : 1000;
+template <int D>
+constexpr std::size_t uneven_boxes_for_cells = D == 2 ? 3500 : 3000;
+constexpr std::size_t most_uneven_boxes_for_cells = 1000;
+constexpr std::size_t flat_boxes_for_cells = 1100;
+constexpr double most_overlaps_for_their_shape = 50;
+
+/// Up to so many tests a box a sweep beats a tree over boxes that stand in a line: those of which this part
+/// overlaps on each other axis.
+constexpr double tests_of_a_line = 16;
+constexpr double in_line = 0.5;
+constexpr std::size_t boxes_of_a_line = 800;
+
+/// Up to so many tests a box, a sweep along one axis needs no help.
+constexpr double tests_of_a_good_axis = 4;
+
+/// From so many overlaps a box on, most of what a cell tests is a pair, and filing boxes in several cells
+/// only repeats it.
+template <int D>
+constexpr double many_overlaps = D == 2 ? 6 : 200;
+
+/// From so many times as many boxes near each other on all axes as the single axes would let expect, cells
+/// that suit the clusters would be too many.
+template <int D>
+constexpr double clustered = D == 2 ? 2.2 : 3;
+
+/// Boxes of a sample are near if they begin within this part of its range, on every axis.
+constexpr float near = 1.0F / 16;
+
+constexpr std::size_t most_compared = 96;
+
+/// Below so many overlaps among the sampled boxes, how many there are is chance: one of them stands for n /
+/// 9,000 tests a box.
+constexpr double telling_overlaps = 8;
+
+/// What is chosen, and what for.
+enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
+
+constexpr std::array<std::string_view, 9> chosen_algorithm = {
+    "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
+
+template <int D>
+class Auto final : public PairFinder<D>, public Outlined<D> {
+ public:
+  std::string explanation() const override {
+    std::string text = reason();
+    if (has_handed_over_)
+      text +=
+          "; it gave up, since its tests were far more than boxes and pairs account for, and a segment tree "
+          "found "
+          "what was left";
+    return text;
+  }
+
+ private:
+  std::string reason() const {
+    const auto rounded = [](double number) {
+      const std::string text = std::to_string(number);
+      return text.substr(0, text.find('.') + 2);
+    };
+    std::string text(chosen_algorithm[static_cast<std::size_t>(choice_)]);
+    text += ", since ";
+    const std::string boxes = std::to_string(count_) + " boxes";
+    switch (choice_) {
+      case Choice::few:
+        return text + boxes + " are so few that comparing all of them costs less than any order";
+      case Choice::one_axis:
+        return text + "a sweep along one axis leaves few tests a box: " + rounded(tests_) + " in a sample";
+      case Choice::tree:
+        return text + boxes + " are too few for cells to pay";
+      case Choice::dense:
+        return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
+      case Choice::clusters:
+        return text + "boxes stand in clusters: " + rounded(clustering_) +
+               " times as many are near each other as evenly spread ones would be";
+      case Choice::cells:
+        return text + boxes + " spread as evenly as these suit cells";
+      case Choice::few_in_one_place:
+      case Choice::one_place:
+        return text + "a box overlaps some " + rounded(overlaps_) + " of " + boxes +
+               ", so that nothing is gained by parting them";
+      case Choice::shapes:
+        return text + "the shapes of these " + boxes + " suit cells better than a tree's bounds";
+    }
+    return text;
+  }
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    has_handed_over_ = false;
+    PairFinder<D>& finder = chosen_for(boxes);
+    this->search_with(finder, boxes, pairs);
+    const auto* search = dynamic_cast<const core::Yielding<D>*>(&finder);
+    if (search == nullptr || !search->has_yielded()) return;
+    has_handed_over_ = true;
+    Statistics statistics = this->statistics().value_or(Statistics{});
+    if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
+    core::LeftSink<D> left(*search, boxes, pairs);
+    const Statistics more = segments_->join(boxes, this->left_count(), left);
+    left.flush();
+    statistics.tests += more.tests;
+    statistics.references += more.references;
+    this->count(statistics);
+  }
+
+  PairFinder<D>& chosen_for(std::span<const Box<D>> boxes) {
+    count_ = boxes.size();
+    choice_ = choose(boxes);
+    auto& finder = finders_[static_cast<std::size_t>(choice_)];
+    if (!finder) {
+      const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
+      finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
+      if (auto* search = dynamic_cast<core::Yielding<D>*>(finder.get())) search->let_yield();
+    }
+    return *finder;
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    Outline<D> outline = broadside::outline(chosen_for(boxes), boxes);
+    const std::string_view name = chosen_algorithm[static_cast<std::size_t>(choice_)];
+    outline.caption.insert(0, std::string(name) + (outline.caption.empty() ? "" : ": "));
+    return outline;
+  }
+
+  Choice choose(std::span<const Box<D>> boxes) {
+    if (boxes.size() <= few_boxes<D>) return Choice::few;
+    if (boxes.size() <= boxes_for_cells) return choose_at_a_glance(boxes);
+    sample_.take(boxes, most_compared);
+    const auto count = static_cast<double>(boxes.size());
+    const int best = sample_.axes_by_overlap()[0];
+    tests_ = tests_along(best, count);
+    if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
+    overlaps_ = count / 2;
+    for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
+    if (overlaps_ >= most_pairs * count / 2) return Choice::one_place;
+    if (overlaps_ >= many_overlaps<D>) return Choice::dense;
+    std::array<float, D> reach;
+    for (int axis = 0; axis < D; ++axis)
+      reach[axis] =
+          static_cast<float>(double{near} * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
+    glance_.take(boxes, most_compared);
+    clustering_ = glance_.clustering(reach);
+    return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
+  }
+
+  /// Chooses for so few boxes that to sort a sample of them would take a good part of the time.
+  Choice choose_at_a_glance(std::span<const Box<D>> boxes) {
+    const std::size_t size = boxes.size();
+    const auto half = static_cast<double>(size) / 2;
+    glance_.take(boxes, size < 2 * boxes_of_a_line ? 32 : 48);
+    glance_.compare();
+    overlaps_ = half * glance_.overlap_on_all();
+    if (glance_.overlap_on_all() >= most_pairs)
+      return size <= few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
+    if (size < boxes_of_a_line) return Choice::tree;
+    std::array<double, D> overlap = glance_.overlap();
+    std::ranges::sort(overlap);
+    tests_ = half * overlap[0];
+    if (overlap[1] >= in_line && tests_ <= tests_of_a_line) return Choice::one_axis;
+    if (!shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
+    std::array<float, D> reach = glance_.range();
+    for (float& distance : reach) distance *= near;
+    clustering_ = glance_.clustering(reach);
+    return clustering_ >= clustered<D> ? Choice::clusters : Choice::shapes;
+  }
+
+  bool shapes_suit_cells(std::span<const Box<D>> boxes, double most_on_an_axis) const {
+    const std::size_t size = boxes.size();
+    if (overlaps_ >= most_overlaps_for_their_shape) return false;
+    if (D == 3 && size >= flat_boxes_for_cells && most_on_an_axis >= flat) return true;
+    if (size < most_uneven_boxes_for_cells) return false;
+    const core::Sides sides = core::look_at_sides<D>(boxes);
+    if (sides.unevenness >= most_uneven_boxes || (D == 3 && sides.unevenness <= of_one_size)) return true;
+    return (size >= long_boxes_for_cells<D> && sides.longest_over_shortest >= long_boxes) ||
+           (size >= uneven_boxes_for_cells<D> && sides.unevenness >= uneven_boxes);
+  }
+
+  /// About how many tests a box a sweep of `count` boxes along the axis takes.
+  double tests_along(int axis, double count) const {
+    const core::AxisSample& sample = sample_[axis];
+    const std::vector<float>& minima = sample.minima;
+    const auto size = static_cast<double>(minima.size());
+    const double measured = count * sample.overlap / 2;
+    if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps) return measured;
+    // How many begin within a box's extent, by how close the sampled boxes near it stand to each other: so
+    // clusters count for what they are.
+    constexpr std::size_t apart = 4;
+    double density = 0;  // of all boxes, those that begin in a unit of length
+    for (std::size_t i = 0; i + apart < minima.size(); ++i) {
+      const double distance = static_cast<double>(minima[i + apart]) - minima[i];
+      if (!(distance > 0)) return measured;
+      density += (apart - 1) / (distance * size * (size - apart));
+    }
+    return count * density * sample.mean_extent;
+  }
+
+  core::Glance<D> glance_;
+  core::Sample<D> sample_;
+  std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
+  std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
+  Choice choice_ = Choice::few;
+  std::size_t count_ = 0;
+  bool has_handed_over_ = false;
+  double tests_ = 0;
+  double overlaps_ = 0;
+  double clustering_ = 0;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings&) {
+  return std::make_unique<Auto<D>>();
+}
+
+Way way_of(const Settings& settings) {
+  const std::string& way = settings.text("way");
+  if (way == "rebuild") return Way::rebuild;
+  return way == "incremental" ? Way::incremental : Way::automatic;
+}
+
+/// The others come where the first one makes some five hundred tests a mover: by measurements with 50,000
+/// boxes, one in a hundred moving, in stacks of plates, lines and clusters.
+template <int D>
+constexpr std::array<Follower<D, float>, 3> followers = {{
+    {.name = "hierarchical_grid",
+     .make = [] { return make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}); },
+     .start = D == 2 ? 15 : 18,
+     .mover = D == 2 ? 110 : 140,
+     .mover_alone = D == 2 ? 110 : 140,
+     .test = 1.8,
+     .further_test = 0.8},
+    {.name = "quadtree",
+     .make = [] { return make_tracker<D>("quadtree:update=root"); },
+     .start = 300,
+     .mover = 600,
+     .mover_alone = 300,
+     .test = 2,
+     .further_test = 2},
+    {.name = "bvh",
+     .make = [] { return make_tracker<D>("bvh:update=reinsert"); },
+     .start = 100,
+     .mover = 600,
+     .mover_alone = 300,
+     .test = 0.9,
+     .further_test = 0.9},
+}};
+
+template <int D>
+constexpr std::array<Follower<D, double>, 1> double_followers = {{
+    {.name = "hierarchical_grid",
+     .make = []() -> std::unique_ptr<PairTracker<D, double>> {
+       return std::make_unique<DoubleFollower<D>>();
+     },
+     .start = D == 2 ? 15 : 18,
+     .mover = D == 2 ? 110 : 140,
+     .mover_alone = D == 2 ? 110 : 140,
+     .test = 1.8,
+     .further_test = 0.8},
+}};
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
+  return std::make_unique<AutoTracker<D, float>>(std::make_unique<Auto<D>>(), followers<D>,
+                                                 make_tracker<D>(*find_algorithm("brute_force"), Spec{}),
+                                                 way_of(settings));
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
+  return std::make_unique<AutoTracker<D, double>>(
+      std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()), double_followers<D>, nullptr,
+      way_of(settings));
+}
+
+}  // namespace
+
+Algorithm automatic() {
+  return {
+      .name = "auto",
+      .summary =
+          "looks at a sample of the boxes and chooses among the others; where boxes move, from frame to "
+          "frame",
+      .source = "Broadside's measurements",
+      .tunables = {core::threads_tunable(),
+                   {.name = "way",
+                    .summary = "in tracking: find all pairs anew in each frame, or follow what changed",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"auto", "rebuild", "incremental"}}},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d = make_tracking<2>,
+      .tracker_3d = make_tracking<3>,
+      .double_tracker_2d = make_double_tracking<2>,
+      .double_tracker_3d = make_double_tracking<3>,
+  };
+}
+
+}  // namespace broadside::own

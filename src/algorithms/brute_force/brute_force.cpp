@@ -1,0 +1,83 @@
+// Brute force: every box against every later one. Section II of the paper; the reference for all others.
+#include <algorithm>
+#include <memory>
+
+#include "broadside/broad_phase.hpp"
+
+#include "algorithms/brute_force/tracker.hpp"
+#include "algorithms/descriptions.hpp"
+#include "core/parallel.hpp"
+#include "kernels/sweep.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// What a box takes in an algorithm that is not this one, in boxes compared.
+constexpr std::size_t tests_per_box = 128;
+
+/// So many boxes are compared with all others by the same thread.
+constexpr std::size_t rows_at_once = 64;
+
+template <int D>
+class BruteForce final : public PairFinder<D> {
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    const std::size_t left = this->left_count();
+    gather(boxes, left, boxes.size(), run_);
+    gather(boxes, 0, left, left_run_);
+    const kernels::Run<D> run = run_.view();
+    const kernels::Run<D> left_run = left_run_.view();
+    const std::size_t rows = left == 0 ? run.size : left;
+    parallel_.start(this->workers(), rows * run.size / tests_per_box);
+    const auto compare = [&](core::Range some, std::size_t, PairSink& sink) {
+      const std::size_t begin = some.begin * rows_at_once;
+      const std::size_t end = std::min(some.end * rows_at_once, rows);
+      if (left == 0)
+        return Statistics{.tests = kernels::compare_all(kernels::rows_of(run, begin, end), sink)};
+      kernels::Run<D> some_left = kernels::rows_of(left_run, begin, end);
+      some_left.size = end - begin;
+      return Statistics{.tests = kernels::compare_all(some_left, run, sink)};
+    };
+    Statistics statistics = parallel_.search((rows + rows_at_once - 1) / rows_at_once, pairs, compare);
+    statistics.references = boxes.size();
+    this->count(statistics);
+  }
+
+  static void gather(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end,
+                     kernels::RunBuffer<D>& run) {
+    run.clear();
+    run.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) run.append(boxes[i], BoxId(i));
+  }
+
+  core::Parallel parallel_;
+  kernels::RunBuffer<D> run_;  // all boxes, or the right set
+  kernels::RunBuffer<D> left_run_;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings&) {
+  return std::make_unique<BruteForce<D>>();
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_brute_force_tracker<D>(settings, make<D>(settings));
+}
+
+}  // namespace
+
+Algorithm brute_force() {
+  return {
+      .name = "brute_force",
+      .summary = "every box against every other, over a structure of arrays",
+      .source = "paper.md, sections II and VI-A",
+      .tunables = {brute_force_update(), core::threads_tunable()},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
+  };
+}
+
+}  // namespace broadside::own

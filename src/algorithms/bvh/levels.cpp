@@ -1,0 +1,91 @@
+// The bounds over packed leaves.
+#include "algorithms/bvh/levels.hpp"
+
+#include "kernels/nowhere.hpp"
+
+namespace broadside::own {
+namespace {
+
+using kernels::fan_out;
+
+/// The elements of `memory`, at least `size` of them.
+template <typename Element>
+Element* grown(std::vector<Element>& memory, std::size_t size) {
+  if (memory.size() < size) memory.resize(size);
+  return memory.data();
+}
+
+/// What is neutral to bounds.
+template <int D>
+constexpr Box<D> none = absent_box<D>();
+
+}  // namespace
+
+template <int D>
+void BoxTreeLevels<D>::start(std::size_t places) {
+  resize(0, places);
+  if (ids_.size() < places) ids_.resize(places);
+  gaps_.clear();
+  tree_.left_size = 0;
+}
+
+template <int D>
+void BoxTreeLevels<D>::build() {
+  for (const Gap gap : gaps_) fill(0, gap, none<D>);
+  tree_.id = ids_.data();
+  tree_.level_count = 1;
+  do {
+    const std::size_t level = tree_.level_count++;
+    resize(level, whole_leaves(tree_.levels[level - 1].size) / fan_out);
+    kernels::set_bounds(tree_, level);
+    fill(level, gap_behind(level), none<D>);
+  } while (tree_.levels[tree_.level_count - 1].size > fan_out);
+  for (const Gap gap : gaps_) fill(0, gap, kernels::nowhere<D>());
+  for (std::size_t level = 1; level < tree_.level_count; ++level)
+    fill(level, gap_behind(level), kernels::nowhere<D>());
+}
+
+template <int D>
+auto BoxTreeLevels<D>::gap_behind(std::size_t level) const -> Gap {
+  const std::size_t size = tree_.levels[level].size;
+  return {size, whole_leaves(size)};
+}
+
+template <int D>
+void BoxTreeLevels<D>::fill(std::size_t level, Gap gap, const Box<D>& box) {
+  for (std::size_t place = gap.begin; place < gap.end; ++place) {
+    for (int axis = 0; axis < D; ++axis) {
+      tree_.levels[level].min[axis][place] = box.min[axis];
+      tree_.levels[level].max[axis][place] = box.max[axis];
+    }
+    if (level == 0) ids_[place] = BoxId{0};
+  }
+}
+
+/// Makes `size` the size of a level, whose elements are then to be set.
+template <int D>
+void BoxTreeLevels<D>::resize(std::size_t level, std::size_t size) {
+  LevelMemory& memory = memory_[level];
+  for (int axis = 0; axis < D; ++axis) {
+    tree_.levels[level].min[axis] = grown(memory.min[axis], whole_leaves(size));
+    tree_.levels[level].max[axis] = grown(memory.max[axis], whole_leaves(size));
+  }
+  tree_.levels[level].size = size;
+  if (level != 0) tree_.candidates[level] = grown(memory.candidates, whole_leaves(size) + fan_out);
+}
+
+template <int D>
+std::size_t BoxTreeLevels<D>::bytes() const noexcept {
+  const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
+  std::size_t bytes = held(gaps_) + held(ids_);
+  for (const LevelMemory& level : memory_) {
+    bytes += held(level.candidates);
+    for (int axis = 0; axis < D; ++axis) bytes += held(level.min[axis]) + held(level.max[axis]);
+  }
+  return bytes;
+}
+
+template class BoxTreeLevels<2>;
+template class BoxTreeLevels<3>;
+
+}  // namespace broadside::own

@@ -1,0 +1,249 @@
+// Packs boxes into a tree of bounds: sixteen boxes to a leaf, sixteen children to a node.
+//
+// The builder follows S. Leutenegger et al., "STR: a simple and efficient algorithm for R-tree packing" (ICDE
+// 1997): boxes are cut into slabs of equally many along the first axis, slabs into strips along the next one,
+// strips into leaves along the last; how many of each, so that leaves have the shape of a typical box. They
+// are put in order by counting, in buckets of equal width: bounds are taken of what came out, so that a
+// bucket's disorder costs time, never a pair. Boxes far larger than most would widen the bounds of every leaf
+// they are in: they have leaves of their own, by classes of size, behind the others in the same tree.
+#include "algorithms/bvh/tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "algorithms/bvh/buckets.hpp"
+
+namespace broadside::own {
+namespace {
+
+using kernels::fan_out;
+
+/// Sizes beyond which a box belongs to the next class, in units of a typical one.
+constexpr std::array<float, 4> class_borders = {4, 32, 256, 2048};
+constexpr std::size_t classes = class_borders.size() + 1;
+
+}  // namespace
+
+template <int D>
+void BoxTreePacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_count) {
+  sample_.take(boxes);
+  partition(boxes, left_count);
+  place_all();
+  levels_.build();
+}
+
+/// Sorts the boxes into entries_: by set and class, and in these roughly along the first axis.
+template <int D>
+void BoxTreePacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
+  std::array<float, D> inverse;
+  for (int axis = 0; axis < D; ++axis) {
+    typical_[axis] = std::max(sample_[axis].extent, spacing(boxes.size(), axis) / 2);
+    inverse[axis] = typical_[axis] > 0 ? 1 / typical_[axis] : std::numeric_limits<float>::max();
+  }
+  const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, most_buckets);
+  choose_axes(boxes.size());
+  const int first = axes_[0];
+  const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
+  const std::size_t groups = left == 0 ? classes : 2 * classes;
+  counts_.assign(groups * buckets.count, 0);
+  keys_.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D>& box = boxes[i];
+    float size = 0;
+    for (int axis = 0; axis < D; ++axis)
+      size = std::max(size, (box.max[axis] - box.min[axis]) * inverse[axis]);
+    std::uint32_t group = 0;
+    if (size > class_borders[0]) {
+      for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
+    }
+    if (left != 0 && i >= left) group += classes;
+    const std::uint32_t key = group * buckets.count + buckets(box.min[first]);
+    keys_[i] = static_cast<std::uint16_t>(key);
+    ++counts_[key];
+  }
+  std::uint32_t begin = 0;
+  group_ends_.clear();
+  for (std::size_t key = 0; key < counts_.size(); ++key) {
+    begin += std::exchange(counts_[key], begin);
+    if ((key + 1) % buckets.count == 0) group_ends_.push_back(begin);
+  }
+  entries_.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) entries_[counts_[keys_[i]]++] = {boxes[i], BoxId(i)};
+  sort_heavy_buckets();
+}
+
+/// The axis with the most cuts comes last, where order is finest.
+template <int D>
+void BoxTreePacker<D>::choose_axes(std::size_t boxes) {
+  std::iota(axes_.begin(), axes_.end(), 0);
+  const std::array<double, D> parts = parts_of(whole_leaves(boxes) / fan_out, 1);
+  // Not a stable sort, which takes memory.
+  std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
+}
+
+/// Buckets of which a few hold most boxes do not tell them apart.
+template <int D>
+void BoxTreePacker<D>::sort_heavy_buckets() {
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : counts_) {
+    if (end - begin > std::max<std::size_t>(1024, entries_.size() / 64)) {
+      std::sort(entries_.begin() + begin, entries_.begin() + end,
+                [first = axes_[0]](const Entry& a, const Entry& b) {
+                  return a.box.min[first] != b.box.min[first] ? a.box.min[first] < b.box.min[first]
+                                                              : a.id < b.id;
+                });
+    }
+    begin = end;
+  }
+}
+
+/// The distance of neighbours on an axis, were `count` boxes spread evenly.
+template <int D>
+float BoxTreePacker<D>::spacing(std::size_t count, int axis) const {
+  const float range = sample_[axis].high - sample_[axis].low;
+  return std::min(range, std::numeric_limits<float>::max()) /
+         static_cast<float>(root(static_cast<double>(count), D));
+}
+
+/// Puts all boxes from entries_ into the tree's leaves.
+template <int D>
+void BoxTreePacker<D>::place_all() {
+  std::size_t size = 0;
+  std::size_t begin = 0;
+  for (const std::size_t end : group_ends_) {
+    size += whole_leaves(end - begin);
+    begin = end;
+  }
+  levels_.start(size);
+  size = 0;
+  begin = 0;
+  for (std::size_t group = 0; group < group_ends_.size(); ++group) {
+    const std::size_t end = group_ends_[group];
+    place_group(begin, end, size, group % classes);
+    levels_.leave(size + (end - begin), size + whole_leaves(end - begin));
+    size += whole_leaves(end - begin);
+    begin = end;
+    if (group_ends_.size() > classes && group == classes - 1) levels_.set_left_size(size);
+  }
+}
+
+/// Puts the boxes of one class into leaves, the first of which is at `place`.
+template <int D>
+void BoxTreePacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
+                                   std::size_t size_class) {
+  if (begin == end) return;
+  const std::size_t leaves = whole_leaves(end - begin) / fan_out;
+  const float size = size_class == 0 ? 1 : class_borders[size_class - 1];
+  std::array<double, D> parts = parts_of(leaves, size);
+  const auto share = [](std::size_t count, double part) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(static_cast<double>(count) / part)));
+  };
+  const std::size_t slab = share(leaves, parts[axes_[0]]) * fan_out;
+  const std::size_t strip = D == 2 ? slab : share(slab / fan_out, parts[axes_[1]]) * fan_out;
+  for (std::size_t at = begin; at < end; at += slab, place += slab) {
+    const std::size_t count = std::min(slab, end - at);
+    const auto entry = [this, at](std::size_t i) -> const Entry& { return entries_[at + i]; };
+    if constexpr (D == 2) {
+      order(count, axes_[1], entry,
+            [&](std::size_t i, std::size_t to) { levels_.put(place + to, entry(i).box, entry(i).id); });
+    } else {
+      order_.resize(std::max(order_.size(), count));
+      order(count, axes_[1], entry,
+            [this](std::size_t i, std::size_t to) { order_[to] = static_cast<std::uint32_t>(i); });
+      for (std::size_t from = 0; from < count; from += strip) {
+        const auto in_strip = [&](std::size_t i) -> const Entry& { return entry(order_[from + i]); };
+        order(std::min(strip, count - from), axes_[2], in_strip, [&](std::size_t i, std::size_t to) {
+          levels_.put(place + from + to, in_strip(i).box, in_strip(i).id);
+        });
+      }
+    }
+  }
+}
+
+/// Into how many parts each axis is cut, so that leaves have the shape of a box `size` times the typical
+/// one.
+template <int D>
+std::array<double, D> BoxTreePacker<D>::parts_of(std::size_t leaves, float size) const {
+  std::array<double, D> ratios;
+  for (int axis = 0; axis < D; ++axis) {
+    const double range = static_cast<double>(sample_[axis].high) - sample_[axis].low;
+    ratios[axis] =
+        typical_[axis] > 0 ? std::max(1.0, range / (static_cast<double>(typical_[axis]) * size)) : 1;
+  }
+  std::array<double, D> parts;
+  parts.fill(1);
+  // An axis on which most boxes overlap tells nothing apart. One that is too short for a single cut leaves
+  // its share to the others.
+  std::array<bool, D> cut;
+  for (int axis = 0; axis < D; ++axis) cut[axis] = ratios[axis] > 2;
+  for (int round = 0; round < D; ++round) {
+    double product = static_cast<double>(leaves);
+    int cuts = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      if (!cut[axis]) continue;
+      product /= ratios[axis];
+      ++cuts;
+    }
+    if (cuts == 0) break;
+    const double factor = root(product, cuts);
+    bool all = true;
+    for (int axis = 0; axis < D; ++axis) {
+      if (!cut[axis]) continue;
+      parts[axis] = std::max(1.0, ratios[axis] * factor);
+      if (ratios[axis] * factor < 1) all = cut[axis] = false;
+    }
+    if (all) break;
+  }
+  return parts;
+}
+
+/// Calls `put(i, place)` for each of `count` entries, of which `entry(i)` is one, with its place in their
+/// order along an axis.
+template <int D>
+template <typename EntryOf, typename Put>
+void BoxTreePacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
+  float low = std::numeric_limits<float>::infinity();
+  float high = -low;
+  for (std::size_t i = 0; i < count; ++i) {
+    low = std::min(low, entry(i).box.min[axis]);
+    high = std::max(high, entry(i).box.min[axis]);
+  }
+  const Buckets buckets(std::max(low, sample_[axis].low), std::min(high, sample_[axis].high),
+                        std::min(count / 2, most_buckets));
+  std::array<std::uint32_t, most_buckets> places;
+  std::fill_n(places.begin(), buckets.count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t bucket = buckets(entry(i).box.min[axis]);
+    keys_[i] = static_cast<std::uint16_t>(bucket);
+    ++places[bucket];
+  }
+  std::uint32_t begin = 0;
+  std::uint32_t heaviest = 0;
+  for (std::uint32_t bucket = 0; bucket < buckets.count; ++bucket) {
+    heaviest = std::max(heaviest, places[bucket]);
+    begin += std::exchange(places[bucket], begin);
+  }
+  if (heaviest > 2 * fan_out && low < high) {
+    const std::span<core::KeyedPlace> keyed = radix_.places(count);
+    for (std::uint32_t i = 0; i < count; ++i) keyed[i] = {core::sort_key(entry(i).box.min[axis]), i};
+    std::size_t to = 0;
+    for (const core::KeyedPlace& place : radix_.sort()) put(place.place, to++);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) put(i, places[keys_[i]]++);
+}
+
+template <int D>
+std::size_t BoxTreePacker<D>::bytes() const noexcept {
+  const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
+  return held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(order_) + radix_.bytes() +
+         levels_.bytes();
+}
+
+template class BoxTreePacker<2>;
+template class BoxTreePacker<3>;
+
+}  // namespace broadside::own

@@ -1,0 +1,74 @@
+// Packs boxes into a tree of bounds: sixteen boxes to a leaf, sixteen children to a node.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "algorithms/bvh/levels.hpp"
+#include "core/radix_sort.hpp"
+#include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
+#include "kernels/box_tree.hpp"
+
+namespace broadside::own {
+
+/// Builds trees and holds the last one built.
+///
+/// Boxes far larger than most have leaves of their own, by classes of size, behind the others: they would
+/// widen the bounds of every leaf they were in. Each class begins with a new leaf, so that up to fifteen
+/// places at its end hold nothing.
+template <int D>
+class BoxTreePacker {
+ public:
+  BoxTreePacker() = default;
+  BoxTreePacker(const BoxTreePacker&) = delete;
+  BoxTreePacker& operator=(const BoxTreePacker&) = delete;
+
+  /// Builds the tree over `boxes`, all of which are present; there is at least one. A box's id is its place
+  /// in the array. Where `left_count` is not 0, the boxes before it have leaves and nodes' children of their
+  /// own, before the others. What was built before is gone. Cost: some passes over the boxes, no allocation
+  /// beyond growth.
+  void pack(std::span<const Box<D>> boxes, std::size_t left_count = 0);
+
+  /// The tree built last. Whoever changes what its levels hold keeps to what BoxTree says of them.
+  const kernels::BoxTree<D>& tree() const noexcept { return levels_.tree(); }
+
+  /// The ids on level 0, one for each of its places, to be renamed by who has other names; 0 where there is
+  /// no box.
+  std::span<BoxId> ids() noexcept { return levels_.ids(); }
+
+  /// The bytes held, of which building alone takes about half.
+  std::size_t bytes() const noexcept;
+
+ private:
+  using Entry = core::SortedBox<D>;
+
+  void partition(std::span<const Box<D>> boxes, std::size_t left);
+  void choose_axes(std::size_t boxes);
+  void sort_heavy_buckets();
+  float spacing(std::size_t count, int axis) const;
+  void place_all();
+  void place_group(std::size_t begin, std::size_t end, std::size_t place, std::size_t size_class);
+  std::array<double, D> parts_of(std::size_t leaves, float size) const;
+  template <typename EntryOf, typename Put>
+  void order(std::size_t count, int axis, EntryOf entry, Put put);
+
+  core::Sample<D> sample_;
+  std::array<int, D> axes_{};        // slabs are cut along the first one, and leaves along the last one
+  std::array<float, D> typical_{};   // a box's usual extents, or more where boxes lie further apart
+  std::vector<std::uint16_t> keys_;  // a box's bucket
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> order_;
+  core::RadixSort radix_;
+  BoxTreeLevels<D> levels_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,244 @@
+// Grid: cells over all axes but one, and a sweep along that one in each.
+//
+// Section III of the paper, without its limits: the cells clamp what lies outside them, so no world is
+// declared. A box is filed in the cell that holds its minimum, and goes on from there to the others that it
+// reaches while these are swept, so what is kept is one copy of each box. No pair is found twice: it is
+// reported in the one cell that holds the greater of the two boxes' minima on every gridded axis.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "algorithms/grid/layout.hpp"
+#include "algorithms/grid/sweep.hpp"
+#include "algorithms/grid/tracker.hpp"
+#include "core/parallel.hpp"
+#include "core/sample.hpp"
+#include "interface/outline_text.hpp"
+#include "interface/yielding.hpp"
+#include "kernels/run.hpp"
+#include "kernels/waste.hpp"
+
+namespace broadside::own {
+namespace {
+
+template <int D>
+class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+ public:
+  explicit Grid(std::optional<double> cell) : cell_(cell) {}
+
+  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
+  bool is_left(const Box<D>& a, BoxId, const Box<D>& b, BoxId) const override {
+    Box<D> corner = a;
+    for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
+    const std::size_t row = layout_.row_of(corner);
+    const std::size_t cell = row * layout_.row_length() + layout_.column_of(corner);
+    return cell >= swept_to_[layout_.slab_of(row)];
+  }
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    parallel_.start(this->workers(), boxes.size());
+    sweeps_.resize(std::max(sweeps_.size(), parallel_.lanes()));
+    choose_cells(boxes);
+    count_boxes(boxes);
+    file(boxes);
+    swept_to_.resize(layout_.slabs());
+    const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
+      Statistics statistics;
+      for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
+        const GridCells<D> cells{filed_, begin_};
+        const Statistics of_slab =
+            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
+        swept_to_[slab] = sweeps_[lane].swept_to();
+        statistics.tests += of_slab.tests;
+        statistics.references += of_slab.references;
+      }
+      return statistics;
+    };
+    this->count(parallel_.search(layout_.slabs(), pairs, sweep));
+    bool has_yielded = false;
+    for (std::size_t slab = 0; slab < layout_.slabs(); ++slab)
+      has_yielded |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
+    this->set_yielded(has_yielded);
+  }
+
+  /// The slab's share of the tests for all boxes, by the boxes filed in it.
+  std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
+    if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
+    const std::size_t length = layout_.row_length();
+    const auto filed = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
+                                           begin_[layout_.slab_begin(slab) * length]);
+    const double share = filed / std::max<double>(1, begin_.back());
+    return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
+  }
+
+  void choose_cells(std::span<const Box<D>> boxes) {
+    sample_.take(boxes);
+    layout_.choose(sample_, boxes.size(), cell_);
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    choose_cells(boxes);
+    const std::array<int, D>& axes = layout_.axes();
+    Outline<D> outline;
+    outline.kind = "cells";
+    outline.swept_axis = axes[0];
+    outline.levels.resize(1);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Box<D> cell;
+    cell.min.fill(-infinity);
+    cell.max.fill(infinity);
+    // The last cell's border is NaN: it goes on without end, like the first one.
+    const auto end = [](float border) {
+      return std::isnan(border) ? std::numeric_limits<float>::infinity() : border;
+    };
+    for (std::size_t row = 0; row < layout_.rows(); ++row) {
+      cell.min[axes[D - 1]] = row == 0 ? -infinity : layout_.row_border(row - 1);
+      cell.max[axes[D - 1]] = end(layout_.row_border(row));
+      for (std::size_t column = 0; column < layout_.row_length(); ++column) {
+        if constexpr (D == 3) {
+          cell.min[axes[1]] = column == 0 ? -infinity : layout_.column_border(column - 1);
+          cell.max[axes[1]] = end(layout_.column_border(column));
+        }
+        outline.levels[0].push_back(cell);
+      }
+    }
+    outline.caption = caption();
+    return outline;
+  }
+
+  /// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
+  std::string caption() const {
+    const std::array<int, D>& axes = layout_.axes();
+    const std::string swept = " swept along " + core::axis_name(axes[0]);
+    if (layout_.cells() == 1) return "1 cell," + swept;
+    if constexpr (D == 2)
+      return core::counted(layout_.rows(), "cell") + " of " + core::three_digits(layout_.cell_size(0)) +
+             " over " + core::axis_name(axes[1]) + ", each" + swept;
+    return std::to_string(layout_.row_length()) + " x " + core::counted(layout_.rows(), "cell") + " of " +
+           core::three_digits(layout_.cell_size(0)) + " x " + core::three_digits(layout_.cell_size(1)) +
+           " over " + core::axis_name(axes[1]) + " and " + core::axis_name(axes[D - 1]) + ", each" + swept;
+  }
+
+  /// As far as the sample reaches on the swept axis, and a little more: a sample misses the ends.
+  SweptRange swept_range() const {
+    const core::AxisSample& swept = sample_[layout_.axes()[0]];
+    const float more = (swept.high / 16 - swept.low / 16);
+    return {std::max(swept.low - more, -std::numeric_limits<float>::max()),
+            std::min(swept.high + more, std::numeric_limits<float>::max())};
+  }
+
+  /// Calls `visit` with each cell in which a box is filed and the bits that keep it apart there: the cell of
+  /// its minimum, and the first row of each further slab that it reaches.
+  template <typename Visit>
+  void for_each_place(const Box<D>& box, Visit visit) const {
+    const int row_axis = layout_.axes()[D - 1];
+    const std::size_t row = layout_.row_of(box);
+    const std::size_t column = layout_.column_of(box);
+    const std::size_t length = layout_.row_length();
+    visit(row * length + column, 0U);
+    if (!(box.max[row_axis] >= layout_.slab_border(row))) [[likely]]
+      return;
+    for (std::size_t slab = layout_.slab_of(row) + 1; slab < layout_.slabs(); ++slab) {
+      const std::size_t first = layout_.slab_begin(slab);
+      visit(first * length + column, 1U << row_axis);
+      if (!(box.max[row_axis] >= layout_.slab_border(first))) break;
+    }
+  }
+
+  /// Sets begin_ to where each cell's boxes will begin, and next_ to where those of each range will.
+  void count_boxes(std::span<const Box<D>> boxes) {
+    const std::size_t cells = layout_.cells();
+    next_.assign(parallel_.range_count() * cells, 0);
+    parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      std::uint64_t* const count = next_.data() + number * cells;
+      for (std::size_t i = range.begin; i < range.end; ++i)
+        for_each_place(boxes[i], [count](std::size_t cell, std::uint32_t) { ++count[cell]; });
+    });
+    begin_.resize(cells + 1);
+    std::uint64_t begin = 0;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      begin_[cell] = begin;
+      for (std::size_t at = cell; at < next_.size(); at += cells) begin += std::exchange(next_[at], begin);
+    }
+    begin_[cells] = begin;
+  }
+
+  /// Copies the boxes to their cells.
+  void file(std::span<const Box<D>> boxes) {
+    filed_.resize(begin_.back());
+    parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      std::uint64_t* const next = next_.data() + number * layout_.cells();
+      Filed<D>* const filed = filed_.data();
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const Box<D>& box = boxes[i];
+        const auto id = static_cast<BoxId>(i);
+        const std::uint32_t side = kernels::side_bit(id, this->left_count());
+        for_each_place(box, [&](std::size_t cell, std::uint32_t apart) {
+          filed[next[cell]++] = {box, id, side | apart};
+        });
+      }
+    });
+  }
+
+  std::optional<double> cell_;
+
+  core::Sample<D> sample_;
+  GridLayout<D> layout_;
+  std::vector<std::uint64_t> begin_;
+  std::vector<std::uint64_t> next_;
+  std::vector<Filed<D>> filed_;
+  core::Parallel parallel_;
+  std::vector<GridSweep<D>> sweeps_;   // by lane
+  std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  if (settings.is_auto("cell")) return std::make_unique<Grid<D>>(std::nullopt);
+  return std::make_unique<Grid<D>>(settings.number("cell"));
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_grid_tracker<D>(settings, make<D>(settings));
+}
+
+std::vector<Tunable> tunables() {
+  std::vector<Tunable> all = {
+      {.name = "cell",
+       .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 cells a box",
+       .standard = "auto",
+       .least = std::numeric_limits<float>::min()}};
+  for (Tunable& tunable : grid_tracking()) all.push_back(std::move(tunable));
+  all.push_back(core::threads_tunable());
+  return all;
+}
+
+}  // namespace
+
+Algorithm grid() {
+  return {
+      .name = "grid",
+      .summary = "cells over all axes but one, a sweep along that one in each",
+      .source = "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256",
+      .tunables = tunables(),
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
+  };
+}
+
+}  // namespace broadside::own

@@ -1,0 +1,177 @@
+// Where a grid's cells lie.
+#include "algorithms/grid/layout.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/radix_sort.hpp"
+
+namespace broadside::own {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Up to here every cell's number is a float exactly.
+constexpr double most_cells_on_axis = 1 << 20;
+
+/// Fewer boxes than this a cell, and looking at cells costs more than they save.
+constexpr double least_boxes_per_cell = 16;
+
+/// Where cells are asked for by their size, there may be this many for each box.
+constexpr double most_cells_per_box = 4;
+
+/// What a search costs, in tests of two boxes: to file a box in a cell once more, beyond the tests there.
+constexpr double reference_cost = 20;
+
+/// Slabs are for threads: enough to share out, each of some rows, since what reaches into another is filed
+/// there once more.
+constexpr std::size_t most_slabs = 16;
+constexpr std::size_t least_rows_per_slab = 4;
+
+/// The chance that two boxes of the sample begin within `distance` of each other.
+double chance_within(const core::AxisSample& sample, double distance) {
+  const std::vector<float>& minima = sample.minima;
+  const auto count = static_cast<double>(minima.size());
+  if (minima.size() < 2) return 1;
+  std::size_t near = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < minima.size(); ++i) {
+    while (static_cast<double>(minima[i]) - minima[first] > distance) ++first;
+    near += i - first;
+  }
+  return std::max(1.0, static_cast<double>(near)) / (count * (count - 1) / 2);
+}
+
+double range_of(const core::AxisSample& sample) { return static_cast<double>(sample.high) - sample.low; }
+
+/// The float whose sort_key() is `key`.
+float float_of(std::uint32_t key) {
+  return std::bit_cast<float>(key ^ (key >> 31 != 0 ? 0x80000000U : 0xffffffffU));
+}
+
+}  // namespace
+
+template <int D>
+void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell) {
+  axes_ = sample.axes_by_overlap();
+  const auto boxes = static_cast<double>(count);
+  const double most_cells =
+      std::clamp(cell ? most_cells_per_box * boxes : boxes / least_boxes_per_cell, 1.0, most_cells_on_axis);
+  const auto cells_of_size = [&](const auto& size_on) {
+    std::array<double, gridded> cells;
+    for (int axis = 0; axis < gridded; ++axis) {
+      const core::AxisSample& on_axis = sample[axes_[axis + 1]];
+      const double range = range_of(on_axis);
+      const double size = size_on(on_axis);
+      cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, most_cells)) : 1;
+    }
+    // Too many cells in all: the longer side gives way first.
+    for (;;) {
+      double product = 1;
+      for (const double cells_on_axis : cells) product *= cells_on_axis;
+      double& longest = *std::ranges::max_element(cells);
+      if (product <= most_cells || longest <= 1) break;
+      longest = std::max(1.0, std::floor(longest / 2));
+    }
+    return cells;
+  };
+  if (cell) {
+    set(sample, cells_of_size([&](const core::AxisSample&) { return *cell; }));
+    return;
+  }
+
+  // A box is in one cell, and in one more with the chance extent / size on each axis; each time it is tested
+  // with those that begin in the cell while it lasts.
+  const double swept = boxes * sample[axes_[0]].overlap / 2;
+  const auto cost = [&](const std::array<double, gridded>& cells) {
+    double references = 1;
+    double sharing = 1;
+    for (int axis = 0; axis < gridded; ++axis) {
+      const core::AxisSample& on_axis = sample[axes_[axis + 1]];
+      if (cells[axis] <= 1) continue;
+      const double size = range_of(on_axis) / cells[axis];
+      const double more = 1 + on_axis.mean_extent / size;
+      references *= more;
+      sharing *= std::min(1.0, more * chance_within(on_axis, size) / 2);
+    }
+    return references * (reference_cost + swept * sharing);
+  };
+  std::array<double, gridded> best{};
+  best.fill(1);
+  double least = cost(best);
+  for (double extents = 1; extents < 1e6; extents *= 1.4) {
+    const auto cells = cells_of_size(
+        [&](const core::AxisSample& on_axis) { return extents * std::max(on_axis.mean_extent, 1e-30); });
+    if (std::ranges::all_of(cells, [](double cells_on_axis) { return cells_on_axis <= 1; })) break;
+    if (const double found = cost(cells); found < least) {
+      least = found;
+      best = cells;
+    }
+  }
+  set(sample, best);
+}
+
+template <int D>
+void GridLayout<D>::set(const core::Sample<D>& sample, const std::array<double, gridded>& cells) {
+  cell_count_ = 1;
+  for (int axis = 0; axis < gridded; ++axis) {
+    const core::AxisSample& on_axis = sample[axes_[axis + 1]];
+    cells_[axis] = static_cast<std::uint32_t>(cells[axis]);
+    cell_count_ *= cells_[axis];
+    low_[axis] = on_axis.low;
+    last_[axis] = static_cast<float>(cells_[axis] - 1);
+    // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+    const double range = range_of(on_axis);
+    const double per_unit = range > 0 ? cells_[axis] / range : 1;
+    per_unit_[axis] = static_cast<float>(
+        std::clamp<double>(per_unit, std::numeric_limits<float>::min(), std::numeric_limits<float>::max()));
+    set_borders(axis);
+  }
+  set_slabs();
+}
+
+template <int D>
+void GridLayout<D>::set_borders(int axis) {
+  std::vector<float>& borders = borders_[axis];
+  borders.resize(cells_[axis]);
+  for (std::uint32_t cell = 1; cell < cells_[axis]; ++cell) {
+    // The least float that lies in the cell or after it. Rounding may have moved it by a little.
+    float border = low_[axis] + static_cast<float>(cell) / per_unit_[axis];
+    for (int i = 0; i < 4 && cell_of(border, axis) < cell; ++i) border = std::nextafter(border, infinity);
+    for (int i = 0; i < 4 && cell_of(std::nextafter(border, -infinity), axis) >= cell; ++i)
+      border = std::nextafter(border, -infinity);
+    if (cell_of(border, axis) < cell || cell_of(std::nextafter(border, -infinity), axis) >= cell) {
+      std::uint32_t below = core::sort_key(-infinity);
+      std::uint32_t at = core::sort_key(infinity);
+      while (at - below > 1) {
+        const std::uint32_t middle = below + (at - below) / 2;
+        (cell_of(float_of(middle), axis) < cell ? below : at) = middle;
+      }
+      border = float_of(at);
+    }
+    borders[cell - 1] = border;
+  }
+  borders.back() = std::numeric_limits<float>::quiet_NaN();
+}
+
+template <int D>
+void GridLayout<D>::set_slabs() {
+  const std::size_t slabs = std::clamp<std::size_t>(rows() / least_rows_per_slab, 1, most_slabs);
+  slab_begin_.resize(slabs + 1);
+  slab_of_.resize(rows());
+  slab_border_.resize(rows());
+  for (std::size_t slab = 0; slab <= slabs; ++slab)
+    slab_begin_[slab] = static_cast<std::uint32_t>(slab * rows() / slabs);
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    for (std::size_t row = slab_begin_[slab]; row < slab_begin_[slab + 1]; ++row) {
+      slab_of_[row] = static_cast<std::uint8_t>(slab);
+      slab_border_[row] = row_border(slab_begin_[slab + 1] - 1);
+    }
+  }
+}
+
+template class GridLayout<2>;
+template class GridLayout<3>;
+
+}  // namespace broadside::own

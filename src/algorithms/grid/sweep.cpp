@@ -1,0 +1,288 @@
+// Sweeps the cells of a grid, slab by slab.
+//
+// A cell's boxes are brought into order by filing them in buckets of the swept axis: one pass to count, one
+// to file. Within a bucket they stay as they came, which the kernels allow for (Run::slack). Where buckets
+// would be too uneven for that, boxes are sorted.
+#include "algorithms/grid/sweep.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
+
+namespace broadside::own {
+namespace {
+
+constexpr std::size_t least_buckets = 16;
+constexpr std::size_t most_buckets = 1 << 13;
+
+/// What lies beyond the range is in the buckets at the ends. So many boxes there are sorted one by one.
+constexpr std::size_t most_beyond = 32;
+
+/// A box may stand in a bucket with so many others on average, before it pays to sort them all.
+constexpr std::size_t most_in_bucket = 48;
+
+/// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
+/// all.
+constexpr std::size_t crowd = 1024;
+
+constexpr float largest = std::numeric_limits<float>::max();
+
+/// What it costs to look at a box in one more cell, in tests of two boxes.
+constexpr std::uint64_t tests_per_reference = 32;
+
+/// Passes pairs on and counts them.
+class CountingSink final : public PairSink {
+ public:
+  explicit CountingSink(PairSink& target) : target_(&target) {}
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    count_ += pairs.size();
+    while (!pairs.empty()) {
+      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
+      std::ranges::copy(some, target_->room(some.size()));
+      target_->commit(some.size());
+      pairs = pairs.subspan(some.size());
+    }
+  }
+
+  PairSink* target_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace
+
+template <int D>
+Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
+                               const GridCells<D>& cells, std::size_t slab, std::uint64_t most_tests,
+                               PairSink& pairs) {
+  axes_ = layout.axes();
+  range_ = range;
+  statistics_ = {};
+  const std::size_t length = layout.row_length();
+  columns_.resize(std::max(columns_.size(), length));
+  for (Carried& column : columns_) column.size = 0;
+  const std::size_t end = layout.slab_begin(slab + 1);
+  swept_to_ = layout.slab_begin(slab) * length;
+  CountingSink counted(pairs);
+  for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
+    // What reaches into the next slab is filed there.
+    const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
+    along_.size = 0;
+    for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
+      Lists lists;
+      lists[0] =
+          cells.boxes.subspan(cells.begin[swept_to_], cells.begin[swept_to_ + 1] - cells.begin[swept_to_]);
+      lists[1] = columns_[column].list();
+      if constexpr (D == 3) lists[2] = along_.list();
+      // Pairs are counted once tests are many.
+      const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
+      const bool is_counting = work > most_tests;
+      if (is_counting && work > most_tests + most_tests / 4 + kernels::tests_per_pair * counted.count())
+        return statistics_;
+      if (!sweep_cell(lists, layout.column_border(column), row_border, most_tests,
+                      is_counting ? static_cast<PairSink&>(counted) : pairs))
+        return statistics_;
+      if (is_counting) counted.flush();
+      std::swap(columns_[column], next_up_);
+      std::swap(along_, next_along_);
+    }
+  }
+  return statistics_;
+}
+
+template <int D>
+bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row_border,
+                              std::uint64_t most_tests, PairSink& pairs) {
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
+  statistics_.references += count;
+  next_up_.size = 0;
+  next_along_.size = 0;
+  if (count == 0) return true;
+  // Room for one more than there may be: where none goes on, one is written all the same.
+  next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
+  if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
+  bucket_of_.resize(std::max(bucket_of_.size(), count));
+  const Buckets buckets = cut(range_, count);
+  starts_.assign(buckets.count, 0);
+  std::uint16_t* bucket_of = bucket_of_.data();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    // A box goes along the row where it is met first, and up from everywhere.
+    if (D == 3 && i != 1)
+      look_at<true>(lists[i], buckets, column_border, row_border, bucket_of);
+    else
+      look_at<false>(lists[i], buckets, column_border, row_border, bucket_of);
+    bucket_of += lists[i].size();
+  }
+  if (count < 2) return true;
+  run_.reserve(count);
+  const float slack = order(lists, count, buckets);
+  run_.set_size(count);
+  const kernels::Run<D> run = run_.view(slack);
+  if (kernels::is_wasteful(run, most_tests)) return false;
+  statistics_.tests += kernels::sweep(run, pairs);
+  return true;
+}
+
+template <int D>
+std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, int axis, float border) {
+  if (count <= crowd) return count;
+  std::size_t reaching = 0;
+  for (const auto& list : lists)
+    reaching += static_cast<std::size_t>(std::ranges::count_if(
+        list, [axis, border](const Filed<D>& filed) { return filed.box.max[axis] >= border; }));
+  return reaching;
+}
+
+template <int D>
+typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::size_t count) {
+  Buckets buckets;
+  buckets.count = std::bit_ceil(std::clamp(count, least_buckets, most_buckets));
+  const auto buckets_in_range = static_cast<float>(buckets.count);
+  const float length = range.high - range.low;
+  // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+  buckets.per_unit =
+      std::clamp(length > 0 ? buckets_in_range / length : 1, std::numeric_limits<float>::min(), largest);
+  buckets.low = range.low;
+  buckets.last = buckets_in_range - 1;
+  // A bucket's width and what rounding may add to it.
+  constexpr float rounding = 1e-6F;
+  const float width = std::max(1 / buckets.per_unit, length / buckets_in_range);
+  buckets.slack =
+      std::min(width * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high)), largest);
+  return buckets;
+}
+
+template <int D>
+template <bool Along>
+void GridSweep<D>::look_at(std::span<const Filed<D>> list, const Buckets& buckets, float column_border,
+                           float row_border, std::uint16_t* bucket_of) {
+  const int swept = axes_[0];
+  const int column_axis = axes_[1];
+  const int row_axis = axes_[D - 1];
+  Filed<D>* along = next_along_.memory.data() + next_along_.size;
+  Filed<D>* up = next_up_.memory.data() + next_up_.size;
+  std::uint32_t* const counts = starts_.data();
+  for (const Filed<D>& filed : list) {
+    const std::uint16_t bucket = buckets.of(filed.box.min[swept]);
+    *bucket_of++ = bucket;
+    ++counts[bucket];
+    // Written in any case and kept if it goes on: no predictor could know.
+    *up = filed;
+    up->apart |= 1U << row_axis;
+    up += filed.box.max[row_axis] >= row_border ? 1 : 0;
+    if constexpr (Along) {
+      *along = filed;
+      along->apart |= 1U << column_axis;
+      along += filed.box.max[column_axis] >= column_border ? 1 : 0;
+    }
+  }
+  next_along_.size = static_cast<std::size_t>(along - next_along_.memory.data());
+  next_up_.size = static_cast<std::size_t>(up - next_up_.memory.data());
+}
+
+template <int D>
+float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& buckets) {
+  const std::size_t before = starts_.front();
+  const std::size_t after = starts_.back();
+  if (std::max(before, after) <= most_beyond && are_even(count)) {
+    file_by_bucket(lists);
+    run_.sort(0, before);
+    run_.sort(count - after, count);
+    return buckets.slack;
+  }
+  // The range between the cell's own ends may do better than that of all boxes.
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  SweptRange own{infinity, -infinity};
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      own.low = std::min(own.low, filed.box.min[axes_[0]]);
+      own.high = std::max(own.high, filed.box.min[axes_[0]]);
+    }
+  }
+  if (std::isfinite(own.high - own.low)) {
+    const Buckets narrower = cut(own, count);
+    starts_.assign(narrower.count, 0);
+    std::uint16_t* bucket_of = bucket_of_.data();
+    for (const auto& list : lists) {
+      for (const Filed<D>& filed : list) {
+        *bucket_of = narrower.of(filed.box.min[axes_[0]]);
+        ++starts_[*bucket_of++];
+      }
+    }
+    // Where all begin at one place, there is nothing to be gained by sorting them.
+    if (own.low == own.high || are_even(count)) {
+      file_by_bucket(lists);
+      return narrower.slack;
+    }
+  }
+  file_exactly(lists, count);
+  return 0;
+}
+
+template <int D>
+bool GridSweep<D>::are_even(std::size_t count) const {
+  std::uint64_t squares = 0;
+  for (const std::uint32_t in_bucket : starts_) squares += std::uint64_t{in_bucket} * in_bucket;
+  return squares <= std::uint64_t{most_in_bucket} * count;
+}
+
+template <int D>
+void GridSweep<D>::file_by_bucket(const Lists& lists) {
+  std::uint32_t begin = 0;
+  for (std::uint32_t& start : starts_) start = std::exchange(begin, begin + start);
+  const kernels::RunArrays<D> run = run_.arrays();
+  const std::array<int, D> axes = axes_;
+  std::uint32_t* const starts = starts_.data();
+  const std::uint16_t* bucket_of = bucket_of_.data();
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      const std::size_t place = starts[*bucket_of++]++;
+      for (int axis = 0; axis < D; ++axis) {
+        run.min[axis][place] = filed.box.min[axes[axis]];
+        run.max[axis][place] = filed.box.max[axes[axis]];
+      }
+      run.id[place] = filed.id;
+      run.apart[place] = filed.apart;
+    }
+  }
+}
+
+template <int D>
+void GridSweep<D>::file_exactly(const Lists& lists, std::size_t count) {
+  const std::span<core::KeyedPlace> places = radix_.places(count);
+  std::uint32_t next = 0;
+  for (const auto& list : lists) {
+    for (const Filed<D>& filed : list) {
+      places[next] = {core::sort_key(filed.box.min[axes_[0]]), next};
+      ++next;
+    }
+  }
+  const auto filed_at = [&lists](std::size_t place) -> const Filed<D>& {
+    std::size_t list = 0;
+    while (place >= lists[list].size()) place -= lists[list++].size();
+    return lists[list][place];
+  };
+  run_.clear();
+  for (const core::KeyedPlace& place : radix_.sort()) {
+    const Filed<D>& filed = filed_at(place.place);
+    Box<D> box;
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = filed.box.min[axes_[axis]];
+      box.max[axis] = filed.box.max[axes_[axis]];
+    }
+    run_.append(box, filed.id, filed.apart);
+  }
+}
+
+template class GridSweep<2>;
+template class GridSweep<3>;
+
+}  // namespace broadside::own

@@ -1,0 +1,124 @@
+// Sweeps the cells of a grid, slab by slab: brings a cell's boxes into order and reports their pairs.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/broad_phase.hpp"
+#include "broadside/pair.hpp"
+
+#include "algorithms/grid/layout.hpp"
+#include "core/radix_sort.hpp"
+#include "kernels/run.hpp"
+
+namespace broadside::own {
+
+/// A box filed in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
+/// run.
+template <int D>
+struct Filed {
+  Box<D> box;
+  BoxId id;
+  std::uint32_t apart;
+};
+
+/// The boxes of a grid by the cell that holds their minimum (and, for those that reach into other slabs, also
+/// in the first row of each of these): `boxes[begin[c], begin[c + 1])` are those of cell c.
+template <int D>
+struct GridCells {
+  std::span<const Filed<D>> boxes;
+  std::span<const std::uint64_t> begin;
+};
+
+/// The swept axis cut into buckets: how far it reaches.
+struct SweptRange {
+  float low;
+  float high;
+};
+
+/// Sweeps slabs; holds the memory this takes. A box goes on from the cell that it is filed in to the others
+/// that it reaches: along the row, and up to the next row.
+template <int D>
+class GridSweep {
+ public:
+  /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
+  /// gridded axis. Stops before the cell at which tests become more than `most_tests` and than pairs account
+  /// for.
+  Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const GridCells<D>& cells,
+                   std::size_t slab, std::uint64_t most_tests, PairSink& pairs);
+
+  /// The cell behind the last one that was swept.
+  std::size_t swept_to() const noexcept { return swept_to_; }
+
+ private:
+  /// Boxes on their way to a cell.
+  struct Carried {
+    std::vector<Filed<D>> memory;
+    std::size_t size = 0;
+
+    void reserve(std::size_t count) {
+      if (memory.size() < count) memory.resize(count + count / 2);
+    }
+    std::span<const Filed<D>> list() const { return {memory.data(), size}; }
+  };
+
+  /// The swept axis cut into buckets. The first and the last one take in what lies beyond.
+  struct Buckets {
+    float low;
+    float per_unit;
+    float last;
+    float slack;  // no box between the ends begins more than this before one of the same bucket
+    std::size_t count;
+
+    std::uint16_t of(float coordinate) const {
+      const float bucket = (coordinate - low) * per_unit;
+      return static_cast<std::uint16_t>(static_cast<std::int32_t>(std::min(std::max(bucket, 0.0F), last)));
+    }
+  };
+
+  /// A cell's boxes: those filed there, those from the row before and, in 3D, those from along the row.
+  using Lists = std::array<std::span<const Filed<D>>, D>;
+
+  /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach. False if the
+  /// cell alone would take more than `most_tests`, few of which find a pair: then it reports none.
+  bool sweep_cell(const Lists& lists, float column_border, float row_border, std::uint64_t most_tests,
+                  PairSink& pairs);
+
+  /// How many boxes of a cell's `count` reach a border; of a few, perhaps more.
+  static std::size_t most_reaching(const Lists& lists, std::size_t count, int axis, float border);
+
+  static Buckets cut(const SweptRange& range, std::size_t count);
+
+  /// Counts a list's boxes by bucket, and sends them on.
+  template <bool Along>
+  void look_at(std::span<const Filed<D>> list, const Buckets& buckets, float column_border, float row_border,
+               std::uint16_t* bucket_of);
+
+  /// Sets run_ to the cell's boxes in the order of the sweep, by the buckets that were counted if they will
+  /// do. Returns the run's slack.
+  float order(const Lists& lists, std::size_t count, const Buckets& buckets);
+
+  bool are_even(std::size_t count) const;
+  void file_by_bucket(const Lists& lists);
+  void file_exactly(const Lists& lists, std::size_t count);
+
+  std::array<int, D> axes_{};
+  std::size_t swept_to_ = 0;
+  SweptRange range_{};
+  Statistics statistics_;
+  Carried along_;                      // to this cell, from the one before it in the row
+  Carried next_along_;                 // from this cell to the next
+  Carried next_up_;                    // and to the one in the next row
+  std::vector<Carried> columns_;       // to each cell of a row, from the row before
+  std::vector<std::uint32_t> starts_;  // by bucket: how many boxes; then where the next one goes
+  std::vector<std::uint16_t> bucket_of_;
+  core::RadixSort radix_;
+  kernels::RunBuffer<D> run_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,157 @@
+// The quadtree that stays from frame to frame: its nodes, which boxes are in them, and how they split and
+// merge.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "algorithms/quadtree/packs.hpp"
+#include "kernels/packs.hpp"
+
+namespace broadside::own {
+
+/// What a node is without children, and who has no parent.
+inline constexpr std::uint32_t no_node = 0xffffffffU;
+
+/// A region and how it is split. The root's is all of space: no world is declared.
+template <int D>
+struct QuadtreeNode {
+  std::array<float, D> low;    ///< boxes that end before are not in the node,
+  std::array<float, D> high;   ///< nor are those that begin here or later
+  std::array<float, D> split;  ///< NaN on an axis that is not split
+  std::array<float, D> large;  ///< a box that touches all children and is as large on every axis stays here
+  std::uint32_t parent = no_node;
+  std::uint32_t children = no_node;  ///< the first of 2^D; no_node for a leaf
+  std::uint32_t pack = kernels::no_pack;
+  std::uint32_t count = 0;     ///< boxes in the node itself
+  std::uint32_t split_at = 0;  ///< a leaf that could not be split is tried again with more boxes than this
+  std::uint32_t depth = 0;
+
+  bool is_leaf() const { return children == no_node; }
+
+  /// The children that a box touches, as bits.
+  std::uint32_t touched(const Box<D>& box) const {
+    constexpr std::array<std::uint32_t, 3> lower = {0x55, 0x33, 0x0f};
+    constexpr std::array<std::uint32_t, 3> upper = {0xaa, 0xcc, 0xf0};
+    std::uint32_t mask = (1U << (1U << D)) - 1;
+    for (int axis = 0; axis < D; ++axis) {
+      mask &= (!(box.min[axis] >= split[axis]) ? lower[axis] : 0U) |
+              (box.max[axis] >= split[axis] ? upper[axis] : 0U);
+    }
+    return mask;
+  }
+
+  /// Whether a box that touches the children of `mask` stays in the node: it would be in them all.
+  bool keeps(const Box<D>& box, std::uint32_t mask) const {
+    bool all = true;
+    for (int axis = 0; axis < D; ++axis) {
+      if (!(split[axis] == split[axis])) continue;
+      all &= box.max[axis] - box.min[axis] >= large[axis];
+    }
+    return all && mask == whole;
+  }
+
+  /// Whether a box touches nothing but the node's region.
+  bool contains(const Box<D>& box) const {
+    bool inside = true;
+    for (int axis = 0; axis < D; ++axis) inside &= box.min[axis] >= low[axis] && box.max[axis] < high[axis];
+    return inside;
+  }
+
+  /// Whether a box touches the node's region.
+  bool touches(const Box<D>& box) const {
+    bool meets = true;
+    for (int axis = 0; axis < D; ++axis) meets &= box.max[axis] >= low[axis] && box.min[axis] < high[axis];
+    return meets;
+  }
+
+  std::uint32_t whole = 0;  ///< the children on either side of the axes that are split
+};
+
+/// Where a box is filed first, in the order of a descent: from here it is looked for.
+struct QuadtreeHome {
+  std::uint32_t node = no_node;
+  std::uint32_t slot : 31 = 0;
+  std::uint32_t several : 1 = 0;  ///< whether it may be in other nodes too, or is not in a leaf
+};
+
+/// The tree. A box is filed in every leaf that it touches, as in the paper, but for one so large that it
+/// would be in many: see QuadtreeNode::keeps.
+template <int D>
+class QuadtreeNodes {
+ public:
+  static constexpr std::uint32_t root = 0;
+  static constexpr std::uint32_t child_count = 1U << D;
+
+  explicit QuadtreeNodes(std::uint32_t capacity) : capacity_(capacity) {}
+
+  /// The tree anew, of all boxes that are present.
+  void build(std::span<const Box<D>> boxes);
+
+  /// Makes room for so many boxes.
+  void resize(std::size_t boxes) { homes_.resize(boxes); }
+
+  const QuadtreeNode<D>& operator[](std::uint32_t node) const { return nodes_[node]; }
+  QuadtreeHome& home(std::uint32_t id) { return homes_[id]; }
+
+  /// A box's slot in a node.
+  std::uint32_t find(std::uint32_t node, BoxId id) const { return packs_.find(nodes_[node].pack, id); }
+
+  std::uint32_t insert(std::uint32_t node, const Box<D>& box, BoxId id);
+  void erase(std::uint32_t node, std::uint32_t slot);
+  QuadtreePacks<D>& packs() { return packs_; }
+
+  /// Splits nodes that have become too full and merges those that have emptied, since the last call.
+  void tidy(std::span<const Box<D>> boxes);
+
+  /// Boxes that are not in leaves; while there are none, nobody has to look.
+  std::size_t kept() const noexcept { return kept_; }
+  std::size_t references() const noexcept { return references_; }
+  std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
+
+  /// Every node's number is less.
+  std::size_t node_end() const noexcept { return nodes_.size(); }
+
+  /// Whether the tree has become too deep to be left as it is.
+  bool is_degenerate() const noexcept { return degenerate_; }
+
+  std::size_t bytes() const noexcept;
+
+ private:
+  static constexpr std::size_t samples = 31;
+  static constexpr std::uint32_t most_depth = 64;
+
+  using Sizes = std::array<std::size_t, child_count>;
+
+  void fill(std::uint32_t node, std::size_t begin, std::span<const Box<D>> boxes);
+  bool choose_split(QuadtreeNode<D>& node, std::span<const std::uint32_t> ids,
+                    std::span<const Box<D>> boxes) const;
+  bool partition(const QuadtreeNode<D>& node, std::size_t begin, std::span<const Box<D>> boxes, Sizes& sizes);
+  void put(std::uint32_t node, std::uint32_t id, const Box<D>& box);
+  std::uint32_t add_children(std::uint32_t parent);
+  void drain(std::uint32_t node);
+  void split(std::uint32_t node, std::span<const Box<D>> boxes);
+  bool merge(std::uint32_t node, std::span<const Box<D>> boxes);
+
+  std::uint32_t capacity_;
+  std::vector<QuadtreeNode<D>> nodes_;
+  std::vector<std::uint32_t> free_;  // first children
+  QuadtreePacks<D> packs_;
+  std::vector<QuadtreeHome> homes_;
+  std::size_t references_ = 0;
+  std::size_t kept_ = 0;
+  bool degenerate_ = false;
+
+  std::vector<std::uint32_t> grown_;   // leaves that may be too full
+  std::vector<std::uint32_t> shrunk_;  // inner nodes whose children may have emptied
+  std::vector<std::uint32_t> ids_;     // a stack of boxes still to be filed, node above node
+  std::vector<std::uint8_t> masks_;    // of the uppermost node's: the children that each one touches, or 0
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,281 @@
+// Quadtree, in 3D an octree: nodes split until they hold few boxes, which are then swept.
+//
+// Section V of the paper, without its limits. A node is split at the median of a sample of its boxes' minima,
+// not at a world's centre, so no world is declared and clusters do not deepen the tree. An axis that would
+// not separate is not split, and a node that would not shrink is a leaf, so coincident boxes end the
+// recursion. A box that covers the middle of its node stays there and is swept against the node's other
+// boxes; any other goes into each child that it touches. No pair is found twice: it is reported in the one
+// node that holds the greater of the two minima on every axis.
+//
+// The tree is never stored: a node is a stretch of one stack of references, each stretch in the order of the
+// sweep. Where several threads search, the uppermost nodes are split by one of them, and the stretches that
+// come of it are copied, in the order in which one thread would search them.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/outline.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "algorithms/quadtree/split.hpp"
+#include "algorithms/quadtree/tracker.hpp"
+#include "core/parallel.hpp"
+#include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
+#include "interface/outline_text.hpp"
+#include "kernels/sweep.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// Nodes are split by one thread until there are so many for each.
+constexpr std::size_t parts_per_lane = 3;
+
+/// Leaves of this many boxes: a sweep of so few costs about what a further split would.
+template <int D>
+constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
+
+template <int D>
+class Quadtree final : public PairFinder<D>, public Outlined<D> {
+ public:
+  explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
+
+ private:
+  using Split = QuadtreeSplit<D>;
+
+  /// What one thread searches with.
+  struct Lane {
+    QuadtreeStack<D> stack;
+    kernels::RunBuffer<D> run;
+    kernels::RunBuffer<D> kept_run;
+    Statistics statistics;
+  };
+
+  /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
+  /// which come first, and its others.
+  struct Part {
+    std::size_t end;  // among the references of all parts
+    std::size_t kept_count;
+  };
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    parallel_.start(this->workers(), boxes.size());
+    lanes_.resize(std::max(lanes_.size(), parallel_.lanes()));
+    sample_.take(boxes);
+    sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
+    Lane& first = lanes_[0];
+    first.statistics = {};
+    first.stack.references.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
+      first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
+    if (parallel_.lanes() == 1) {
+      search(first, 0, first.stack.references.size(), pairs);
+      this->count(first.statistics);
+      return;
+    }
+    parts_.clear();
+    part_references_.clear();
+    expand(first, 0, first.stack.references.size(), boxes.size() / (parts_per_lane * parallel_.lanes()));
+    const auto search_parts = [&](core::Range parts, std::size_t lane, PairSink& sink) {
+      lanes_[lane].statistics = {};
+      for (std::size_t part = parts.begin; part < parts.end; ++part) search_part(lanes_[lane], part, sink);
+      return lanes_[lane].statistics;
+    };
+    this->count(parallel_.search(parts_.size(), pairs, search_parts));
+  }
+
+  /// Splits the nodes as search() does, and keeps their regions.
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    sample_.take(boxes);
+    const std::array<int, D> axes = sample_.axes_by_overlap();
+    sorted_boxes_ = sorted_.sort(boxes, axes);
+    lanes_.resize(std::max<std::size_t>(lanes_.size(), 1));
+    Lane& lane = lanes_[0];
+    lane.stack.references.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) lane.stack.references.push_back({i, 0});
+    Outline<D> outline;
+    outline.kind = "nodes";
+    Box<D> region;
+    region.min.fill(-std::numeric_limits<float>::infinity());
+    region.max.fill(std::numeric_limits<float>::infinity());
+    const std::size_t leaves =
+        lay_out(lane, 0, lane.stack.references.size(), {axes, region}, 0, outline.levels);
+    std::size_t nodes = 0;
+    for (const std::vector<Box<D>>& level : outline.levels) nodes += level.size();
+    outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
+                      ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+    return outline;
+  }
+
+  /// A node's region, by the caller's axes; axis a of the sorted boxes is axes[a] of these.
+  struct Region {
+    std::array<int, D> axes;
+    Box<D> box;
+  };
+
+  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  std::size_t lay_out(Lane& lane, std::size_t begin, std::size_t end, const Region& region, std::size_t depth,
+                      std::vector<std::vector<Box<D>>>& levels) const {
+    if (levels.size() == depth) levels.emplace_back();
+    levels[depth].push_back(region.box);
+    Split split;
+    if (end - begin < 2 || end - begin <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split))
+      return 1;
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    std::size_t leaves = 0;
+    std::size_t first = top;
+    for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
+      Region part = region;
+      for (int at = 0; at < split.axis_count; ++at) {
+        const int axis = region.axes[split.axes[at]];
+        ((child >> at & 1U) != 0 ? part.box.min : part.box.max)[axis] = split.at[split.axes[at]];
+      }
+      leaves += lay_out(lane, first, first + split.sizes[child], part, depth + 1, levels);
+      first += split.sizes[child];
+    }
+    lane.stack.references.resize(top);
+    return leaves;
+  }
+
+  /// Makes parts of the node and those below it, in the order in which search() would meet them.
+  void expand(Lane& lane, std::size_t begin, std::size_t end, std::size_t largest) {
+    const std::size_t count = end - begin;
+    if (count < 2) return;
+    Split split;
+    if (count <= std::max(capacity_, largest) || !lane.stack.split(sorted_boxes_, begin, end, split)) {
+      copy(lane, begin, end, [](std::size_t) { return true; });
+      parts_.push_back({part_references_.size(), 0});
+      return;
+    }
+    if (lane.stack.kept_count > 0) {
+      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] == 0; });
+      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] != 0; });
+      parts_.push_back({part_references_.size(), lane.stack.kept_count});
+    }
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    std::size_t child = top;
+    for (const std::size_t size : split.sizes) {
+      expand(lane, child, child + size, largest);
+      child += size;
+    }
+    lane.stack.references.resize(top);
+  }
+
+  /// Appends those of a node's references whose places in the node are `wanted` to the parts'.
+  template <typename Wanted>
+  void copy(const Lane& lane, std::size_t begin, std::size_t end, Wanted wanted) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (wanted(i - begin)) part_references_.push_back(lane.stack.references[i]);
+    }
+  }
+
+  void search_part(Lane& lane, std::size_t number, PairSink& pairs) const {
+    const std::size_t begin = number == 0 ? 0 : parts_[number - 1].end;
+    const std::span<const QuadtreeReference> references =
+        std::span(part_references_).subspan(begin, parts_[number].end - begin);
+    lane.stack.references.assign(references.begin(), references.end());
+    if (parts_[number].kept_count == 0) {
+      search(lane, 0, references.size(), pairs);
+      return;
+    }
+    lane.stack.children.assign(references.size(), 1);
+    std::fill_n(lane.stack.children.begin(), parts_[number].kept_count, std::uint8_t{0});
+    sweep_kept(lane, 0, references.size(), pairs);
+  }
+
+  /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
+  /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
+  void search(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
+    const std::size_t count = end - begin;
+    if (count < 2) return;
+    Split split;
+    if (count <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split)) {
+      lane.statistics.references += count;
+      gather(lane, begin, end, lane.run, [](std::size_t) { return true; });
+      lane.statistics.tests += kernels::sweep(lane.run.view(), pairs);
+      return;
+    }
+    if (lane.stack.kept_count > 0) sweep_kept(lane, begin, end, pairs);
+    const std::size_t top = lane.stack.references.size();
+    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    std::size_t child = top;
+    for (const std::size_t size : split.sizes) {
+      search(lane, child, child + size, pairs);
+      child += size;
+    }
+    lane.stack.references.resize(top);
+  }
+
+  /// Sweeps the boxes kept at a node among themselves and against the node's others.
+  void sweep_kept(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
+    gather(lane, begin, end, lane.kept_run, [&lane](std::size_t i) { return lane.stack.children[i] == 0; });
+    gather(lane, begin, end, lane.run, [&lane](std::size_t i) { return lane.stack.children[i] != 0; });
+    lane.statistics.references += lane.kept_run.size();
+    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), pairs);
+    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), lane.run.view(), pairs);
+  }
+
+  /// Fills `run` with those of the node's references whose places in the node are `wanted`.
+  template <typename Wanted>
+  void gather(const Lane& lane, std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run,
+              Wanted wanted) const {
+    run.clear();
+    run.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!wanted(i - begin)) continue;
+      const core::SortedBox<D>& sorted = sorted_boxes_[lane.stack.references[i].place];
+      run.append(sorted.box, sorted.id, lane.stack.references[i].apart);
+    }
+  }
+
+  std::size_t capacity_;
+
+  core::Sample<D> sample_;
+  core::SortedBoxes<D> sorted_;
+  std::span<const core::SortedBox<D>> sorted_boxes_;
+  core::Parallel parallel_;
+  std::vector<Lane> lanes_;
+  std::vector<Part> parts_;
+  std::vector<QuadtreeReference> part_references_;
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  return std::make_unique<Quadtree<D>>(settings.is_auto("capacity")
+                                           ? standard_capacity<D>
+                                           : static_cast<std::size_t>(settings.integer("capacity")));
+}
+
+}  // namespace
+
+Algorithm quadtree() {
+  return {
+      .name = "quadtree",
+      .summary = "nodes split at medians until they hold few boxes, which are swept; an octree in 3D",
+      .source = "paper.md, section V",
+      .tunables = {{.name = "capacity",
+                    .summary = "most boxes in a leaf that could be split",
+                    .standard = "auto",
+                    .type = Tunable::Type::integer,
+                    .least = 1,
+                    .most = 1 << 30},
+                   quadtree_update(),
+                   core::threads_tunable()},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d =
+          [](const Settings& settings) { return make_quadtree_tracker(settings, make<2>(settings)); },
+      .tracker_3d =
+          [](const Settings& settings) { return make_quadtree_tracker(settings, make<3>(settings)); },
+  };
+}
+
+}  // namespace broadside::own

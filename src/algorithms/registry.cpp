@@ -1,0 +1,141 @@
+// The library's one list of algorithms, and how a spec becomes a finder or a tracker.
+#include <algorithm>
+#include <array>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
+#include "broadside/suggestion.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "core/float_environment.hpp"
+#include "doubles/double_finder.hpp"
+#include "paper/listings/descriptions.hpp"
+
+namespace broadside {
+namespace {
+
+const Algorithm& require_algorithm(std::string_view name) {
+  if (const Algorithm* const algorithm = find_algorithm(name)) return *algorithm;
+  std::string known;
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : algorithms()) {
+    known += (known.empty() ? "" : ", ") + algorithm.name;
+    names.push_back(algorithm.name);
+  }
+  throw InvalidSpec("unknown algorithm '" + std::string(name) + "'" + did_you_mean(name, names) +
+                    "; expected one of: " + known);
+}
+
+template <int D, typename Made>
+std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Settings&)>& maker,
+                           const Algorithm& algorithm, const Spec& spec) {
+  if (!maker) {
+    const std::string other = std::to_string(5 - D);
+    throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other +
+                      "D boxes");
+  }
+  const core::DefaultEnvironment environment;  // how a number is read depends on it
+  const Settings settings(spec, algorithm.tunables);
+  std::unique_ptr<Made> made = maker(settings);
+  if (made != nullptr && has_threads(algorithm)) {
+    Workers workers = made->workers();
+    workers.threads = static_cast<std::size_t>(settings.integer("threads"));
+    made->set_workers(workers);
+  }
+  return made;
+}
+
+}  // namespace
+
+std::string_view name(AlgorithmKind kind) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"own", "paper", "peer"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+bool has_threads(const Algorithm& algorithm) {
+  return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
+    return tunable.name == "threads" && tunable.type == Tunable::Type::integer;
+  });
+}
+
+std::span<const Algorithm> algorithms() {
+  static const std::array list = {
+      own::automatic(),         own::brute_force(),   own::grid(),
+      own::sweep_and_prune(),   own::quadtree(),      own::bvh(),
+      own::hierarchical_grid(), paper::brute_force(), paper::grid(),
+      paper::sweep_and_prune(), paper::quadtree(),
+  };
+  return list;
+}
+
+const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {
+  const auto found = std::ranges::find(among, name, &Algorithm::name);
+  return found == among.end() ? nullptr : &*found;
+}
+
+template <>
+std::unique_ptr<PairFinder<2>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return make<2>(algorithm.finder_2d, algorithm, spec);
+}
+
+template <>
+std::unique_ptr<PairFinder<3>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return make<3>(algorithm.finder_3d, algorithm, spec);
+}
+
+template <>
+std::unique_ptr<PairTracker<2>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.tracker_2d) return make<2>(algorithm.tracker_2d, algorithm, spec);
+  return std::make_unique<DiffTracker<2>>(make_finder<2>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairTracker<3>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.tracker_3d) return make<3>(algorithm.tracker_3d, algorithm, spec);
+  return std::make_unique<DiffTracker<3>>(make_finder<3>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairFinder<2, double>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<core::DoubleFinder<2>>(make_finder<2>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairFinder<3, double>> make_finder(const Algorithm& algorithm, const Spec& spec) {
+  return std::make_unique<core::DoubleFinder<3>>(make_finder<3>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairTracker<2, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.double_tracker_2d) return make<2>(algorithm.double_tracker_2d, algorithm, spec);
+  return std::make_unique<DiffTracker<2, double>>(make_finder<2, double>(algorithm, spec));
+}
+
+template <>
+std::unique_ptr<PairTracker<3, double>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
+  if (algorithm.double_tracker_3d) return make<3>(algorithm.double_tracker_3d, algorithm, spec);
+  return std::make_unique<DiffTracker<3, double>>(make_finder<3, double>(algorithm, spec));
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec) {
+  const Spec parsed = Spec::parse(spec);
+  return make_finder<D, Real>(require_algorithm(parsed.name), parsed);
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec) {
+  const Spec parsed = Spec::parse(spec);
+  return make_tracker<D, Real>(require_algorithm(parsed.name), parsed);
+}
+
+template std::unique_ptr<PairFinder<2>> make_finder(std::string_view);
+template std::unique_ptr<PairFinder<3>> make_finder(std::string_view);
+template std::unique_ptr<PairFinder<2, double>> make_finder(std::string_view);
+template std::unique_ptr<PairFinder<3, double>> make_finder(std::string_view);
+template std::unique_ptr<PairTracker<2>> make_tracker(std::string_view);
+template std::unique_ptr<PairTracker<3>> make_tracker(std::string_view);
+template std::unique_ptr<PairTracker<2, double>> make_tracker(std::string_view);
+template std::unique_ptr<PairTracker<3, double>> make_tracker(std::string_view);
+
+}  // namespace broadside

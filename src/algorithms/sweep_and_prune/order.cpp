@@ -1,0 +1,191 @@
+// Boxes kept in the order of a sweep from frame to frame.
+#include "algorithms/sweep_and_prune/order.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace broadside::own {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// The greatest of some numbers, NaN not counting: by several chains, since one waits for itself.
+float greatest(const float* numbers, std::size_t count) {
+  constexpr std::size_t chains = 8;
+  std::array<float, chains> most;
+  most.fill(-infinity);
+  std::size_t i = 0;
+  for (; i + chains <= count; i += chains) {
+    for (std::size_t chain = 0; chain < chains; ++chain)
+      most[chain] = most[chain] < numbers[i + chain] ? numbers[i + chain] : most[chain];
+  }
+  for (; i < count; ++i) most[0] = most[0] < numbers[i] ? numbers[i] : most[0];
+  return *std::max_element(most.begin(), most.end());
+}
+
+/// Moves the element at `from` to `to`, and those between by one.
+template <typename T>
+void move_element(std::vector<T>& elements, std::size_t from, std::size_t to) {
+  T* const all = elements.data();
+  const T moved = all[from];
+  if (from < to)
+    std::memmove(all + from, all + from + 1, (to - from) * sizeof(T));
+  else
+    std::memmove(all + to + 1, all + to, (from - to) * sizeof(T));
+  all[to] = moved;
+}
+
+/// The first place in [0, size) for which `is_behind` does not hold, which holds for all before it; looked
+/// for from `near` on in both directions, in growing steps.
+template <typename IsBehind>
+std::size_t gallop(std::size_t size, std::size_t near, IsBehind is_behind) {
+  std::size_t low = 0;
+  std::size_t high = size;
+  near = std::min(near, size);
+  if (near < size && is_behind(near)) {
+    low = near + 1;
+    for (std::size_t step = 8; low + step < size; step *= 4) {
+      if (!is_behind(low + step)) {
+        high = low + step;
+        break;
+      }
+      low += step + 1;
+    }
+  } else {
+    high = near;
+    for (std::size_t step = 8; step < high; step *= 4) {
+      if (is_behind(high - step)) {
+        low = high - step + 1;
+        break;
+      }
+      high -= step;
+    }
+  }
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (is_behind(middle))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+template <int D>
+void SweepOrder<D>::Arrays::resize(std::size_t size) {
+  for (int axis = 0; axis < D; ++axis) {
+    min[axis].resize(size + kernels::read_ahead);
+    max[axis].resize(size + kernels::read_ahead);
+  }
+  id.resize(size + kernels::read_ahead);
+}
+
+template <int D>
+void SweepOrder<D>::Arrays::set(std::size_t place, const Box<D>& box, BoxId box_id) {
+  for (int axis = 0; axis < D; ++axis) {
+    min[axis][place] = box.min[axis];
+    max[axis][place] = box.max[axis];
+  }
+  id[place] = box_id;
+}
+
+template <int D>
+std::size_t SweepOrder<D>::Arrays::bytes() const noexcept {
+  std::size_t bytes = id.capacity() * sizeof(BoxId);
+  for (int axis = 0; axis < D; ++axis) bytes += (min[axis].capacity() + max[axis].capacity()) * sizeof(float);
+  return bytes;
+}
+
+template <int D>
+std::size_t SweepOrder<D>::find(const SweepKey& wanted, std::size_t near) const {
+  return gallop(size_, near, [&](std::size_t place) { return key(place) < wanted; });
+}
+
+template <int D>
+std::size_t SweepOrder<D>::find(const SweepKey& wanted) const {
+  std::size_t low = 0;
+  for (std::size_t count = size_; count > 0;) {
+    const std::size_t half = count / 2;
+    const bool is_behind = key(low + half) < wanted;
+    low = is_behind ? low + half + 1 : low;
+    count = is_behind ? count - half - 1 : half;
+  }
+  return low;
+}
+
+template <int D>
+std::size_t SweepOrder<D>::find_end(float max, std::size_t near) const {
+  return gallop(size_, near, [&](std::size_t place) { return min_[0][place] <= max; });
+}
+
+template <int D>
+Box<D> SweepOrder<D>::box(std::size_t place) const {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = min_[axis][place];
+    box.max[axis] = max_[axis][place];
+  }
+  return box;
+}
+
+template <int D>
+void SweepOrder<D>::take_other() {
+  std::swap(arrays_, other_);
+  size_ = id_.size() - kernels::read_ahead;
+  for (int axis = 0; axis < D; ++axis) {
+    run_.min[axis] = min_[axis].data();
+    run_.max[axis] = max_[axis].data();
+  }
+  run_.id = id_.data();
+  run_.size = size_;
+  reach_.resize((size_ + fan - 1) / fan);
+  high_reach_.resize(size_ / fan / fan + 1);
+  if (size_ > 0)
+    set_reach(0, (size_ - 1) / fan);
+  else
+    high_reach_[0] = -infinity;
+}
+
+template <int D>
+void SweepOrder<D>::set_reach(std::size_t first_block, std::size_t last_block) {
+  for (std::size_t block = first_block; block <= last_block; ++block)
+    reach_[block] = greatest(max_[0].data() + block * fan, std::min(fan, size_ - block * fan));
+  for (std::size_t high = first_block / fan; high <= last_block / fan; ++high)
+    high_reach_[high] = greatest(reach_.data() + high * fan, std::min(fan, reach_.size() - high * fan));
+}
+
+template <int D>
+void SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
+  const SweepKey to_key{box.min[0], id_[from]};
+  std::size_t to = find(to_key, from);
+  // The search has counted the box itself where it goes up.
+  if (to > from) --to;
+  if (to != from) {
+    for (int axis = 0; axis < D; ++axis) {
+      move_element(min_[axis], from, to);
+      move_element(max_[axis], from, to);
+    }
+    move_element(id_, from, to);
+  }
+  arrays_.set(to, box, to_key.id);
+  set_reach(std::min(from, to) / fan, std::max(from, to) / fan);
+}
+
+template <int D>
+void SweepOrder<D>::remove(std::size_t place) {
+  max_[0][place] = std::numeric_limits<float>::quiet_NaN();
+}
+
+template <int D>
+std::size_t SweepOrder<D>::bytes() const noexcept {
+  return arrays_.bytes() + other_.bytes() + (reach_.capacity() + high_reach_.capacity()) * sizeof(float);
+}
+
+template class SweepOrder<2>;
+template class SweepOrder<3>;
+
+}  // namespace broadside::own

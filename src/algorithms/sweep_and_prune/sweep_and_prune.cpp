@@ -1,0 +1,241 @@
+// Sweep and prune: boxes sorted along one axis, each compared with those that begin before it ends; and the
+// same in stripes of a second axis.
+//
+// Section IV of the paper. The axis is the one on which a sample of the boxes overlaps least. Where that
+// leaves many candidates, a second axis is cut into stripes that hold equally many boxes, and each stripe is
+// swept by itself (P. Terdiman, "Box pruning revisited"). A box is in every stripe it touches; a pair is
+// reported in the stripe that holds the greater of its two minima.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+#include "broadside/outline.hpp"
+
+#include "algorithms/descriptions.hpp"
+#include "algorithms/sweep_and_prune/cell_lists.hpp"
+#include "algorithms/sweep_and_prune/tracker.hpp"
+#include "core/parallel.hpp"
+#include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
+#include "interface/outline_text.hpp"
+#include "interface/yielding.hpp"
+#include "kernels/sweep.hpp"
+#include "kernels/waste.hpp"
+
+namespace broadside::own {
+namespace {
+
+/// What filing a box once more costs, in tests of two boxes.
+constexpr double reference_cost = 64;
+
+constexpr std::size_t most_stripes = 256;
+
+/// Without stripes, so many boxes are swept by the same thread.
+constexpr std::size_t rows_at_once = 64;
+
+template <int D>
+class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+ public:
+  explicit SweepAndPrune(const Settings& settings) {
+    if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
+    if (!settings.is_auto("axes")) axes_ = static_cast<int>(settings.text("axes")[0] - '0');
+    if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
+  }
+
+  /// It gives up before it has searched.
+  bool is_left(const Box<D>&, BoxId, const Box<D>&, BoxId) const override { return true; }
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    this->set_yielded(false);
+    parallel_.start(this->workers(), boxes.size());
+    runs_.resize(std::max(runs_.size(), parallel_.lanes()));
+    const std::array<int, D> axes = choose_axes(boxes);
+    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
+    if (borders_.empty())
+      sweep_all(sorted, pairs);
+    else
+      sweep_stripes(sorted, pairs);
+  }
+
+  /// Chooses the swept axis, the striped one and so on, and the stripes.
+  std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
+    sample_.take(boxes);
+    std::array<int, D> axes = sample_.axes_by_overlap();
+    for (int i = D - 1; i > 0; --i) {
+      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
+    }
+    // A search that may give up is asked for along one axis, or not at all.
+    borders_.clear();
+    if (!this->may_yield()) choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
+    return axes;
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    const std::array<int, D> axes = choose_axes(boxes);
+    Outline<D> outline;
+    outline.swept_axis = axes[0];
+    outline.kind = borders_.empty() ? "sweep" : "stripes";
+    const std::string swept = "swept along " + core::axis_name(axes[0]);
+    outline.caption = borders_.empty() ? "one sweep along " + core::axis_name(axes[0])
+                                       : core::counted(borders_.size() + 1, "stripe") + " of " +
+                                             core::axis_name(axes[1]) + ", each " + swept;
+    Box<D> stripe;
+    stripe.min.fill(-std::numeric_limits<float>::infinity());
+    stripe.max.fill(std::numeric_limits<float>::infinity());
+    outline.levels.resize(1);
+    for (std::size_t i = 0; i <= borders_.size(); ++i) {
+      if (i > 0) stripe.min[axes[1]] = borders_[i - 1];
+      stripe.max[axes[1]] = i < borders_.size() ? borders_[i] : std::numeric_limits<float>::infinity();
+      outline.levels[0].push_back(stripe);
+    }
+    return outline;
+  }
+
+  /// Sets the borders between stripes, none if one axis is enough.
+  void choose_stripes(std::size_t boxes, const core::AxisSample& swept, const core::AxisSample& striped) {
+    // Of S stripes with borders where boxes begin, a box touches S / 2 times the axis's overlap more than
+    // one; and a sweep compares the square of a stripe's boxes.
+    const auto cost = [&](std::size_t stripes) {
+      const auto count = static_cast<double>(boxes);
+      const double references = count * (1 + static_cast<double>(stripes - 1) * striped.overlap / 2);
+      return reference_cost * references +
+             references * references * swept.overlap / 2 / static_cast<double>(stripes);
+    };
+    std::size_t best = axes_ == 2 ? 2 : 1;
+    for (std::size_t stripes = 2 * best; axes_ != 1 && stripes <= most_stripes && 16 * stripes <= boxes;
+         stripes *= 2) {
+      if (cost(stripes) < cost(best)) best = stripes;
+    }
+    const std::vector<float>& minima = striped.minima;
+    for (std::size_t stripe = 1; stripe < best && !minima.empty(); ++stripe)
+      borders_.push_back(minima[minima.size() * stripe / best]);
+    borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
+  }
+
+  void sweep_all(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+    kernels::RunBuffer<D>& buffer = runs_[0];
+    buffer.clear();
+    buffer.reserve(sorted.size());
+    for (const core::SortedBox<D>& box : sorted)
+      buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
+    const kernels::Run<D> run = buffer.view();
+    if (this->may_yield() && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
+      this->set_yielded(true);
+      this->count({.references = run.size});
+      return;
+    }
+    const auto sweep = [&](core::Range some, std::size_t, PairSink& sink) {
+      const std::size_t begin = some.begin * rows_at_once;
+      const std::size_t end = std::min(some.end * rows_at_once, run.size);
+      return Statistics{.tests = kernels::sweep(kernels::rows_of(run, begin, end), sink)};
+    };
+    Statistics statistics = parallel_.search((run.size + rows_at_once - 1) / rows_at_once, pairs, sweep);
+    statistics.references = run.size;
+    this->count(statistics);
+  }
+
+  void sweep_stripes(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+    const auto stripe_of = [this](float coordinate) {
+      return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
+    };
+    places_.resize(sorted.size());
+    stripes_.reset(borders_.size() + 1, parallel_.range_count());
+    parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        places_[i] = {stripe_of(sorted[i].box.min[1]), stripe_of(sorted[i].box.max[1])};
+        for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
+          stripes_.count(stripe, number);
+      }
+    });
+    stripes_.prepare();
+    parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
+          stripes_.file(stripe, static_cast<std::uint32_t>(i), number);
+      }
+    });
+    const auto sweep = [&](core::Range stripes, std::size_t lane, PairSink& sink) {
+      Statistics statistics;
+      for (std::size_t stripe = stripes.begin; stripe < stripes.end; ++stripe) {
+        const std::span<const std::uint32_t> list = stripes_.list(stripe);
+        kernels::RunBuffer<D>& run = runs_[lane];
+        run.clear();
+        run.reserve(list.size());
+        for (const std::uint32_t i : list) {
+          const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
+          run.append(sorted[i].box, sorted[i].id,
+                     before | kernels::side_bit(sorted[i].id, this->left_count()));
+        }
+        statistics.tests += kernels::sweep(run.view(), sink);
+        statistics.references += list.size();
+      }
+      return statistics;
+    };
+    this->count(parallel_.search(borders_.size() + 1, pairs, sweep));
+  }
+
+  /// The stripes in which a box begins and ends.
+  struct Place {
+    std::uint16_t first;
+    std::uint16_t last;
+  };
+
+  int axis_ = -1;  // the axis to sweep along; -1: to be chosen
+  int axes_ = 0;   // 1: no stripes; 2: stripes; 0: to be chosen
+
+  core::Sample<D> sample_;
+  core::SortedBoxes<D> sorted_;
+  std::vector<float> borders_;  // a stripe's first coordinate, from the second stripe on
+  std::vector<Place> places_;
+  core::CellLists stripes_;
+  core::Parallel parallel_;
+  std::vector<kernels::RunBuffer<D>> runs_;  // by lane
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  return std::make_unique<SweepAndPrune<D>>(settings);
+}
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  return make_sweep_and_prune_tracker<D>(settings, make<D>(settings));
+}
+
+}  // namespace
+
+Algorithm sweep_and_prune() {
+  return {
+      .name = "sweep_and_prune",
+      .summary =
+          "a sorted sweep along the axis that separates the boxes best, in stripes of a second axis where "
+          "that pays",
+      .source = "paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited",
+      .tunables = {{.name = "axis",
+                    .summary = "the axis to sweep along",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"x", "y", "z"}},
+                   {.name = "axes",
+                    .summary = "how many axes are used: 1, or 2 for stripes",
+                    .standard = "auto",
+                    .type = Tunable::Type::choice,
+                    .choices = {"1", "2"}},
+                   sweep_and_prune_update(),
+                   core::threads_tunable()},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
+  };
+}
+
+}  // namespace broadside::own

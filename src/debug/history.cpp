@@ -1,0 +1,95 @@
+// Histories played again, and written for people.
+#include "broadside/history.hpp"
+
+#include "interface/box_text.hpp"
+
+namespace broadside {
+namespace {
+
+/// `lines`, one a line, without those beyond `most`, which are counted.
+template <typename Line>
+void add_lines(std::string& text, std::size_t count, std::size_t most, const char* indent, Line line) {
+  for (std::size_t i = 0; i < std::min(count, most); ++i) text += indent + line(i);
+  if (count > most) text += indent + ("... " + std::to_string(count) + " in all");
+}
+
+std::string text_of(const Filter& filter) {
+  return ", category " + std::to_string(filter.category) + ", mask " + std::to_string(filter.mask) +
+         ", group " + std::to_string(filter.group) + (filter.is_static ? ", static" : "");
+}
+
+std::string text_of(Pair pair) {
+  return "(" + std::to_string(index(pair.first)) + ", " + std::to_string(index(pair.second)) + ")";
+}
+
+/// One box with its place, and its filter if there is one.
+template <int D, typename Real>
+std::string line_of(std::size_t place, const Box<D, Real>& box, const std::vector<Filter>& filters,
+                    std::size_t i) {
+  return std::to_string(place) + ": " + (is_absent(box) ? "absent" : core::text_of(box)) +
+         (filters.empty() ? "" : text_of(filters[i]));
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes) {
+  boxes.resize(step.size, absent_box<D, Real>());
+  for (std::size_t i = 0; i < step.changed.size(); ++i) {
+    if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
+  }
+}
+
+template <int D, typename Real>
+Frame<D, Real> Replay<D, Real>::next(const Step<D, Real>& step) {
+  apply(step, boxes_);
+  if (!filters_.empty() || !step.filters.empty()) filters_.resize(step.size);
+  for (std::size_t i = 0; i < step.filters.size(); ++i) {
+    if (index(step.changed[i]) < step.size) filters_[index(step.changed[i])] = step.filters[i];
+  }
+  for (const Pair pair : step.toggled) {
+    if (!ignored_.insert(pair)) ignored_.erase(pair);
+  }
+  changed_ = step.changed;
+  ignored_changed_ = step.toggled;
+  return frame();
+}
+
+template <int D, typename Real>
+std::string text_of(const History<D, Real>& history, std::size_t most) {
+  std::string text = "frame 0: " + std::to_string(history.boxes.size()) + " boxes";
+  add_lines(text, history.boxes.size(), most, "\n  ",
+            [&](std::size_t i) { return line_of(i, history.boxes[i], history.filters, i); });
+  const auto add_pairs = [&](const char* what, const std::vector<Pair>& pairs) {
+    if (pairs.empty()) return;
+    text += what;
+    add_lines(text, pairs.size(), most, " ", [&](std::size_t i) { return text_of(pairs[i]); });
+  };
+  add_pairs("\n  ignored:", history.ignored);
+  for (std::size_t frame = 1; frame <= std::min(history.steps.size(), most); ++frame) {
+    const Step<D, Real>& step = history.steps[frame - 1];
+    text += "\nframe " + std::to_string(frame) + ": " + std::to_string(step.size) + " boxes, changed";
+    add_lines(text, step.changed.size(), most, "\n  ",
+              [&](std::size_t i) { return line_of(index(step.changed[i]), step.boxes[i], step.filters, i); });
+    if (step.changed.empty()) text += " none";
+    add_pairs("\n  ignored, or no longer:", step.toggled);
+  }
+  if (history.steps.size() > most)
+    text += "\n... " + std::to_string(history.steps.size() + 1) + " frames in all";
+  return text;
+}
+
+template void apply(const Step<2>&, std::vector<Box2>&);
+template void apply(const Step<3>&, std::vector<Box3>&);
+template void apply(const Step<2, double>&, std::vector<DoubleBox2>&);
+template void apply(const Step<3, double>&, std::vector<DoubleBox3>&);
+template class Replay<2, float>;
+template class Replay<3, float>;
+template class Replay<2, double>;
+template class Replay<3, double>;
+template std::string text_of(const History<2>&, std::size_t);
+template std::string text_of(const History<3>&, std::size_t);
+template std::string text_of(const History<2, double>&, std::size_t);
+template std::string text_of(const History<3, double>&, std::size_t);
+
+}  // namespace broadside

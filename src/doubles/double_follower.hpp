@@ -1,0 +1,41 @@
+// Follows boxes of doubles by their floats: the grid's tracker tells which pairs may have changed, and a last
+// test in double whether they did.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "broadside/pair_tracker.hpp"
+
+#include "algorithms/hierarchical_grid/tracker.hpp"
+#include "core/rounding.hpp"
+
+namespace broadside::own {
+
+/// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So all pairs
+/// that began or ended are among those of a changed box with what it overlaps as floats, or did. How
+/// coordinates are rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have
+/// moved to where that makes too many false candidates. Cost: that of the floats, and a test in double for
+/// each candidate.
+template <int D>
+class DoubleFollower final : public PairTracker<D, double> {
+ private:
+  void update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) override;
+  std::size_t algorithm_bytes() const noexcept override;
+
+  Box<D> rounded(const Box<D, double>& box) const;
+  void start(const Change<D, double>& change);
+
+  std::array<core::LinearFit, D> fit_{};
+  std::array<core::QuantileRounding, D> quantiles_;
+  bool by_quantiles_ = false;
+  std::uint64_t false_candidates_ = 0;  // since all boxes were rounded
+  std::unique_ptr<HierarchicalGridTracker<D>> grid_;
+  std::vector<Box<D>> before_;
+  std::vector<Box<D>> now_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,166 @@
+// BoxIndex: what every index does around its own work, and the distance.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "broadside/error.hpp"
+#include "broadside/queries.hpp"
+
+#include "core/float_environment.hpp"
+#include "interface/input_check.hpp"
+#include "interface/squared_distance.hpp"
+
+namespace broadside {
+namespace {
+
+template <typename Real>
+[[noreturn]] void refuse(const char* name, const Real* values, int count, const char* expected) {
+  std::ostringstream message;
+  message.imbue(std::locale::classic());
+  message.precision(std::numeric_limits<Real>::max_digits10);
+  message << name << " is ";
+  for (int i = 0; i < count; ++i) message << (i == 0 ? "" : ", ") << values[i];
+  message << "; expected " << expected;
+  throw InvalidInput(0, message.str());
+}
+
+template <int D, typename Real>
+void check(const BoxCast<D, Real>& cast) {
+  const auto are_finite = [](const std::array<Real, D>& values) {
+    return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
+  };
+  if (!is_present(cast.box)) core::refuse_box(cast.box, 0, "the box that is cast");
+  for (const auto& corner : {cast.box.min, cast.box.max}) {
+    if (!are_finite(corner)) refuse("a ray's origin or a cast box", corner.data(), D, "finite numbers");
+  }
+  if (!are_finite(cast.direction)) refuse("a cast's direction", cast.direction.data(), D, "finite numbers");
+  if (!(cast.furthest >= 0)) refuse("a cast's furthest parameter", &cast.furthest, 1, "0, more, or infinity");
+}
+
+/// Calls a visitor in the floating-point environment of the query's caller.
+template <typename Found>
+class CallersVisitor final : public Visitor<Found> {
+ public:
+  explicit CallersVisitor(Visitor<Found>& visitor) : visitor_(visitor) {}
+
+  bool visit(std::span<const Found> found) override {
+    const core::CallersEnvironment environment;
+    return visitor_.visit(found);
+  }
+
+ private:
+  Visitor<Found>& visitor_;
+};
+
+}  // namespace
+
+template <int D, typename Real>
+Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
+                      const Box<D, Real>& box) noexcept {
+  const core::DefaultEnvironment environment;
+  const volatile Real result = core::squared_distance<D, Real>(point, box);
+  return result;
+}
+
+template <int D, typename Real>
+void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
+  const core::DefaultEnvironment environment;
+  const std::size_t size = std::max(size_, frame.boxes.size());
+  core::check_count(frame.boxes.size());
+  if (!frame.filters.empty() && frame.filters.size() != frame.boxes.size()) {
+    throw InvalidInput(frame.filters.size(),
+                       std::to_string(frame.filters.size()) + " filters for a frame of " +
+                           std::to_string(frame.boxes.size()) + " boxes; expected one for each box, or none");
+  }
+  std::size_t first = dirty_ ? 0 : std::min(size_, frame.boxes.size());
+  for (const BoxId id : frame.changed) {
+    if (index(id) >= size) {
+      throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
+                                        std::to_string(frame.boxes.size()) +
+                                        " boxes; expected a place in this frame or the last");
+    }
+    if (index(id) >= first) continue;
+    const Box<D, Real>& box = frame.boxes[index(id)];
+    if (!is_present(box) && !is_absent(box)) first = index(id);
+  }
+  core::check_boxes(frame.boxes, first);
+
+  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
+  if (rebuild || frame.filters.empty() || filters_.empty()) {
+    filters_.assign(frame.filters.begin(), frame.filters.end());
+  } else {
+    filters_.resize(frame.filters.size());
+    for (const BoxId id : frame.changed) {
+      if (index(id) < filters_.size()) filters_[index(id)] = frame.filters[index(id)];
+    }
+    for (std::size_t i = size_; i < filters_.size(); ++i) filters_[i] = frame.filters[i];
+  }
+  changed_.clear();
+  if (!rebuild) {
+    changed_.assign(frame.changed.begin(), frame.changed.end());
+    for (std::size_t i = std::min(size_, frame.boxes.size()); i < size; ++i) changed_.push_back(BoxId(i));
+  }
+  update_valid(frame.boxes, changed_, rebuild);
+  size_ = frame.boxes.size();
+  dirty_ = false;
+}
+
+template <int D, typename Real>
+bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
+                                    const Filter* asker) const {
+  const core::DefaultEnvironment environment;
+  if (!is_present(box)) {
+    if (is_absent(box)) return true;
+    core::refuse_box(box, 0, "the box or point asked about");
+  }
+  if (dirty_) return true;
+  if (!environment.is_foreign()) return find_overlapping(box, visitor, asker);
+  CallersVisitor callers(visitor);
+  return find_overlapping(box, callers, asker);
+}
+
+template <int D, typename Real>
+bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
+                             const Filter* asker) const {
+  const core::DefaultEnvironment environment;
+  check(cast);
+  if (dirty_) return true;
+  if (!environment.is_foreign()) return find_hits(cast, visitor, asker);
+  CallersVisitor callers(visitor);
+  return find_hits(cast, callers, asker);
+}
+
+template <int D, typename Real>
+std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& cast,
+                                                      const Filter* asker) const {
+  const core::DefaultEnvironment environment;
+  check(cast);
+  return dirty_ ? std::nullopt : find_first_hit(cast, asker);
+}
+
+template <int D, typename Real>
+void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
+                                const Filter* asker, Real furthest) const {
+  const core::DefaultEnvironment environment;
+  for (const Real coordinate : point) {
+    if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
+  }
+  if (!(furthest >= 0)) refuse("the square of the furthest distance", &furthest, 1, "0, more, or infinity");
+  found.clear();
+  if (count > 0 && !dirty_) find_nearest(point, count, furthest, found, asker);
+}
+
+template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;
+template float distance_squared(const std::array<float, 3>&, const Box<3>&) noexcept;
+template double distance_squared(const std::array<double, 2>&, const DoubleBox2&) noexcept;
+template double distance_squared(const std::array<double, 3>&, const DoubleBox3&) noexcept;
+template class BoxIndex<2, float>;
+template class BoxIndex<2, double>;
+template class BoxIndex<3, float>;
+template class BoxIndex<3, double>;
+
+}  // namespace broadside

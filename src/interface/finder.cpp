@@ -1,0 +1,229 @@
+// PairFinder: what every finder does before its algorithm sees the boxes.
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/error.hpp"
+
+#include "core/filter_sink.hpp"
+#include "core/parallel.hpp"
+#include "interface/callers_sink.hpp"
+#include "interface/input_check.hpp"
+
+namespace broadside {
+namespace {
+
+/// Passes pairs on under other ids, and of those between two sets only the ones that do cross. The ids rise
+/// with the places they stand for within a set, so that pairs of one set stay ordered.
+class RenamingSink final : public core::FilterSink {
+ public:
+  RenamingSink(std::span<const BoxId> ids, std::size_t left_count, PairSink& target)
+      : FilterSink(target), ids_(ids), left_count_(left_count) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<RenamingSink>(ids_, left_count_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    while (!pairs.empty()) {
+      const std::size_t count = std::min(pairs.size(), max_room);
+      Pair* const out = target().room(count);
+      std::size_t written = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t first = index(pairs[i].first);
+        const std::uint32_t second = index(pairs[i].second);
+        out[written] = {ids_[first], ids_[second]};
+        written +=
+            static_cast<std::size_t>(left_count_ == 0 || (first < left_count_ && second >= left_count_));
+      }
+      target().commit(written);
+      pairs = pairs.subspan(count);
+    }
+  }
+
+  std::span<const BoxId> ids_;
+  std::size_t left_count_;
+};
+
+/// Passes on pairs between the boxes before place `left_count` and the others, as places in those two sets.
+class CrossingSink final : public core::FilterSink {
+ public:
+  CrossingSink(std::size_t left_count, PairSink& target)
+      : FilterSink(target), left_count_(static_cast<std::uint32_t>(left_count)) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<CrossingSink>(left_count_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    while (!pairs.empty()) {
+      const std::size_t count = std::min(pairs.size(), max_room);
+      Pair* const out = target().room(count);
+      std::size_t written = 0;
+      for (const Pair pair : pairs.first(count)) {
+        const std::uint32_t first = index(pair.first);
+        const std::uint32_t second = index(pair.second);
+        out[written] = {BoxId{first}, BoxId{second - left_count_}};
+        written += static_cast<std::size_t>(first < left_count_ && second >= left_count_);
+      }
+      target().commit(written);
+      pairs = pairs.subspan(count);
+    }
+  }
+
+  std::uint32_t left_count_;
+};
+
+/// Checks one of two sets by `check` and returns how many boxes are absent; a box at fault is named as one of
+/// `side`.
+template <typename Check>
+std::size_t check_side(const char* side, Check check) {
+  try {
+    return check();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.index(), std::string(side) + " " + error.what());
+  }
+}
+
+/// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
+template <typename Search>
+void deliver(PairSink& pairs, Search search) {
+  try {
+    search();
+    pairs.flush();
+  } catch (...) {
+    pairs.discard();
+    throw;
+  }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find(boxes, sink); });
+  core::check_count(boxes.size());
+  const std::size_t absent = check(boxes);
+  quarantined_.clear();
+  if (absent > 0) list_invalid(boxes, 0);
+  statistics_.reset();
+  left_count_ = 0;
+  deliver(pairs, [&] {
+    if (absent == 0) {
+      find_valid(boxes, pairs);
+      return;
+    }
+    present_.clear();
+    ids_.clear();
+    take_present(boxes);
+    RenamingSink renamed(ids_, left_count_, pairs);
+    find_valid(present_, renamed);
+    renamed.flush();
+  });
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
+                                       std::span<const Box<D, Real>> right, PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find_between(left, right, sink); });
+  core::check_count(left.size() + right.size());
+  const std::size_t absent_left = check_side("left", [&] { return check(left); });
+  const std::size_t absent_right = check_side("right", [&] { return check(right); });
+  quarantined_.clear();
+  if (absent_left > 0) list_invalid(left, 0);
+  if (absent_right > 0) list_invalid(right, left.size());
+  statistics_.reset();
+  present_.clear();
+  ids_.clear();
+  take_present(left);
+  left_count_ = present_.size();
+  take_present(right);
+  deliver(pairs, [&] {
+    if (left_count_ == 0 || left_count_ == present_.size()) return;
+    RenamingSink crossing(ids_, left_count_, pairs);
+    find_valid(present_, crossing);
+    crossing.flush();
+  });
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                       PairSink& pairs) {
+  const core::DefaultEnvironment environment;
+  if (environment.is_foreign())
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find_between(boxes, left_count, sink); });
+  const std::span<const Box<D, Real>> left = boxes.first(left_count);
+  const std::span<const Box<D, Real>> right = boxes.subspan(left_count);
+  core::check_count(boxes.size());
+  if (check_side("left", [&] { return check(left); }) + check_side("right", [&] { return check(right); }) >
+      0) {
+    find_between(left, right, pairs);
+    return;
+  }
+  quarantined_.clear();
+  statistics_.reset();
+  left_count_ = left_count;
+  deliver(pairs, [&] {
+    if (left.empty() || right.empty()) return;
+    CrossingSink crossing(left_count, pairs);
+    find_valid(boxes, crossing);
+    crossing.flush();
+  });
+}
+
+template <int D, typename Real>
+std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) const {
+  core::Parallel parallel;
+  parallel.start(workers_, boxes.size());
+  std::atomic<std::size_t> absent = 0;
+  // A range that throws names its first box at fault, and of ranges the first one's counts.
+  parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input_),
+                     std::memory_order_relaxed);
+  });
+  return absent;
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
+  if (bad_input_ == BadInput::reject) return;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
+  }
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::search_with(PairFinder& other, std::span<const Box<D, Real>> boxes,
+                                      PairSink& pairs) {
+  other.left_count_ = left_count_;
+  other.set_workers(workers_);
+  other.statistics_.reset();
+  other.find_valid(boxes, pairs);
+  statistics_ = other.statistics_;
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
+  present_.reserve(present_.size() + boxes.size());
+  ids_.reserve(ids_.size() + boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_present(boxes[i])) continue;
+    present_.push_back(boxes[i]);
+    ids_.push_back(BoxId(i));
+  }
+}
+
+template class PairFinder<2, float>;
+template class PairFinder<2, double>;
+template class PairFinder<3, float>;
+template class PairFinder<3, double>;
+
+}  // namespace broadside

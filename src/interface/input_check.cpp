@@ -1,0 +1,80 @@
+// Refuses boxes that no algorithm may see, before anything has changed.
+#include "interface/input_check.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "broadside/error.hpp"
+
+#include "core/float_environment.hpp"
+#include "interface/box_text.hpp"
+
+namespace broadside::core {
+
+template <int D, typename Real>
+bool is_present_by_value(const Box<D, Real>& box) noexcept {
+  using Bits = std::conditional_t<sizeof(Real) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+  bool is_certain = true;
+  for (int axis = 0; axis < D; ++axis) {
+    const Real min = box.min[axis];
+    const Real max = box.max[axis];
+    // Denormals taken for zeros make numbers equal that are not, and never one less that is not.
+    is_certain &=
+        std::isless(min, max) || (min == max && std::bit_cast<Bits>(min) == std::bit_cast<Bits>(max));
+  }
+  if (is_certain) return true;
+  const DefaultEnvironment environment;
+  const volatile bool result = is_present(box);
+  return result;
+}
+
+template <int D, typename Real>
+void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name) {
+  throw InvalidInput(index, name + " has " + text_of(box) +
+                                "; expected numbers with min <= max on every axis, or the absent box (min = "
+                                "+inf, max = -inf)");
+}
+
+template <int D, typename Real>
+void check_box(const Box<D, Real>& box, std::size_t index) {
+  if (is_invalid(box)) refuse_box(box, index, "box " + std::to_string(index));
+}
+
+template <int D, typename Real>
+std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, BadInput bad_input) {
+  std::size_t absent = 0;
+  for (std::size_t i = from; i < boxes.size(); ++i) {
+    if (is_present(boxes[i])) continue;
+    if (bad_input == BadInput::reject) check_box(boxes[i], i);
+    ++absent;
+  }
+  return absent;
+}
+
+void check_count(std::size_t count) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (count > most)
+    throw InvalidInput(most, std::to_string(count) + " boxes; expected at most " + std::to_string(most));
+}
+
+template bool is_present_by_value(const Box<2>&) noexcept;
+template bool is_present_by_value(const Box<3>&) noexcept;
+template bool is_present_by_value(const DoubleBox2&) noexcept;
+template bool is_present_by_value(const DoubleBox3&) noexcept;
+template void refuse_box(const Box<2>&, std::size_t, const std::string&);
+template void refuse_box(const Box<3>&, std::size_t, const std::string&);
+template void refuse_box(const DoubleBox2&, std::size_t, const std::string&);
+template void refuse_box(const DoubleBox3&, std::size_t, const std::string&);
+template void check_box(const Box<2>&, std::size_t);
+template void check_box(const Box<3>&, std::size_t);
+template void check_box(const DoubleBox2&, std::size_t);
+template void check_box(const DoubleBox3&, std::size_t);
+template std::size_t check_boxes(std::span<const Box<2>>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const Box<3>>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t, BadInput);
+template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t, BadInput);
+
+}  // namespace broadside::core

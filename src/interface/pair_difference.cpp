@@ -1,0 +1,80 @@
+// What differs between the pairs of two frames, seen from their boxes.
+#include "interface/pair_difference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace broadside::core {
+namespace {
+
+/// How many pairs ahead boxes are called for: finders write neighbours one after the other, but boxes stand
+/// anywhere in their array.
+constexpr std::size_t ahead = 16;
+
+template <typename Box>
+void call_for(std::span<const Box> boxes, Pair pair) {
+  __builtin_prefetch(&boxes[index(pair.first)]);
+  __builtin_prefetch(&boxes[index(pair.second)]);
+}
+
+/// Whether two boxes, each of them present or absent, overlap: without a branch, since nobody can foretell.
+template <int D, typename Real>
+unsigned overlapping(const Box<D, Real>& a, const Box<D, Real>& b) {
+  unsigned all = static_cast<unsigned>(a.min[0] <= a.max[0]) & static_cast<unsigned>(b.min[0] <= b.max[0]);
+  for (int axis = 0; axis < D; ++axis) {
+    all &= static_cast<unsigned>(a.min[axis] <= b.max[axis]);
+    all &= static_cast<unsigned>(b.min[axis] <= a.max[axis]);
+  }
+  return all;
+}
+
+/// Calls `report` for those of `pairs` of which a box changed, and whose boxes do not overlap in `boxes`; for
+/// the others of which one changed as well if there are filters.
+template <int D, typename Real, typename Report>
+void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
+                   std::span<const Box<D, Real>> boxes, Report report) {
+  const unsigned by_boxes = change.filters_now.empty() ? 1 : 0;
+  constexpr std::size_t at_once = 256;
+  std::array<Pair, at_once> differing;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, pairs.size());
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + ahead < pairs.size()) call_for(boxes, pairs[i + ahead]);
+      const std::uint32_t a = index(pairs[i].first);
+      const std::uint32_t b = index(pairs[i].second);
+      const unsigned goes_on = overlapping(boxes[a], boxes[b]) & by_boxes;
+      differing[count] = pairs[i];
+      count += static_cast<std::size_t>((change.flags[a] | change.flags[b]) & (goes_on ^ 1U));
+    }
+    for (const Pair pair : std::span(differing).first(count)) report(pair);
+  }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
+                        std::span<const Pair> kept, PairSink& begun, PairSink& ended) {
+  for_differing<D, Real>(change, found, change.before, [&](Pair pair) {
+    if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
+      begun.add(pair.first, pair.second);
+  });
+  for_differing<D, Real>(change, kept, change.now, [&](Pair pair) {
+    if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
+      ended.add(pair.first, pair.second);
+  });
+}
+
+template void report_differences(const Change<2>&, std::span<const Pair>, std::span<const Pair>, PairSink&,
+                                 PairSink&);
+template void report_differences(const Change<3>&, std::span<const Pair>, std::span<const Pair>, PairSink&,
+                                 PairSink&);
+template void report_differences(const Change<2, double>&, std::span<const Pair>, std::span<const Pair>,
+                                 PairSink&, PairSink&);
+template void report_differences(const Change<3, double>&, std::span<const Pair>, std::span<const Pair>,
+                                 PairSink&, PairSink&);
+
+}  // namespace broadside::core

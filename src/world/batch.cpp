@@ -1,0 +1,125 @@
+// World: many boxes at once, all or none; and all of them in a new origin.
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "broadside/error.hpp"
+#include "broadside/world.hpp"
+
+#include "core/float_environment.hpp"
+#include "world/state.hpp"
+
+namespace broadside {
+namespace {
+
+void check_lengths(std::size_t found, const char* things, std::size_t boxes) {
+  if (found == boxes) return;
+  throw std::invalid_argument(std::to_string(found) + " " + things + " for " + std::to_string(boxes) +
+                              " boxes; expected one for each");
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> handles,
+                         std::span<const BoxOptions> options) {
+  check_lengths(handles.size(), "handles", boxes.size());
+  if (!options.empty()) check_lengths(options.size(), "options", boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    state_->check_box(boxes[i], i, "to be added, number");
+  }
+  bool has_filters = false;
+  bool has_user_data = false;
+  for (const BoxOptions& its : options) {
+    has_filters |= its.filter != Filter{};
+    has_user_data |= its.user_data != 0;
+  }
+  // Where the boxes given are the world's own, they move when its arrays grow.
+  std::vector<Box<D, Real>> copies;
+  const std::less<const Box<D, Real>*> is_before;
+  const std::span<const Box<D, Real>> own = state_->boxes;
+  if (!is_before(boxes.data(), own.data()) && is_before(boxes.data(), own.data() + own.size())) {
+    copies.assign(boxes.begin(), boxes.end());
+    boxes = copies;
+  }
+  state_->reserve(boxes.size(), has_filters, has_user_data);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    handles[i] = state_->add_valid(boxes[i], options.empty() ? BoxOptions{} : options[i]);
+}
+
+template <int D, typename Real>
+void World<D, Real>::move(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes) {
+  check_lengths(handles.size(), "handles", boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!state_->is_live(handles[i])) state_->refuse(handles[i], "move");
+    state_->check_box(boxes[i], i, "to be moved to, number");
+  }
+  make_room(state_->changed, boxes.size());
+  make_room(state_->moved, boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) state_->set_box(handles[i].slot, boxes[i]);
+}
+
+template <int D, typename Real>
+void World<D, Real>::remove(std::span<const Handle> handles) {
+  using SlotState = typename State::SlotState;
+  state_->reserve_removals(handles.size(), state_->ignored_edges.size());
+  // One that is there twice is no longer live when it comes again.
+  for (std::size_t i = 0; i < handles.size(); ++i) {
+    if (state_->is_live(handles[i])) {
+      state_->slots[handles[i].slot].state = SlotState::removed;
+      continue;
+    }
+    for (const Handle earlier : handles.first(i)) state_->slots[earlier.slot].state = SlotState::live;
+    state_->refuse(handles[i], state_->is_live(handles[i]) ? "remove twice" : "remove");
+  }
+  for (const Handle handle : handles) state_->remove_valid(handle.slot);
+}
+
+template <int D, typename Real>
+std::vector<Handle> World<D, Real>::quarantined() const {
+  const State& state = *state_;
+  std::vector<Handle> handles;
+  for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
+    if (state.slots[slot].state == State::SlotState::live && is_absent(state.boxes[slot]))
+      handles.push_back({slot, state.generations[slot]});
+  }
+  return handles;
+}
+
+template <int D, typename Real>
+void World<D, Real>::shift_origin(const std::array<Real, D>& origin) {
+  const core::DefaultEnvironment environment;
+  State& state = *state_;
+  for (int axis = 0; axis < D; ++axis) {
+    if (std::isfinite(origin[axis])) continue;
+    throw InvalidInput(static_cast<std::size_t>(axis),
+                       "coordinate " + std::to_string(axis) + " of a new origin is " +
+                           std::to_string(origin[axis]) + "; expected a finite number");
+  }
+  make_room(state.changed, state.slots.size());
+  make_room(state.moved, state.slots.size());
+  const auto shifted = [&origin](Box<D, Real> box) {
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] -= origin[axis];
+      box.max[axis] -= origin[axis];
+    }
+    return box;
+  };
+  for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
+    if (state.slots[slot].state != State::SlotState::live) continue;
+    // So that it is enlarged anew, and not kept where it was.
+    if (state.has_margin()) state.enlarged[slot] = absent_box<D, Real>();
+    state.set_box(slot, shifted(state.boxes[slot]));
+  }
+  for (auto& removed : state.removed) removed.box = shifted(removed.box);
+  for (auto& reported : state.reported) reported.box = shifted(reported.box);
+}
+
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
+
+}  // namespace broadside

@@ -1,0 +1,131 @@
+// The pairs that hold now, sorted: an array, and a log of the events that it has not taken in yet.
+#include "world/current_pairs.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/sort_pairs.hpp"
+
+namespace broadside::core {
+namespace {
+
+/// Below so many events a pass over the array is not worth it.
+constexpr std::size_t short_log = 1024;
+
+Pair slots(const HandlePair& pair) noexcept { return {BoxId{pair.first.slot}, BoxId{pair.second.slot}}; }
+
+HandlePair handles(Pair pair, CurrentPairs::Generations generations) noexcept {
+  return {{index(pair.first), generations[index(pair.first)]},
+          {index(pair.second), generations[index(pair.second)]}};
+}
+
+/// The first place in [from, to) that is not before `pair`, near `from` most of the time: steps that double,
+/// then a search between the last two.
+const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to, Pair pair) {
+  std::ptrdiff_t step = 1;
+  const HandlePair* low = from;
+  while (step < to - low && slots(low[step]) < pair) {
+    low += step;
+    step *= 2;
+  }
+  const HandlePair* const high = step < to - low ? low + step : to;
+  return std::lower_bound(low, high, pair, [](const HandlePair& a, Pair b) { return slots(a) < b; });
+}
+
+}  // namespace
+
+void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations) {
+  const std::size_t old_size = log_.size();
+  const std::size_t events = begun.size() + ended.size();
+  if (events == 0) return;
+  if (log_.capacity() < old_size + events) log_.reserve(std::max(old_size + events, 2 * log_.capacity()));
+  std::ranges::merge(begun, ended, std::back_inserter(log_));
+  size_ += begun.size();
+  size_ -= ended.size();
+  if (log_.size() <= std::max(short_log, pairs_.size() / 2)) return;
+  try {
+    merge(generations);
+  } catch (...) {
+    log_.resize(old_size);
+    size_ -= begun.size();
+    size_ += ended.size();
+    throw;
+  }
+}
+
+void CurrentPairs::merge(Generations generations) {
+  if (log_.empty()) return;
+  // What can throw comes first.
+  if (!std::ranges::is_sorted(log_)) sort(log_, scratch_);
+  if (pairs_.capacity() < size_) pairs_.reserve(std::max(size_, pairs_.capacity() + pairs_.capacity() / 2));
+  insert_begun(drop_and_refresh(generations), generations);
+  log_.clear();
+}
+
+/// Takes from the array what has ended; gives pairs that ended and began again the handles of now, since
+/// slots may have been used again. What has begun goes to the front of the log: returned is how many that
+/// are.
+std::size_t CurrentPairs::drop_and_refresh(Generations generations) {
+  HandlePair* const begin = pairs_.data();
+  const HandlePair* const end = begin + pairs_.size();
+  const HandlePair* read = begin;
+  HandlePair* write = begin;
+  const auto keep_up_to = [&](const HandlePair* to) {
+    if (write == read)
+      write += to - read;
+    else
+      write = std::copy(read, to, write);
+    read = to;
+  };
+  std::size_t begun = 0;
+  for (std::size_t i = 0; i < log_.size();) {
+    const Pair pair = log_[i];
+    const std::size_t first = i;
+    while (i < log_.size() && log_[i] == pair) ++i;
+    const bool toggled = (i - first) % 2 != 0;
+    if (read != end) keep_up_to(first_not_before(read, end, pair));
+    if (read != end && slots(*read) == pair) {
+      ++read;
+      if (!toggled) *write++ = handles(pair, generations);
+    } else if (toggled) {
+      log_[begun++] = pair;
+    }
+  }
+  keep_up_to(end);
+  pairs_.resize(static_cast<std::size_t>(write - begin));
+  return begun;
+}
+
+/// Puts the first `count` pairs of the log into the array, from the end on. There is room for them.
+void CurrentPairs::insert_begun(std::size_t count, Generations generations) {
+  std::size_t left = pairs_.size();
+  pairs_.resize(left + count);
+  HandlePair* out = pairs_.data() + pairs_.size();
+  while (count > 0) {
+    const Pair pair = log_[--count];
+    // From the back, since that is where the place is near.
+    std::size_t step = 1;
+    std::size_t high = left;
+    while (step <= high && pair < slots(pairs_[high - step])) {
+      high -= step;
+      step *= 2;
+    }
+    const std::size_t low = step <= high ? high - step : 0;
+    const auto place = std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(low),
+                                        pairs_.begin() + static_cast<std::ptrdiff_t>(high), pair,
+                                        [](const HandlePair& a, Pair b) { return slots(a) < b; });
+    const auto kept = static_cast<std::size_t>(place - pairs_.begin());
+    out = std::copy_backward(pairs_.data() + kept, pairs_.data() + left, out);
+    left = kept;
+    *--out = handles(pair, generations);
+  }
+}
+
+void CurrentPairs::shrink_to_fit() {
+  pairs_.shrink_to_fit();
+  log_.shrink_to_fit();
+  scratch_.clear();
+  scratch_.shrink_to_fit();
+}
+
+}  // namespace broadside::core

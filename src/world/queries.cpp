@@ -1,0 +1,70 @@
+// World: its index for queries, built when the first one is asked.
+#include "broadside/queries.hpp"
+
+#include <mutex>
+#include <vector>
+
+#include "broadside/world.hpp"
+
+#include "world/state.hpp"
+
+namespace broadside {
+
+template <int D, typename Real>
+const BoxIndex<D, Real>& World<D, Real>::box_index() const {
+  const State& state = *state_;
+  if (!state.is_indexed.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(state.reading);
+    if (!state.is_indexed.load(std::memory_order_relaxed)) state.bring_index_up_to_date();
+  }
+  return *state.queried;
+}
+
+template <int D, typename Real>
+void World<D, Real>::nearest(const std::array<Real, D>& point, std::size_t count,
+                             std::vector<HandleNeighbour<Real>>& found, const Filter* asker) const {
+  std::vector<Neighbour<Real>> neighbours;
+  box_index().nearest(point, count, neighbours, asker);
+  found.clear();
+  for (const Neighbour<Real>& one : neighbours) found.push_back({handle_of(one.box), one.distance_squared});
+}
+
+template <int D, typename Real>
+Handle World<D, Real>::handle_of(BoxId slot) const noexcept {
+  return state_->handle(slot);
+}
+
+/// Changes of the boxes that the next update is to tell may be handed on again and again, which costs them.
+template <int D, typename Real>
+void World<D, Real>::State::bring_index_up_to_date() const {
+  if (queried == nullptr) queried = make_box_index<D, Real>();
+  unindexed.insert(unindexed.end(), changed.begin(), changed.end());
+  // Slots that are no more need not be listed, and those that came and went in between must not.
+  std::erase_if(unindexed, [this](BoxId slot) { return index(slot) >= boxes.size(); });
+  queried->update({.boxes = boxes, .changed = unindexed, .filters = filters});
+  unindexed.clear();
+  is_indexed.store(true, std::memory_order_release);
+}
+
+/// Before an update forgets what changed: keeps it for the index. One that nobody has asked for long is
+/// built anew by whoever asks next.
+template <int D, typename Real>
+void World<D, Real>::State::note_changes_for_index() {
+  if (queried == nullptr || is_indexed.load(std::memory_order_relaxed)) return;
+  if (unindexed.size() + changed.size() > slots.size() / 2 + 1024) return drop_index();
+  unindexed.insert(unindexed.end(), changed.begin(), changed.end());
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::drop_index() noexcept {
+  queried.reset();
+  unindexed = {};
+  is_indexed.store(false, std::memory_order_relaxed);
+}
+
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
+
+}  // namespace broadside

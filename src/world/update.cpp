@@ -1,0 +1,238 @@
+// World: what an update does. The tracker's events are candidates; where there is a margin or a predicate,
+// they are refined; then they are delivered.
+//
+// Each step first does all that can fail and then changes something, so that an update that throws can be
+// tried again: what its steps had done by then waits in `candidates`, `fresh` and `refined`.
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "broadside/sinks.hpp"
+#include "broadside/world.hpp"
+
+#include "core/float_environment.hpp"
+#include "core/sort_pairs.hpp"
+#include "world/state.hpp"
+
+namespace broadside {
+namespace {
+
+/// Takes from both what is in both: events that were undone before anyone heard of them.
+void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair>& scratch) {
+  core::sort(begun, scratch);
+  core::sort(ended, scratch);
+  std::size_t kept_begun = 0;
+  std::size_t kept_ended = 0;
+  std::size_t j = 0;
+  for (const Pair pair : begun) {
+    while (j < ended.size() && ended[j] < pair) ended[kept_ended++] = ended[j++];
+    if (j < ended.size() && ended[j] == pair)
+      ++j;
+    else
+      begun[kept_begun++] = pair;
+  }
+  while (j < ended.size()) ended[kept_ended++] = ended[j++];
+  begun.resize(kept_begun);
+  ended.resize(kept_ended);
+}
+
+}  // namespace
+
+template <int D, typename Real>
+Events World<D, Real>::update() {
+  State& state = *state_;
+  state.lead_back();
+  state.note_changes_for_index();
+  const bool is_again = !state.refined.empty();
+  state.ask_tracker();
+  if (state.is_refining) {
+    state.apply_candidates();
+    state.refine();
+    if (is_again) cancel(state.refined.begun, state.refined.ended, state.sorting);
+    state.deliver(state.refined);
+  } else {
+    state.deliver(state.candidates);
+  }
+  state.recycle();
+  state.settle();
+  state.trim();
+  state.release_unneeded();
+  return {state.begun, state.ended};
+}
+
+template <int D, typename Real>
+Frame<D, Real> World<D, Real>::State::frame() const noexcept {
+  Frame<D, Real> frame;
+  frame.boxes = has_margin() ? enlarged : boxes;
+  frame.changed = has_margin() ? moved : changed;
+  frame.filters = filters;
+  frame.ignored = &ignored;
+  frame.ignored_changed = ignored_changed;
+  return frame;
+}
+
+/// Appends the tracker's events to the candidates.
+template <int D, typename Real>
+void World<D, Real>::State::ask_tracker() {
+  is_settled = false;
+  const std::size_t begun_before = candidates.begun.size();
+  const std::size_t ended_before = candidates.ended.size();
+  try {
+    PairCollector begun_pairs(candidates.begun);
+    PairCollector ended_pairs(candidates.ended);
+    tracker->update(frame(), begun_pairs, ended_pairs);
+  } catch (...) {
+    // It will tell these again.
+    candidates.begun.resize(begun_before);
+    candidates.ended.resize(ended_before);
+    throw;
+  }
+  has_updated = true;
+  if (begun_before + ended_before > 0) cancel(candidates.begun, candidates.ended, sorting);
+}
+
+/// Brings the graph up to date.
+template <int D, typename Real>
+void World<D, Real>::State::apply_candidates() {
+  graph.reserve(graph.size() + candidates.begun.size(), slots.size());
+  make_room(fresh, candidates.begun.size());
+  make_room(refined.ended, candidates.ended.size());
+  const bool is_again = !refined.ended.empty() || !fresh.empty();
+  for (const Pair pair : candidates.ended) {
+    const core::PairGraph::EdgeId edge = graph.find(pair);
+    if (graph.mark(edge).overlaps && graph.mark(edge).accepted) refined.ended.push_back(pair);
+    graph.erase(edge);
+  }
+  for (const Pair pair : candidates.begun) {
+    graph.insert(pair);
+    fresh.push_back(pair);
+  }
+  // What a failed update has left goes before what is newer; a snapshot lists both by id.
+  if (is_again) {
+    std::sort(refined.ended.begin(), refined.ended.end());
+    std::sort(fresh.begin(), fresh.end());
+  }
+  candidates.clear();
+}
+
+/// Looks at all edges that may hold now and did not before, or the other way round.
+template <int D, typename Real>
+void World<D, Real>::State::refine() {
+  const core::DefaultEnvironment environment;
+  ++stamp;
+  touched.clear();
+  questions.clear();
+  const auto look = [this](core::PairGraph::EdgeId edge) { touch(edge); };
+  for (const Pair pair : fresh) {
+    if (const core::PairGraph::EdgeId edge = graph.find(pair); edge != core::PairGraph::none) touch(edge);
+  }
+  if (has_margin()) {
+    for (const BoxId id : changed) graph.for_each_of(id, look);
+  }
+  for (const std::uint32_t slot : refiltered) graph.for_each_of(BoxId{slot}, look);
+  if (refilters_all) graph.for_each(look);
+
+  std::ranges::sort(questions, {}, &Question::pair);
+  if (!questions.empty()) {
+    const core::CallersEnvironment callers;
+    for (const Question& question : questions) {
+      touched[question.touched].accepted =
+          predicate(handle(question.pair.first), handle(question.pair.second));
+    }
+  }
+
+  make_room(refined.begun, touched.size());
+  make_room(refined.ended, touched.size());
+  for (const Touched& now : touched) {
+    core::PairGraph::Mark& mark = graph.mark(now.edge);
+    const bool held = mark.overlaps && mark.accepted;
+    const bool holds = now.overlaps && now.accepted;
+    mark.overlaps = now.overlaps;
+    mark.accepted = now.accepted;
+    if (held != holds) (holds ? refined.begun : refined.ended).push_back(graph.pair(now.edge));
+  }
+  fresh.clear();
+  core::sort(refined.begun, sorting);
+  core::sort(refined.ended, sorting);
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::touch(core::PairGraph::EdgeId edge) {
+  core::PairGraph::Mark& mark = graph.mark(edge);
+  if (mark.stamp == stamp) return;
+  mark.stamp = stamp;
+  const Pair pair = graph.pair(edge);
+  const std::uint32_t a = index(pair.first);
+  const std::uint32_t b = index(pair.second);
+  const bool overlaps = !has_margin() || overlap(boxes[a], boxes[b]);
+  bool accepted = overlaps;
+  if (overlaps && predicate) {
+    if (!mark.overlaps || refilters_all || slots[a].is_refilter || slots[b].is_refilter)
+      questions.push_back({pair, touched.size()});
+    else
+      accepted = mark.accepted;
+  }
+  touched.push_back({edge, overlaps, accepted});
+}
+
+/// Makes the events the world's.
+template <int D, typename Real>
+void World<D, Real>::State::deliver(PairEvents& events) {
+  begun.reserve(events.begun.size());
+  ended.reserve(events.ended.size());
+  if (options.keep_pairs) current.add(events.begun, events.ended, generations);
+  is_current = current.is_merged();
+  is_persisting = false;
+  pair_count += events.begun.size();
+  pair_count -= events.ended.size();
+  const auto collect = [this](std::span<const Pair> pairs, std::vector<HandlePair>& handles) {
+    handles.clear();
+    for (const Pair pair : pairs) handles.push_back({handle(pair.first), handle(pair.second)});
+  };
+  collect(events.begun, begun);
+  collect(events.ended, ended);
+  events.clear();
+}
+
+/// A slot whose removal the last update told can be used again from here on; one whose removal this update
+/// tells, from the next on.
+template <int D, typename Real>
+void World<D, Real>::State::recycle() noexcept {
+  for (const Removed& old : reported) {
+    if (generations[old.slot] == std::numeric_limits<std::uint32_t>::max()) {
+      slots[old.slot].state = SlotState::retired;
+      continue;
+    }
+    slots[old.slot].state = SlotState::free;
+    ++generations[old.slot];
+    free.insert(old.slot);
+  }
+  reported.clear();
+  for (const Removed& now : removed) slots[now.slot].state = SlotState::reported;
+  std::swap(reported, removed);
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::settle() noexcept {
+  for (const BoxId id : changed) slots[index(id)].is_changed = false;
+  for (const BoxId id : moved) slots[index(id)].is_moved = false;
+  for (const std::uint32_t slot : refiltered) slots[slot].is_refilter = false;
+  changed.clear();
+  moved.clear();
+  refiltered.clear();
+  ignored_changed.clear();
+  refilters_all = false;
+  is_settled = true;
+  if (is_refining && !predicate && !has_margin()) {
+    graph = {};
+    is_refining = false;
+  }
+}
+
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
+
+}  // namespace broadside

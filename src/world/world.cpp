@@ -1,0 +1,323 @@
+// World: slots, their boxes, and the handles that name them.
+#include "broadside/world.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "broadside/error.hpp"
+#include "broadside/shadow.hpp"
+
+#include "core/float_environment.hpp"
+#include "interface/encloses.hpp"
+#include "interface/input_check.hpp"
+#include "world/state.hpp"
+
+namespace broadside {
+namespace {
+
+/// The box with `margin` on every side.
+template <int D, typename Real>
+Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+template <typename Real>
+Real rounded(const double& number) noexcept {
+  const core::DefaultEnvironment environment;
+  const volatile Real result = static_cast<Real>(number);
+  return result;
+}
+
+/// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
+constexpr int most_margins = 4;
+
+WorldOptions with_algorithm(std::string_view spec) {
+  WorldOptions options;
+  options.algorithm = spec;
+  return options;
+}
+
+}  // namespace
+
+template <int D, typename Real>
+World<D, Real>::World(std::string_view spec) : World(with_algorithm(spec)) {}
+
+template <int D, typename Real>
+World<D, Real>::World(const WorldOptions& options)
+    : state_(std::make_unique<State>(State::make_own_tracker(options), options, true)) {}
+
+template <int D, typename Real>
+World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options)
+    : state_(std::make_unique<State>(std::move(tracker), options, false)) {}
+
+template <int D, typename Real>
+World<D, Real>::World(World&& other) noexcept = default;
+template <int D, typename Real>
+World<D, Real>& World<D, Real>::operator=(World&& other) noexcept = default;
+template <int D, typename Real>
+World<D, Real>::~World() = default;
+
+template <int D, typename Real>
+World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
+                             const WorldOptions& its_options, bool is_own)
+    : options(its_options),
+      margin(rounded<Real>(its_options.margin)),
+      is_own_tracker(is_own),
+      tracker(is_own || !its_tracker || !its_options.shadow
+                  ? std::move(its_tracker)
+                  : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
+      first_generation(its_options.first_generation),
+      is_refining(margin > 0) {
+  if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
+  if (!(margin >= 0) || !std::isfinite(margin)) {
+    throw std::invalid_argument("the margin of a world is " + std::to_string(options.margin) +
+                                "; expected a finite number of at least 0");
+  }
+}
+
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> World<D, Real>::State::make_own_tracker(const WorldOptions& options) {
+  if (options.shadow) return std::make_unique<ShadowTracker<D, Real>>(options.algorithm);
+  return make_tracker<D, Real>(options.algorithm);
+}
+
+template <int D, typename Real>
+Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
+  const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
+  state_->check_box(added, state_->next_slot(), "for slot");
+  state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
+  return state_->add_valid(added, options);
+}
+
+template <int D, typename Real>
+void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
+  const std::uint32_t slot = state_->live_slot(handle, "move");
+  state_->check_box(box, slot, "for slot");
+  make_room(state_->changed, 1);
+  make_room(state_->moved, 1);
+  state_->set_box(slot, box);
+}
+
+template <int D, typename Real>
+void World<D, Real>::remove(Handle handle) {
+  const std::uint32_t slot = state_->live_slot(handle, "remove");
+  state_->reserve_removals(1, state_->ignored_edges.size());
+  state_->remove_valid(slot);
+}
+
+template <int D, typename Real>
+bool World<D, Real>::contains(Handle handle) const noexcept {
+  return state_->is_live(handle);
+}
+
+template <int D, typename Real>
+const Box<D, Real>& World<D, Real>::box(Handle handle) const {
+  using SlotState = typename State::SlotState;
+  const std::uint32_t slot = state_->readable_slot(handle);
+  switch (state_->slots[slot].state) {
+    case SlotState::removed:
+      return state_->removed[state_->slots[slot].place].box;
+    case SlotState::reported:
+      return state_->reported[state_->slots[slot].place].box;
+    default:
+      return state_->boxes[slot];
+  }
+}
+
+template <int D, typename Real>
+std::uint64_t World<D, Real>::user_data(Handle handle) const {
+  const std::uint32_t slot = state_->readable_slot(handle);
+  return !state_->uses_user_data ? 0 : state_->user_data[slot];
+}
+
+template <int D, typename Real>
+void World<D, Real>::set_user_data(Handle handle, std::uint64_t user_data) {
+  const std::uint32_t slot = state_->live_slot(handle, "give user data to");
+  state_->reserve(0, false, true);
+  state_->user_data[slot] = user_data;
+}
+
+template <int D, typename Real>
+std::size_t World<D, Real>::size() const noexcept {
+  return state_->size;
+}
+
+template <int D, typename Real>
+const Workers& World<D, Real>::workers() const noexcept {
+  return state_->tracker->workers();
+}
+
+template <int D, typename Real>
+void World<D, Real>::set_workers(const Workers& workers) {
+  state_->tracker->set_workers(workers);
+}
+
+template <int D, typename Real>
+bool World<D, Real>::State::is_live(Handle handle) const noexcept {
+  return handle.slot < slots.size() && generations[handle.slot] == handle.generation &&
+         slots[handle.slot].state == SlotState::live;
+}
+
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::live_slot(Handle handle, const char* action) const {
+  if (!is_live(handle)) refuse(handle, action);
+  return handle.slot;
+}
+
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::readable_slot(Handle handle) const {
+  if (handle.slot < slots.size() && generations[handle.slot] == handle.generation) {
+    const SlotState state = slots[handle.slot].state;
+    if (state == SlotState::live || state == SlotState::removed || state == SlotState::reported)
+      return handle.slot;
+  }
+  refuse(handle, "read");
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::refuse(Handle handle, const char* action) const {
+  const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
+                            std::to_string(handle.generation) + ")";
+  // A slot that is free has not yet issued a handle of its own generation.
+  const bool is_issued = handle.slot < slots.size() ? handle.generation < generations[handle.slot] ||
+                                                          (handle.generation == generations[handle.slot] &&
+                                                           slots[handle.slot].state != SlotState::free)
+                                                    : handle.generation < first_generation;
+  const char* const why = is_issued ? " names a box that was removed" : " was never issued by this world";
+  throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why +
+                      "; expected a box in the world");
+}
+
+/// Refuses what is no box for add() and move(): an absent one is what remove() is for.
+template <int D, typename Real>
+void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const {
+  if (core::is_present_by_value(box)) return;
+  if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
+  const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
+  if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
+  core::refuse_box(box, place, name);
+}
+
+/// The slot that the next box gets: the lowest free one, so that the arrays stay dense.
+template <int D, typename Real>
+std::uint32_t World<D, Real>::State::next_slot() const noexcept {
+  return free.empty() ? static_cast<std::uint32_t>(slots.size()) : free.lowest();
+}
+
+/// Makes all the room that adding so many boxes takes, so that it cannot fail half way.
+template <int D, typename Real>
+void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool with_user_data) {
+  const std::size_t added = count > free.size() ? count - free.size() : 0;
+  core::check_count(slots.size() + added);
+  make_room(boxes, added);
+  make_room(generations, added);
+  make_room(slots, added);
+  make_room(changed, count);
+  if (has_margin()) {
+    make_room(enlarged, added);
+    make_room(moved, count);
+  }
+  if (with_filters || uses_filters) make_room(filters, slots.size() - filters.size() + added);
+  if (with_user_data || uses_user_data) make_room(user_data, slots.size() - user_data.size() + added);
+  free.reserve(slots.size() + added);
+  // Nothing is done yet, but from here on these are in use.
+  if (with_filters) filters.resize(slots.size());
+  if (with_user_data) user_data.resize(slots.size());
+  uses_filters |= with_filters;
+  uses_user_data |= with_user_data;
+}
+
+template <int D, typename Real>
+Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOptions& its_options) noexcept {
+  const std::uint32_t slot = next_slot();
+  if (slot == slots.size()) {
+    boxes.push_back(absent_box<D, Real>());
+    if (has_margin()) enlarged.push_back(absent_box<D, Real>());
+    generations.push_back(first_generation);
+    slots.emplace_back();
+    if (uses_filters) filters.emplace_back();
+    if (uses_user_data) user_data.emplace_back();
+  } else {
+    free.erase(slot);
+  }
+  slots[slot].state = SlotState::live;
+  if (uses_filters) filters[slot] = its_options.filter;
+  if (uses_user_data) user_data[slot] = its_options.user_data;
+  set_box(slot, box);
+  ++size;
+  return {slot, generations[slot]};
+}
+
+/// There is room in `changed` and `moved`.
+template <int D, typename Real>
+void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given) noexcept {
+  mark_changed(slot);
+  boxes[slot] = kept(given);
+  if (!has_margin()) return;
+  const core::DefaultEnvironment environment;
+  const Box<D, Real>& box = boxes[slot];
+  Box<D, Real>& seen = enlarged[slot];
+  if (!is_absent(seen) && core::encloses(seen, box) &&
+      core::encloses(enlarge(box, most_margins * margin), seen))
+    return;
+  mark_moved(slot);
+  seen = enlarge(box, margin);
+}
+
+/// Makes all the room that removing so many boxes takes, which may be part of so many ignored pairs.
+template <int D, typename Real>
+void World<D, Real>::State::reserve_removals(std::size_t count, std::size_t ignored_count) {
+  make_room(changed, count);
+  make_room(moved, count);
+  make_room(removed, count);
+  make_room(ignored_changed, ignored_count);
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::remove_valid(std::uint32_t slot) noexcept {
+  mark_changed(slot);
+  slots[slot].state = SlotState::removed;
+  slots[slot].place = static_cast<std::uint32_t>(removed.size());
+  removed.push_back({slot, boxes[slot]});
+  boxes[slot] = absent_box<D, Real>();
+  if (has_margin()) {
+    mark_moved(slot);
+    enlarged[slot] = absent_box<D, Real>();
+  }
+  ignored_edges.for_each_of(BoxId{slot}, [this](core::PairGraph::EdgeId edge) {
+    const Pair pair = ignored_edges.pair(edge);
+    ignored.erase(pair);
+    ignored_changed.push_back(pair);
+    ignored_edges.erase(edge);
+  });
+  --size;
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::mark_changed(std::uint32_t slot) noexcept {
+  is_settled = false;
+  is_indexed.store(false, std::memory_order_relaxed);
+  if (slots[slot].is_changed) return;
+  slots[slot].is_changed = true;
+  changed.push_back(BoxId{slot});
+}
+
+template <int D, typename Real>
+void World<D, Real>::State::mark_moved(std::uint32_t slot) noexcept {
+  if (slots[slot].is_moved) return;
+  slots[slot].is_moved = true;
+  moved.push_back(BoxId{slot});
+}
+
+template class World<2, float>;
+template class World<2, double>;
+template class World<3, float>;
+template class World<3, double>;
+
+}  // namespace broadside

@@ -1,0 +1,491 @@
+// Tables as people have them: names and spellings of columns, separators, numbers.
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lab/formats/format.hpp"
+#include "tests/unit/files.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class CsvTable : public Files {
+ protected:
+  template <int D, typename Real>
+  static History<D, Real> history_of(const std::filesystem::path& file, ReadOptions options = {}) {
+    options.precision = precision_of<Real>;
+    const BoxFile opened = open_file(file, options);
+    return read_all(*std::get<std::unique_ptr<FrameReader<D, Real>>>(opened.frames));
+  }
+
+  std::vector<DoubleBox2> boxes_of(const std::string& text, const ReadOptions& options = {}) const {
+    return history_of<2, double>(put("table.csv", text), options).boxes;
+  }
+
+  std::vector<DoubleBox3> solid_boxes_of(const std::string& text, const ReadOptions& options = {}) const {
+    return history_of<3, double>(put("table.csv", text), options).boxes;
+  }
+
+  std::string refusal_of(const std::string& text, const std::string& columns = {}) const {
+    try {
+      ReadOptions options;
+      options.columns = columns;
+      read_file(put("bad.csv", text), options);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "was read";
+  }
+};
+
+/// The format that a text is recognised as, whatever its name.
+std::string open_format(const std::string& text) {
+  for (const Format& format : formats()) {
+    if (format.recognises(std::string_view(text).substr(0, Input::beginning_bytes), "")) return format.name;
+  }
+  return "none";
+}
+
+const std::vector<DoubleBox2> expected = {{{1, 2}, {5, 8}}, {{-1, -2}, {0, 1e10}}};
+
+TEST_F(CsvTable, TakesColumnsInAnyOrderAndSpellingAndLeavesOutOthers) {
+  EXPECT_EQ(boxes_of("max_y,name,min_x,max_x,min_y\n8,a,1,5,2\n1e10,,-1,0,-2\n"), expected);
+  for (const std::string header :
+       {"min_x,min_y,max_x,max_y", "xmin,ymin,xmax,ymax", "minX,minY,maxX,maxY", "X_MIN,Y_MIN,X_MAX,Y_MAX",
+        "Min X,Min Y,Max X,Max Y", "min.x,min.y,max.x,max.y", "lower_x,lower_y,upper_x,upper_y",
+        "lo_x,lo_y,hi_x,hi_y", "x0,y0,x1,y1", "x1,y1,x2,y2", "left,bottom,right,top", "west,south,east,north",
+        " min_x , min_y,max_x\t,max_y ", "\"min_x\",\"min_y\",\"max_x\",\"max_y\"",
+        "minimum_x,minimum_y,maximum_x,maximum_y"})
+    EXPECT_EQ(boxes_of(header + "\n1,2,5,8\n-1,-2,0,1e10\n"), expected) << header;
+}
+
+TEST_F(CsvTable, MakesBoundsOfCentresMinimaAndSizes) {
+  const std::vector<DoubleBox2> box = {{{1, 2}, {5, 8}}};
+  for (const std::string header :
+       {"center_x,center_y,width,height", "cx,cy,w,h", "CentreX,CentreY,size_x,size_y", "mid_x,mid_y,dx,dy"})
+    EXPECT_EQ(boxes_of(header + "\n3,5,4,6\n"), box) << header;
+  for (const std::string header : {"x,y,half_x,half_y", "cx,cy,hx,hy", "x,y,half_width,half_height",
+                                   "center_x,center_y,half_extent_x,half_extent_y"})
+    EXPECT_EQ(boxes_of(header + "\n3,5,2,3\n"), box) << header;
+  EXPECT_EQ(boxes_of("min_x,min_y,width,height\n1,2,4,6\n"), box);
+  EXPECT_EQ(boxes_of("min_x,max_x,center_y,height\n1,5,5,6\n"), box) << "each axis in its own way";
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y,width,height\n1,2,5,8,0,0\n"), box) << "bounds come first";
+  EXPECT_EQ(solid_boxes_of("cx,cy,cz,w,h,d\n3,5,7,4,6,2\n"),
+            (std::vector<DoubleBox3>{{{1, 2, 6}, {5, 8, 8}}}));
+  EXPECT_EQ(boxes_of("cx,cy,w,h\n,,,\n"), (std::vector<DoubleBox2>{absent_box<2, double>()}));
+}
+
+TEST_F(CsvTable, IsIn3DWhereAllOfZIsThere) {
+  const std::vector<DoubleBox3> box = {{{1, 2, 3}, {4, 5, 6}}};
+  EXPECT_EQ(solid_boxes_of("min_z,max_z,xmin,ymin,xmax,ymax\n3,6,1,2,4,5\n"), box);
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y,z,depth\n1,2,5,8,9,9\n"),
+            (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+  EXPECT_THAT(refusal_of("cx,cy,w,h,z,depth\n3,5,4,6,9,9\n"), HasSubstr("column 'z' may be a minimum or"));
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y,min_z\n1,2,5,8,9\n"),
+              HasSubstr("column 'min_z' alone does not give bounds on the z axis"));
+}
+
+TEST_F(CsvTable, WithoutNamesHasMinimaAndThenMaxima) {
+  EXPECT_EQ(boxes_of("1,2,5,8\n-1,-2,0,1e10\n"), expected);
+  EXPECT_EQ(solid_boxes_of("1,2,3,4,5,6\n"), (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
+  EXPECT_THAT(refusal_of("1,2,3,4,5\n"),
+              AllOf(HasSubstr("bad.csv:1: 5 columns of numbers and no names"), HasSubstr("--columns")));
+  EXPECT_THAT(refusal_of("1,2,3,four\n"), HasSubstr("bad.csv:1: column max_y is 'four'"));
+}
+
+TEST_F(CsvTable, TellsItsSeparatorFromTheFirstLine) {
+  EXPECT_EQ(boxes_of("min_x;min_y;max_x;max_y\n1;2;5;8\n-1;-2;0;1e10\n"), expected);
+  EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n1\t2\t5\t8\n-1\t-2\t 0\t1e10\n"), expected);
+  EXPECT_EQ(boxes_of("min_x min_y  max_x max_y\n  1 2 5 8\n-1 -2\t 0 1e10  \n"), expected);
+  EXPECT_EQ(boxes_of("1 2 5 8\n-1 -2 0 1e10\n"), expected);
+  EXPECT_EQ(boxes_of("name;min_x;min_y;max_x;max_y\na,b;1;2;5;8\n;-1;-2;0;1e10\n"), expected);
+}
+
+TEST_F(CsvTable, TakesQuotesAndBlanksAroundValuesAndAPlus) {
+  EXPECT_EQ(boxes_of("name,min_x,min_y,max_x,max_y\n"
+                     "\"a, \"\"b\"\"\",\"1\", 2 ,+5,8\n"
+                     "5\" pipe,-1,\"-2\" , \"0\",1e10\n"),
+            expected);
+}
+
+TEST_F(CsvTable, SkipsCommentsBeforeItAndTakesNamesFromTheLast) {
+  EXPECT_EQ(boxes_of("# made by hand\n\n  # twice\nmin_x,min_y,max_x,max_y\n1,2,5,8\n-1,-2,0,1e10\n"),
+            expected);
+  EXPECT_EQ(boxes_of("# four numbers\n1,2,5,8\n-1,-2,0,1e10\n"), expected);
+  EXPECT_EQ(boxes_of("# cx cy w h\n3 5 4 6\n"), (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+  EXPECT_THAT(refusal_of("# nothing\n"), HasSubstr("bad.csv: has no line but comments"));
+}
+
+TEST_F(CsvTable, TakesTheColumnsThatTheUserNames) {
+  ReadOptions options;
+  options.columns = "-,xmin,ymin,-,xmax,ymax";
+  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected);
+  EXPECT_EQ(boxes_of("id,p,q,r,s,t,more\na,1,2,b,5,8,0\nc,-1,-2,d,0,1e10,0\n", options), expected)
+      << "with names of its own, and a column behind those named";
+  options.columns = "id,min_x,min_y,colour,max_x,max_y";
+  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected) << "as in a header";
+  options.columns = "min_y,min_x,max_y,max_x";
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n2,1,8,5\n-2,-1,1e10,0\n", options), expected)
+      << "whatever the table says";
+
+  EXPECT_EQ((history_of<2, double>(put("a.txt", "p q r s\n2 1 8 5\n-2 -1 1e10 0\n"), options).boxes),
+            expected)
+      << "whatever the file is called";
+
+  EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,maxy,-"),
+              AllOf(HasSubstr("bad.csv:1: 4 columns"), HasSubstr("the 5 that --columns names")));
+  EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,colour"), HasSubstr("column 'min_y' alone"));
+  EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,-"), HasSubstr("column 'min_y' alone"));
+  EXPECT_THAT(refusal_of("1,2,3,four\n", "min_x,min_y,max_x,max_y"),
+              HasSubstr("bad.csv:1: column max_y is 'four'"))
+      << "a slip in the first row is no row of names";
+}
+
+TEST_F(CsvTable, MayHoldSeveralFramesAmongOtherColumns) {
+  const auto history = history_of<2, double>(
+      put("table.csv",
+          "colour;Frame;BOX;cx;cy;w;h\nred;0;0;3;5;4;6\nred;1;0;4;5;4;6\nblue;1;1;0;0;0;0\n;2;;;;;\n"));
+  EXPECT_EQ(history.boxes, (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+  ASSERT_EQ(history.steps.size(), 2u);
+  EXPECT_EQ(history.steps[0].size, 2u);
+  EXPECT_EQ(history.steps[0].boxes, (std::vector<DoubleBox2>{{{2, 2}, {6, 8}}, {{0, 0}, {0, 0}}}));
+  EXPECT_TRUE(history.steps[1].changed.empty());
+  EXPECT_EQ(history.steps[1].size, 2u);
+}
+
+TEST_F(CsvTable, IsReadFrameByFrame) {
+  const BoxFile file =
+      open_file(put("table.csv", "frame,box,min_x,min_y,max_x,max_y\n0,0,1,2,3,4\n1,0,1,2,0,4\n"));
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  EXPECT_EQ(frames.first().size(), 1u) << "what is wrong in a later frame hides the first";
+  Step<2, double> step{};
+  EXPECT_THROW(frames.next(step), FileError);
+}
+
+TEST_F(CsvTable, RoundsOnceToThePrecisionAskedFor) {
+  // Just above the middle of two floats; as a double it is that middle, which rounds to the other one.
+  const std::string text = "1.00000005960464480000001,0,2,2\n";
+  EXPECT_EQ((history_of<2, float>(put("a.csv", text)).boxes[0].min[0]), 1.00000012F);
+  EXPECT_EQ((history_of<2, double>(put("a.csv", "0.1,0,16777217,9007199254740993.0\n")).boxes),
+            (std::vector<DoubleBox2>{{{0.1, 0}, {16777217, 9007199254740992}}}));
+}
+
+TEST_F(CsvTable, RefusesWholeNumbersThatADoubleDoesNotHold) {
+  for (const std::string number :
+       {"9007199254740993", "+9007199254740993", "\"9007199254740993\"", "123456789012345678901234567890"})
+    EXPECT_THAT(refusal_of("0,0,1,1\n0,0,1," + number + "\n"),
+                AllOf(HasSubstr("bad.csv:2: column max_y is '"), HasSubstr("that a double holds exactly")));
+  EXPECT_EQ(boxes_of("-9007199254740994,-18446744073709551616,0009007199254740992,9007199254740993e0\n"),
+            (std::vector<DoubleBox2>{
+                {{-9007199254740994, -18446744073709551616.0}, {9007199254740992, 9007199254740992}}}));
+  EXPECT_EQ((history_of<2, float>(put("a.csv", "0,0,1,9007199254740993\n")).boxes),
+            (std::vector<Box2>{{{0, 0}, {1, 9007199254740992.0F}}}))
+      << "floats are asked for";
+}
+
+TEST_F(CsvTable, CountsFramesFromZeroAndSaysSo) {
+  const std::string names = "frame,box,min_x,min_y,max_x,max_y\n";
+  EXPECT_THAT(refusal_of(names + "1,0,0,0,1,1\n2,0,0,0,1,1\n"),
+              AllOf(HasSubstr("bad.csv:2: column frame is '1'"), HasSubstr("expected 0")));
+  EXPECT_TRUE((history_of<2, double>(put("a.csv", names + "0,,,,,\n1,0,0,0,1,1\n")).boxes.empty()));
+}
+
+TEST_F(CsvTable, RefusesThePointsOfTrianglesAsBounds) {
+  for (const std::string header : {"x0,y0,x1,y1,x2,y2", "x1,y1,x2,y2,x3,y3", "x1,y1,x2,y2,x3,y3,x4,y0"})
+    EXPECT_THAT(refusal_of(header + "\n"), HasSubstr("may be those of 3 points")) << header;
+  EXPECT_EQ(boxes_of("x1,y1,x2,y2,x3,min_x,max_x,min_y,max_y\n9,9,9,9,9,1,5,2,8\n"),
+            (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+}
+
+TEST_F(CsvTable, TakesATopWithAHeightAsScreensDo) {
+  EXPECT_EQ(boxes_of("left,top,width,height\n1,2,4,6\n"), (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+  EXPECT_EQ(boxes_of("left,top,width,height,bottom\n1,8,4,6,2\n"),
+            (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+}
+
+TEST_F(CsvTable, SaysWhatCannotBeALineOrABound) {
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y\r1,2,5,8\r"),
+              AllOf(HasSubstr("bad.csv:1: a carriage return"), HasSubstr("line feed")));
+  EXPECT_THAT(refusal_of("cx,cy,w,h\ninf,0,inf,1\n"),
+              AllOf(HasSubstr("bad.csv:2: infinite numbers"), Not(HasSubstr("nan"))));
+}
+
+TEST_F(CsvTable, TakesNumbersTooSmallForTheNearestAndRefusesThoseTooLarge) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(boxes_of("1e-400,-1e-400,INF,Infinity\n"),
+            (std::vector<DoubleBox2>{{{0, 0}, {infinity, infinity}}}));
+  EXPECT_THAT(refusal_of("0,0,1,1e400\n"),
+              HasSubstr("column max_y is '1e400'; expected a number that a double"));
+  for (const std::string text : {"nan", "0x10", "1e", "--1", "+-1", "+", "1,5", "1 5", "1e5e5", "one"})
+    EXPECT_THAT(refusal_of("min_x;min_y;max_x;max_y\n0;0;9;" + text + "\n"),
+                HasSubstr("bad.csv:2: column max_y is '" + text + "'"));
+}
+
+TEST_F(CsvTable, SaysWhatIsWrongWithItsColumns) {
+  EXPECT_THAT(refusal_of("x,y,width,height\n1,2,3,4\n"),
+              AllOf(HasSubstr("bad.csv:1: 'x,y,width,height': column 'x' may be a minimum or a centre"),
+                    HasSubstr("expected columns such as")));
+  EXPECT_THAT(refusal_of("min_x,xmin,min_y,max_x,max_y\n"), HasSubstr("'min_x' and 'xmin' mean the same"));
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x\n"), HasSubstr("column 'min_y' alone"));
+  EXPECT_THAT(refusal_of("frame,min_x,min_y,max_x,max_y\n"),
+              HasSubstr("'frame' without a column 'box' or 'id'"));
+  EXPECT_THAT(refusal_of("city,country\n"), HasSubstr("no columns that give bounds on the x axis"));
+  EXPECT_THAT(
+      refusal_of("cx,cy,w,h\n0,0,1,-1\n"),
+      AllOf(HasSubstr("bad.csv:2: min (-0.5, 0.5) and max (0.5, -0.5)"), HasSubstr("sizes of 0 or more")));
+}
+
+TEST_F(CsvTable, SaysWhyATextIsNoNumber) {
+  const auto refusal = [this](const std::string& number) {
+    return refusal_of("min_x;min_y;max_x;max_y\n0;0;9;" + number + "\n");
+  };
+  EXPECT_THAT(refusal("1,5"),
+              HasSubstr("is '1,5', with a decimal comma; expected a number with a decimal point"));
+  EXPECT_THAT(refusal("-0,25e3"), HasSubstr("with a decimal comma"));
+  EXPECT_THAT(refusal("1,234"), HasSubstr("with a decimal comma or a thousands separator"));
+  for (const std::string number : {"1,234.5", "1 234", "1.234,5", "12'345'678",
+                                   "1\xC2\xA0"
+                                   "234",
+                                   "-1_000"})
+    EXPECT_THAT(refusal(number), HasSubstr("with a thousands separator; expected a number without one"))
+        << number;
+  EXPECT_THAT(refusal("nan"), HasSubstr("is 'nan', NaN; expected a number that a double"));
+  EXPECT_THAT(refusal("NULL"), HasSubstr("is 'NULL', no value; expected"));
+  EXPECT_THAT(refusal(""), HasSubstr("is '', empty; expected"));
+  EXPECT_THAT(refusal("much"), HasSubstr("is 'much', text; expected"));
+  EXPECT_THAT(refusal("5px"), HasSubstr("is '5px', a number with text behind it; expected"));
+  EXPECT_THAT(refusal_of("1,5;2,5;3,5;4,5\n"), HasSubstr("bad.csv:1: '1,5', with a decimal comma"));
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y\n1,5,2,5,3,5,4,5\n"),
+              HasSubstr("8 columns, as decimal commas would make; expected the 4 columns"));
+}
+
+TEST_F(CsvTable, SkipsBlankLines) {
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n\n1,2,5,8\n\n \t\n-1,-2,0,1e10\n\n"), expected);
+  EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n  \n1\t2\t5\t8\n\t\t\t\n"),
+            (std::vector<DoubleBox2>{expected[0], absent_box<2, double>()}))
+      << "tabs alone are empty fields";
+}
+
+TEST_F(CsvTable, LeavesOutInvalidRowsWhereThatIsAsked) {
+  std::vector<std::string> said;
+  ReadOptions options;
+  options.say_invalid = [&](std::string_view why) { said.emplace_back(why.substr(why.find("csv:"))); };
+  options.ids = "id";
+  const std::string rows =
+      "min_x,min_y,max_x,max_y,id\n"
+      "0,0,1,1,a\n"
+      "0,nan,1,1,b\n"
+      "0,0,1\n"
+      "3,0,1,1,c\n"
+      "0,0,1,1,\n"
+      "5,5,6,6,d\n";
+  const BoxFile file = open_file(put("table.csv", rows), options);
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  const DoubleBox2 absent = absent_box<2, double>();
+  EXPECT_EQ(frames.first(),
+            (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, absent, absent, absent, {{5, 5}, {6, 6}}}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"a", "b", "", "c", "", "d"}));
+  EXPECT_THAT(frames.warning(), HasSubstr("table.csv: left out 4 invalid boxes"));
+  EXPECT_THAT(said, testing::ElementsAre(HasSubstr("csv:3: column min_y is 'nan', NaN"),
+                                         HasSubstr("csv:4: 3 columns"), HasSubstr("csv:5: min (3, 0)"),
+                                         HasSubstr("csv:6: column id is ''")));
+
+  // In frames, a box that is invalid goes, and the row's number counts.
+  options.ids.clear();
+  const auto history =
+      history_of<2, double>(put("moving.csv",
+                                "frame,box,min_x,min_y,max_x,max_y\n0,0,0,0,1,1\n0,1,x,0,1,1\n0,2,5,5,6,6\n"
+                                "1,0,9,0,1,1\n1,y,0,0,1,1\n"),
+                            options);
+  EXPECT_EQ(history.boxes, (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, {{5, 5}, {6, 6}}}));
+  ASSERT_EQ(history.steps.size(), 1u);
+  EXPECT_EQ(history.steps[0].changed, std::vector<BoxId>{BoxId(0)});
+  EXPECT_EQ(history.steps[0].boxes, std::vector<DoubleBox2>{absent});
+  // Other rows are numbered by it, so a gap is no row to skip.
+  EXPECT_THROW((history_of<2, double>(
+                   put("gap.csv", "frame,box,min_x,min_y,max_x,max_y\n0,0,0,0,1,1\n0,2,5,5,6,6\n"), options)),
+               FileError);
+
+  said.clear();
+  std::string many = "0,0,1,1\n";
+  for (int i = 0; i < 50; ++i) many += "0,0,1,one\n";
+  EXPECT_EQ((history_of<2, double>(put("many.csv", many), options).boxes.size()), 51u);
+  EXPECT_EQ(said.size(), 20u);
+}
+
+TEST_F(CsvTable, RefusesAQuotedFieldThatGoesOnInTheNextLine) {
+  const std::string table = "name,min_x,min_y,max_x,max_y\n\"one\nbox\",0,0,1,1\n";
+  const std::string expected_refusal = "bad.csv:2: a quoted field that goes on in the next line; expected";
+  EXPECT_THAT(refusal_of(table), HasSubstr(expected_refusal));
+  // Skipped as invalid, its two halves would be two rows.
+  ReadOptions options;
+  options.say_invalid = [](std::string_view) {};
+  EXPECT_THROW(boxes_of(table, options), FileError);
+  EXPECT_EQ(boxes_of("name,min_x,min_y,max_x,max_y\n\"a \"\"b, c\"\"\",1,2,5,8\n\"a\" b,-1,-2,0,1e10\n"),
+            expected)
+      << "quotes that do not go on";
+}
+
+TEST_F(CsvTable, ReadsTracksWhoseRowsListWhatIsThere) {
+  const DoubleBox2 absent = absent_box<2, double>();
+  ReadOptions options;
+  options.ids = "id";
+  options.precision = Precision::float64;
+  // As MOT Challenge has it: by track and then frame, counted from 1, and no frame 3.
+  const BoxFile file = open_file(put("mot.csv",
+                                     "frame,id,bb_left,bb_top,bb_width,bb_height,conf,x,y,z\n"
+                                     "1,9,0,0,1,1,1,-1,-1,-1\n"
+                                     "2,9,2,0,1,1,1,-1,-1,-1\n"
+                                     "4,9,2,0,1,1,1,-1,-1,-1\n"
+                                     "1,car,5,5,1,1,1,-1,-1,-1\n"
+                                     "4,car,7,5,1,1,1,-1,-1,-1\n"
+                                     "4,bus,8,8,1,1,1,-1,-1,-1\n"),
+                                 options);
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  const auto history = read_all(frames);
+  EXPECT_EQ(history.boxes, (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, {{5, 5}, {6, 6}}}));
+  ASSERT_EQ(history.steps.size(), 2u);
+  EXPECT_EQ(history.steps[0].changed, (std::vector<BoxId>{BoxId(0), BoxId(1)}));
+  EXPECT_EQ(history.steps[0].boxes, (std::vector<DoubleBox2>{{{2, 0}, {3, 1}}, absent}));
+  EXPECT_EQ(history.steps[1].size, 3u);
+  EXPECT_EQ(history.steps[1].changed, (std::vector<BoxId>{BoxId(1), BoxId(2)}));
+  EXPECT_EQ(history.steps[1].boxes, (std::vector<DoubleBox2>{{{7, 5}, {8, 6}}, {{8, 8}, {9, 9}}}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"9", "car", "bus"}));
+
+  options = {};
+  options.columns = "frame,id,left,top,width,height";
+  EXPECT_EQ(boxes_of("7,1,0,0,1,1,1,-1\n7,3,5,5,1,1,1,-1\n", options), history.boxes) << "without names";
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,a,0,0,1,1\n2,a,0,0,1,1\n1,a,0,0,1,1\n"),
+              HasSubstr("bad.csv:4: 'a' is there again in frame 1; expected each id once in a frame"));
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\none,a,0,0,1,1\n"),
+              HasSubstr("column frame is 'one', text; expected a number"));
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,,0,0,1,1\n"),
+              HasSubstr("column id is ''; expected an id"));
+}
+
+TEST_F(CsvTable, ReadsPointsAndCircles) {
+  const std::vector<DoubleBox2> points = {{{1, 2}, {1, 2}}};
+  EXPECT_EQ(boxes_of("id,x,y\n7,1,2\n"), points);
+  EXPECT_EQ(boxes_of("name,lat,lon,depth\na,2,1,9\n"), points);
+  EXPECT_EQ(boxes_of("Latitude;Longitude\n2;1\n"), points);
+  EXPECT_EQ(boxes_of("x,y\n,\n"), (std::vector<DoubleBox2>{absent_box<2, double>()}));
+  EXPECT_EQ(solid_boxes_of("x,y,z,r,g,b\n1,2,3,255,0,0\n"), (std::vector<DoubleBox3>{{{1, 2, 3}, {1, 2, 3}}}))
+      << "a colour is no radius";
+  EXPECT_EQ(boxes_of("x,y,radius\n1,2,0.5\n"), (std::vector<DoubleBox2>{{{0.5, 1.5}, {1.5, 2.5}}}));
+  EXPECT_EQ(solid_boxes_of("cx,cy,cz,r\n1,2,3,0.5\n"),
+            (std::vector<DoubleBox3>{{{0.5, 1.5, 2.5}, {1.5, 2.5, 3.5}}}));
+  EXPECT_EQ((history_of<2, float>(put("a.csv", "x,y\n1.00000005960464480000001,0\n")).boxes[0].min[0]),
+            1.00000012F)
+      << "rounded once";
+  EXPECT_THAT(refusal_of("x,y,radius\n1,2,-1\n"), HasSubstr("sizes of 0 or more"));
+  EXPECT_THAT(refusal_of("x,y,radius\n1,2,\n"), HasSubstr("column radius is '', empty"));
+  EXPECT_THAT(refusal_of("x,y,z,depth\n1,2,3,4\n"), HasSubstr("column 'z' may be a minimum or a centre"));
+}
+
+TEST_F(CsvTable, ReadsGeometriesAndBoundsInOneField) {
+  const auto box_of = [this](const std::string& text) {
+    return boxes_of("id,geom\n7,\"" + text + "\"\n").at(0);
+  };
+  const DoubleBox2 box = {{1, 2}, {5, 8}};
+  for (const std::string text :
+       {"LINESTRING (1 2, 5 8)", "linestring(5 2,1 8)",
+        "POLYGON ((1 2, 5 2, 5 8, 1 2), (2 3, 3 3, 3 4, 2 3))", "MULTIPOINT (1 2, 5 8)",
+        "MULTIPOINT ((1 2), EMPTY, (5 8))", "MULTILINESTRING ((1 2, 3 3), (4 4, 5 8))",
+        "MULTIPOLYGON (((1 2, 5 2, 5 8, 1 2)), EMPTY)", "LINESTRING Z (1 2 99, 5 8 -99)",
+        "LINESTRINGM(1 2 0,5 8 0)", "LINESTRING ZM (1 2 0 0, 5 8 0 0)", "SRID=4326;LINESTRING(1 2,5 8)",
+        "GEOMETRYCOLLECTION (POINT (1 2), GEOMETRYCOLLECTION (POINT EMPTY, POINT Z (5 8 3)))", "[1, 2, 5, 8]",
+        "1 2 5 8", "1,2,5,8", "(1.0, 2.0, 5.0, 8.0)", "BOX(1 2,5 8)"})
+    EXPECT_EQ(box_of(text), box) << text;
+  EXPECT_EQ(box_of("POLYGON EMPTY"), (absent_box<2, double>()));
+  EXPECT_EQ(box_of(""), (absent_box<2, double>()));
+  EXPECT_EQ(solid_boxes_of("bbox\n\"[1, 2, 3, 4, 5, 6]\"\n"),
+            (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
+  EXPECT_EQ(solid_boxes_of("bbox;n\nBOX3D(1 2 3,4 5 6);1\n"),
+            (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
+  EXPECT_EQ(boxes_of("WKT\nPOINT (1 2)\n").at(0), (DoubleBox2{{1, 2}, {1, 2}})) << "alone in its line";
+  EXPECT_EQ(boxes_of("lon,lat,wkt\n9,9,POINT (1 2)\n").at(0), (DoubleBox2{{1, 2}, {1, 2}}));
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y,wkt\n1,2,5,8,POINT (9 9)\n").at(0), box);
+  ReadOptions options;
+  options.columns = "id,wkt";
+  EXPECT_EQ(boxes_of("7,POINT (1 2)\n", options).at(0), (DoubleBox2{{1, 2}, {1, 2}}));
+
+  const auto refusal = [this](const std::string& text) {
+    return refusal_of("id,geom\n7,\"" + text + "\"\n");
+  };
+  EXPECT_THAT(refusal("POINT (1 2"),
+              HasSubstr("column geom is 'POINT (1 2', which ends early; expected ')' there"));
+  EXPECT_THAT(refusal("POINT (1)"), HasSubstr("with '', empty; expected a number"));
+  EXPECT_THAT(refusal("POINT (nan nan)"), HasSubstr("with 'nan', NaN; expected a number"));
+  EXPECT_THAT(refusal("POINT (1 2) 3"), HasSubstr("with '3' behind its end"));
+  EXPECT_THAT(refusal("POINT Z (1 2)"), HasSubstr("with a point of 2 numbers; expected 3"));
+  EXPECT_THAT(refusal("CIRCULARSTRING (0 0, 1 1, 2 0)"),
+              HasSubstr("with 'CIRCULARSTRING'; expected POINT, "));
+  EXPECT_THAT(refusal("0101000000000000000000F03F0000000000000040"), HasSubstr("well-known binary"));
+  EXPECT_THAT(refusal("[1, 2, 3]"), HasSubstr("which is 3 numbers; expected 4"));
+  EXPECT_THAT(refusal("[5, 2, 1, 8]"), HasSubstr("min (5, 2) and max (1, 8)"));
+  std::string nested = "POINT (0 0)";
+  for (int i = 0; i < 40; ++i) nested = "GEOMETRYCOLLECTION (" + nested + ")";
+  EXPECT_THAT(refusal(nested), HasSubstr("nested more than 32 deep"));
+}
+
+TEST_F(CsvTable, OfOneFrameIsWrittenAsPlainColumns) {
+  write_scene(History<2>{{{{0, 0.5F}, {1, 2}}, absent_box<2>()}, {}}, path("flat.csv"));
+  EXPECT_EQ(text_of("flat.csv"), "min_x,min_y,max_x,max_y\n0,0.5,1,2\n,,,\n");
+  write_scene(History<3, double>{{{{0, 0.1, 1e300}, {1, 2, 1e301}}}, {}}, path("solid.csv"));
+  EXPECT_EQ(text_of("solid.csv"), "min_x,min_y,min_z,max_x,max_y,max_z\n0,0.1,1e+300,1,2,1e+301\n");
+  write_scene(History<2>{}, path("empty.csv"));
+  EXPECT_EQ(text_of("empty.csv"), "min_x,min_y,max_x,max_y\n");
+}
+
+TEST_F(CsvTable, HoldsTheSameBoxesInWhicheverPrecisionItIsRead) {
+  const History<2> floats{{{{0.1F, 1.0F / 3}, {16777216, 3.4e38F}}}, {}};
+  write_scene(floats, path("a.csv"));
+  EXPECT_EQ((history_of<2, float>(path("a.csv")).boxes), floats.boxes);
+  EXPECT_EQ((history_of<2, double>(path("a.csv")).boxes),
+            (std::vector<DoubleBox2>{{{double{0.1F}, double{1.0F / 3}}, {16777216, double{3.4e38F}}}}));
+}
+
+TEST_F(CsvTable, GivesBackMoreBoxesThanAnyBufferHolds) {
+  History<2, double> history;
+  for (int i = 0; i < 50'000; ++i)
+    history.boxes.push_back(i % 7 == 0 ? absent_box<2, double>()
+                                       : DoubleBox2{{1.0 / (i + 1), -i / 3.0}, {i + 0.1, 1e9 / (i + 1)}});
+  write_scene(history, path("a.csv"));
+  EXPECT_EQ((history_of<2, double>(path("a.csv")).boxes), history.boxes);
+  history.steps.push_back({history.boxes.size(), {}, {}});
+  for (std::uint32_t i = 0; i < history.boxes.size(); i += 2) {
+    history.steps[0].changed.push_back(BoxId(i));
+    history.steps[0].boxes.push_back({{0, 0}, {1.0 * i, 1.0 / (i + 1)}});
+  }
+  write_scene(history, path("b.csv"));
+  const auto again = history_of<2, double>(path("b.csv"));
+  EXPECT_EQ(again.boxes, history.boxes);
+  ASSERT_EQ(again.steps.size(), 1u);
+  EXPECT_EQ(again.steps[0].changed, history.steps[0].changed);
+  EXPECT_EQ(again.steps[0].boxes, history.steps[0].boxes);
+}
+
+TEST_F(CsvTable, IsRecognisedByItsFirstLine) {
+  for (const std::string text :
+       {"min_x,min_y,max_x,max_y\n", "1 2 3 4\n", "# c\n1,2,3,4\n", "1;2;3\n", "id,xmin,ymin,xmax,ymax\n"})
+    EXPECT_EQ(open_format(text), "csv") << text;
+  std::string wide = "xmin,ymin,xmax,ymax";
+  for (int i = 0; i < 100; ++i) wide += ",column" + std::to_string(i);
+  EXPECT_EQ(open_format(wide + "\n"), "csv") << "a first line longer than the beginning";
+  for (const std::string text :
+       {"{\"type\": 1}", "[1, 2, 3]", "hello world", "12\n", "solid 1 2\n", "v 0 1 2\n"})
+    EXPECT_NE(open_format(text), "csv") << text;
+}
+
+}  // namespace
+}  // namespace broadside::lab

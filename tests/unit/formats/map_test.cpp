@@ -1,0 +1,259 @@
+// Maps: the boxes of their features, pieces and segments, and what is wrong with those that are refused.
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lab/formats/descriptions.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/scenes/descriptions.hpp"
+#include "tests/message.hpp"
+#include "tests/unit/files.hpp"
+
+namespace broadside::lab {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Tests that need simdjson.
+class MapTest : public Files {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = readers::map().missing; !missing.empty()) GTEST_SKIP() << missing;
+  }
+
+  std::vector<DoubleBox2> boxes_of(const std::string& text, const std::string& part = "",
+                                   const std::string& layer = "") const {
+    const BoxFile opened = open_file(put("a.json", text), {.boxes = part, .layer = layer});
+    return std::get<std::unique_ptr<FrameReader<2, double>>>(opened.frames)->first();
+  }
+
+  std::string refusal_of(const std::string& text, const std::string& layer = "") const {
+    return message_of<FileError>([&] { boxes_of(text, "", layer); });
+  }
+};
+
+const DoubleBox2 absent = absent_box<2, double>();
+
+/// A map with one of everything.
+const std::string collection =
+    R"({"type": "FeatureCollection", "name": "everything", "features": [
+  {"type": "Feature", "properties": {"name": "holed", "coordinates": [9]}, "geometry":
+    {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 0]], [[1, 1], [2, 1], [1, 2], [1, 1]]]}},
+  {"type": "Feature", "properties": null, "geometry": null},
+  {"type": "Feature", "geometry": {"coordinates": [[1, 2, 300], [4, 5, 600]], "type": "MultiPoint"}},
+  {"type": "Feature", "geometry": {"type": "MultiPolygon", "coordinates": [
+    [[[10, 0], [11, 0], [10, 1], [10, 0]]], [[[20, 0], [21, 0], [20, 1], [20, 0]]]]}},
+  {"type": "Feature", "geometry": {"type": "GeometryCollection", "geometries": [
+    {"type": "Point", "coordinates": [-7, 8.5]},
+    {"type": "LineString", "coordinates": [[0.1, -1e3], [2, 3]]}]}},
+  {"type": "Feature", "geometry": {"type": "MultiLineString", "coordinates": [[], [[1, 1]], [[2, 2], [3, 1], [3, 3]]]}}
+]})";
+
+TEST_F(MapTest, GivesABoxAFeatureAndAnAbsentOneWhereThereIsNoGeometry) {
+  EXPECT_THAT(boxes_of(collection),
+              ElementsAre(DoubleBox2{{0, 0}, {4, 4}}, absent, DoubleBox2{{1, 2}, {4, 5}},
+                          DoubleBox2{{10, 0}, {21, 1}}, DoubleBox2{{-7, -1000}, {2, 8.5}},
+                          DoubleBox2{{1, 1}, {3, 3}}));
+  EXPECT_EQ(boxes_of(collection), boxes_of(collection, "features"));
+}
+
+TEST_F(MapTest, TakesMultiGeometriesApartIntoPieces) {
+  EXPECT_THAT(boxes_of(collection, "pieces"),
+              ElementsAre(DoubleBox2{{0, 0}, {4, 4}}, DoubleBox2{{1, 2}, {1, 2}}, DoubleBox2{{4, 5}, {4, 5}},
+                          DoubleBox2{{10, 0}, {11, 1}}, DoubleBox2{{20, 0}, {21, 1}},
+                          DoubleBox2{{-7, 8.5}, {-7, 8.5}}, DoubleBox2{{0.1, -1000}, {2, 3}},
+                          DoubleBox2{{1, 1}, {1, 1}}, DoubleBox2{{2, 1}, {3, 3}}));
+}
+
+TEST_F(MapTest, GivesABoxASegmentOfLinesAndRings) {
+  EXPECT_THAT(
+      boxes_of(collection, "segments"),
+      ElementsAre(DoubleBox2{{0, 0}, {4, 0}}, DoubleBox2{{4, 0}, {4, 4}}, DoubleBox2{{0, 0}, {4, 4}},
+                  DoubleBox2{{1, 1}, {2, 1}}, DoubleBox2{{1, 1}, {2, 2}}, DoubleBox2{{1, 1}, {1, 2}},
+                  DoubleBox2{{10, 0}, {11, 0}}, DoubleBox2{{10, 0}, {11, 1}}, DoubleBox2{{10, 0}, {10, 1}},
+                  DoubleBox2{{20, 0}, {21, 0}}, DoubleBox2{{20, 0}, {21, 1}}, DoubleBox2{{20, 0}, {20, 1}},
+                  DoubleBox2{{0.1, -1000}, {2, 3}}, DoubleBox2{{2, 1}, {3, 2}}, DoubleBox2{{3, 1}, {3, 3}}));
+}
+
+TEST_F(MapTest, ReadsAFeatureOrAGeometryByItself) {
+  EXPECT_THAT(boxes_of(R"({"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}})"),
+              ElementsAre(DoubleBox2{{1, 2}, {1, 2}}));
+  EXPECT_THAT(boxes_of(R"({"coordinates":[[1,2],[0,5]],"type":"LineString"})"),
+              ElementsAre(DoubleBox2{{0, 2}, {1, 5}}));
+  EXPECT_THAT(boxes_of(R"({"type":"GeometryCollection","geometries":[
+                {"type":"Point","coordinates":[1,2]},{"type":"Point","coordinates":[]}]})"),
+              ElementsAre(DoubleBox2{{1, 2}, {1, 2}}, absent));
+  EXPECT_THAT(boxes_of(R"({"type":"FeatureCollection","features":[]})"), IsEmpty());
+}
+
+TEST_F(MapTest, ReadsAValueALine) {
+  const std::string feature = R"({"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}})";
+  const DoubleBox2 box{{1, 2}, {1, 2}};
+  EXPECT_THAT(boxes_of(feature + "\n" + feature + "\r\n\n" + feature), ElementsAre(box, box, box));
+  EXPECT_THAT(boxes_of("\x1e" + feature + "\n\x1e" + feature + "\n"), ElementsAre(box, box));
+  EXPECT_THAT(refusal_of(feature + "\n" + feature + "\n{\"type\":\"Feature\"}\n"),
+              AllOf(HasSubstr("a.json: byte 1"), HasSubstr("feature 2"), HasSubstr("without 'geometry'")));
+}
+
+TEST_F(MapTest, ReadsEveryDoubleExactly) {
+  const auto boxes = boxes_of(R"({"type":"MultiPoint","coordinates":[
+      [500000.001, 5000000.0009999997], [9007199254740993, 1.7976931348623157e308], [-0.1, 5e-324]]})",
+                              "pieces");
+  ASSERT_EQ(boxes.size(), 3u);
+  EXPECT_EQ(boxes[0].min, (std::array{500000.001, 5000000.0009999997}));
+  EXPECT_EQ(boxes[1].min, (std::array{9007199254740992.0, std::numeric_limits<double>::max()}));
+  EXPECT_EQ(boxes[2].min, (std::array{-0.1, std::numeric_limits<double>::denorm_min()}));
+}
+
+/// Two squares that share a side, in whole numbers that a transform halves and moves; and a line.
+const std::string topology = R"({"type": "Topology", "transform": {"scale": [0.5, 2], "translate": [100, -1]},
+  "arcs": [[[2, 0], [0, 2]], [[2, 2], [-2, 0], [0, -2], [2, 0]], [[2, 0], [2, 0], [0, 2], [-2, 0]], [[9, 9], [1, 1]]],
+  "objects": {
+    "squares": {"type": "GeometryCollection", "geometries": [
+      {"type": "Polygon", "arcs": [[0, 1]]},
+      {"type": "MultiPolygon", "arcs": [[[2, -1]]]},
+      {"type": null},
+      {"type": "MultiPoint", "coordinates": [[4, 4], [6, 6]]}]},
+    "line": {"type": "MultiLineString", "arcs": [[1], [-3]]}}})";
+
+TEST_F(MapTest, ReadsTopologies) {
+  const DoubleBox2 left{{100, -1}, {101, 3}};
+  const DoubleBox2 right{{101, -1}, {102, 3}};
+  EXPECT_THAT(boxes_of(topology), ElementsAre(left, right, absent, DoubleBox2{{102, 7}, {103, 11}},
+                                              DoubleBox2{{100, -1}, {102, 3}}));
+  EXPECT_THAT(boxes_of(topology, "pieces"), ElementsAre(left, right, DoubleBox2{{102, 7}, {102, 7}},
+                                                        DoubleBox2{{103, 11}, {103, 11}}, left, right));
+  EXPECT_THAT(boxes_of(topology, "features", "line"), ElementsAre(DoubleBox2{{100, -1}, {102, 3}}));
+}
+
+TEST_F(MapTest, HasTheSegmentsOfEveryArcThatIsUsedOnce) {
+  EXPECT_THAT(boxes_of(topology, "segments"),
+              ElementsAre(DoubleBox2{{101, -1}, {101, 3}}, DoubleBox2{{100, 3}, {101, 3}},
+                          DoubleBox2{{100, -1}, {100, 3}}, DoubleBox2{{100, -1}, {101, -1}},
+                          DoubleBox2{{101, -1}, {102, -1}}, DoubleBox2{{102, -1}, {102, 3}},
+                          DoubleBox2{{101, 3}, {102, 3}}));
+  EXPECT_EQ(boxes_of(topology, "segments", "line").size(), 6u) << "arc 0 is in the other layer alone";
+}
+
+TEST_F(MapTest, ReadsTopologiesWithoutATransformInPlace) {
+  EXPECT_THAT(boxes_of(R"({"objects":{"a":{"type":"LineString","arcs":[0]}},"arcs":[[[1.5,2],[3,1],[5,5]]],
+                          "type":"Topology"})",
+                       "segments"),
+              ElementsAre(DoubleBox2{{1.5, 1}, {3, 2}}, DoubleBox2{{3, 1}, {5, 5}}));
+}
+
+TEST_F(MapTest, IsRecognisedByContentOrName) {
+  const std::string point = R"({"type":"Point","coordinates":[1,2]})";
+  for (const std::string name : {"map", "map.txt", "map.geojson", "map.JSON"})
+    EXPECT_EQ(open_file(put(name, point)).format->name, "map") << name;
+  EXPECT_EQ(open_file(put("bom.txt", "\xEF\xBB\xBF" + point)).format->name, "map");
+  EXPECT_THAT(refusal(put("other.json", R"({"schema": "broadside.results/1"})")),
+              AllOf(HasSubstr("other.json"), HasSubstr("an object without 'type'")));
+}
+
+TEST_F(MapTest, RefusesLayersThatAreNotThere) {
+  EXPECT_THAT(refusal_of(topology, "lines"),
+              AllOf(HasSubstr("no layer 'lines'"), HasSubstr("one of: squares, line")));
+  EXPECT_THAT(refusal_of(collection, "lines"), HasSubstr("GeoJSON, which has no layer 'lines'"));
+  EXPECT_THAT(
+      message_of<FileError>([&] { open_file(put("a.csv", "1,2,3,4\n"), {.format = "csv", .layer = "b"}); }),
+      HasSubstr("format csv, which has no layer or array 'b'"));
+}
+
+TEST_F(MapTest, RefusesWhatIsWrongNamingByteAndFeature) {
+  const auto point = [&](const std::string& coordinates) {
+    return refusal_of(R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":null},
+{"type":"Feature","geometry":{"type":"Point","coordinates":)" +
+                      coordinates + "}}]}");
+  };
+  EXPECT_THAT(point("[1,\"two\"]"), AllOf(HasSubstr("a.json: byte 138, feature 1: '\"two\"'"),
+                                          HasSubstr("expected a number that a double can hold")));
+  EXPECT_THAT(point("[1e999,2]"), HasSubstr("byte 136, feature 1: '1e999'"));
+  EXPECT_THAT(point("[NaN,2]"), HasSubstr("byte 136: 'NaN' is no JSON here; expected a value"));
+  EXPECT_THAT(point("[[1,2]]"), HasSubstr("an array; expected a number"));
+  EXPECT_THAT(point("[1]"), HasSubstr("a position of 1 number; expected at least 2"));
+  EXPECT_THAT(point("{}"), HasSubstr("an object; expected a position"));
+  EXPECT_THAT(point("null"), HasSubstr("'null'; expected a position"));
+  EXPECT_THAT(point("[1,2"), HasSubstr("byte 139: '}' is no JSON here; expected ',' or ']'"));
+  EXPECT_THAT(point("[1,,2]"), HasSubstr("byte 138: ',' is no JSON here; expected a value"));
+  EXPECT_THAT(refusal_of(R"({"type":"Point","coordinates":[1,2])"),
+              HasSubstr("a.json: byte 35: the text ends; expected ',' or '}'"));
+  EXPECT_THAT(refusal_of(R"({"type":"LineString","coordinates":[[],[1,2]]})"), HasSubstr("of no numbers"));
+  EXPECT_THAT(refusal_of(R"({"type":"Circle","coordinates":[1,2]})"),
+              AllOf(HasSubstr("'Circle'"), HasSubstr("Point, MultiPoint")));
+  EXPECT_THAT(refusal_of(R"({"type":7})"), AllOf(HasSubstr("'7'"), HasSubstr("the type of a map")));
+  EXPECT_THAT(refusal_of("[1,2,3]"), HasSubstr("an array; expected the object of a map"));
+  EXPECT_THAT(refusal_of(R"({"type":"Point","coordinates":[1,2]} {})"),
+              HasSubstr("an object is no JSON here; expected the end of the text"));
+  EXPECT_THAT(refusal_of("{\"type\":\"Point\xff\",\"coordinates\":[1,2]}"), HasSubstr("UTF"));
+  EXPECT_THAT(refusal_of(""), HasSubstr("byte 0: the text ends; expected a value"));
+}
+
+TEST_F(MapTest, RefusesWhatIsCutOffAnywhere) {
+  for (const std::string& text : {collection, topology}) {
+    for (std::size_t length = 0; length < text.size(); ++length)
+      EXPECT_THAT(refusal_of(text.substr(0, length)), HasSubstr("a.json")) << "cut off at " << length;
+  }
+}
+
+TEST_F(MapTest, RefusesWrongTopologies) {
+  const auto with = [&](const std::string& old, const std::string& now) {
+    std::string text = topology;
+    return refusal_of(text.replace(text.find(old), old.size(), now));
+  };
+  EXPECT_THAT(with("[[0, 1]]", "[[0, 4]]"), AllOf(HasSubstr("feature 0: arc 4"), HasSubstr("one of 4")));
+  EXPECT_THAT(with("[[0, 1]]", "[[0, -5]]"), HasSubstr("arc -5"));
+  EXPECT_THAT(with("[[0, 1]]", "[[0, 1.5]]"), HasSubstr("'1.5'; expected the number of an arc"));
+  EXPECT_THAT(with("\"scale\": [0.5, 2]", "\"scale\": [1e308, 2]"), HasSubstr("beyond the largest double"));
+  EXPECT_THAT(with("\"scale\": [0.5, 2]", "\"scale\": [2]"), HasSubstr("an array of 1 number"));
+  EXPECT_THAT(with("\"arcs\": [[[2, 0]", "\"curves\": [[[2, 0]"), HasSubstr("an object without 'arcs'"));
+  EXPECT_THAT(with("\"Polygon\"", "\"polygon\""), HasSubstr("'polygon'"));
+}
+
+TEST_F(MapTest, RefusesNestingThatWouldTakeTheStack) {
+  const auto nested = [](int depth) {
+    std::string text;
+    for (int i = 0; i < depth; ++i) text += R"({"type":"GeometryCollection","geometries":[)";
+    text += R"({"type":"Point","coordinates":[1,2]})";
+    for (int i = 0; i < depth; ++i) text += "]}";
+    return text;
+  };
+  EXPECT_EQ(boxes_of(nested(32)).size(), 1u);
+  EXPECT_THAT(refusal_of(nested(33)), HasSubstr("nested more than 32 deep"));
+  EXPECT_THAT(refusal_of(nested(100'000)), HasSubstr("nested more than 32 deep"));
+  EXPECT_THAT(refusal_of(R"({"type":"Polygon","coordinates":)" + std::string(100'000, '[')),
+              HasSubstr("a.json"));
+}
+
+TEST_F(MapTest, MakesScenesOfTheMapsThatWereFetched) {
+  setenv("BROADSIDE_DATA", path("").c_str(), 1);
+  EXPECT_THAT(generated::counties().missing,
+              AllOf(HasSubstr("counties.topojson"), HasSubstr("scripts/setup")));
+  std::string text = topology;
+  put("counties.topojson", text.replace(text.find("squares"), 7, "counties"));
+  text = topology;
+  put("land.topojson", text.replace(text.find("\"line\""), 6, "\"land\""));
+  const Scene counties = generated::counties();
+  const Scene coastlines = generated::coastlines();
+  unsetenv("BROADSIDE_DATA");
+  const auto count = [](const Scene& scene, const std::string& spec) {
+    return make_history<2>(scene, Spec::parse(spec), {}).boxes.size();
+  };
+  EXPECT_EQ(count(counties, "counties"), 4u);
+  EXPECT_EQ(count(counties, "counties:boxes=segments"), 7u);
+  EXPECT_EQ(count(coastlines, "coastlines"), 2u) << "a box an island, though all are one feature";
+  EXPECT_EQ(count(coastlines, "coastlines:boxes=segments"), 6u);
+  EXPECT_FALSE(counties.has_dimension(3));
+}
+
+}  // namespace
+}  // namespace broadside::lab

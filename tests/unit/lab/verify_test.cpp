@@ -1,0 +1,154 @@
+// The law itself: that it sees every way in which an algorithm can be wrong.
+#include "lab/verify/verify.hpp"
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace broadside::lab {
+namespace {
+
+using Pairs = std::vector<Pair>;
+
+Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
+
+const std::vector<Box2> row = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}, {{2, 2}, {3, 3}}, {{5, 5}, {6, 6}}};
+
+/// Reports the same pairs whatever the boxes.
+class FixedFinder final : public PairFinder<2> {
+ public:
+  explicit FixedFinder(Pairs pairs) : pairs_(std::move(pairs)) {}
+
+ private:
+  void find_valid(std::span<const Box2>, PairSink& pairs) override {
+    for (const Pair pair : pairs_) *pairs.room(1) = pair, pairs.commit(1);
+  }
+
+  Pairs pairs_;
+};
+
+std::optional<Divergence> divergence_of(const Pairs& found) {
+  FixedFinder finder(found);
+  return check_finder<2>(finder, row, "fixed");
+}
+
+TEST(ReferencePairs, AreTheClosedOverlapsSorted) {
+  EXPECT_EQ(reference_pairs<2>(row), (Pairs{pair(0, 1), pair(1, 2)}));
+}
+
+TEST(ReferencePairs, LeaveOutAbsentBoxesEvenBesideInfiniteOnes) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const Box2 whole = {{-infinity, -infinity}, {infinity, infinity}};
+  EXPECT_EQ(reference_pairs<2>(std::vector{whole, absent_box<2>(), whole, absent_box<2>()}),
+            (Pairs{pair(0, 2)}));
+}
+
+TEST(CheckFinder, PassesTheRightPairsInAnyOrder) {
+  EXPECT_FALSE(divergence_of({pair(0, 1), pair(1, 2)}).has_value());
+  EXPECT_FALSE(divergence_of({pair(1, 2), pair(0, 1)}).has_value());
+}
+
+TEST(CheckFinder, SeesAMissingPair) {
+  for (const Pairs& found : {Pairs{}, Pairs{pair(0, 1)}, Pairs{pair(1, 2)}}) {
+    const auto divergence = divergence_of(found);
+    ASSERT_TRUE(divergence.has_value());
+    EXPECT_EQ(divergence->kind, Divergence::Kind::missing);
+  }
+}
+
+TEST(CheckFinder, SeesAnExtraPairWhereverItSorts) {
+  for (const Pair extra :
+       {pair(0, 2), pair(1, 3), pair(2, 3), pair(1, 1), pair(0, 0), pair(1, 0), pair(0, 9)}) {
+    const auto divergence = divergence_of({pair(0, 1), pair(1, 2), extra});
+    ASSERT_TRUE(divergence.has_value());
+    EXPECT_EQ(divergence->kind, Divergence::Kind::extra);
+    EXPECT_EQ(divergence->pair, extra);
+  }
+}
+
+TEST(CheckFinder, SeesARepeatedPair) {
+  for (const Pair repeated : {pair(0, 1), pair(1, 2)}) {
+    const auto divergence = divergence_of({pair(0, 1), pair(1, 2), repeated});
+    ASSERT_TRUE(divergence.has_value());
+    EXPECT_EQ(divergence->kind, Divergence::Kind::repeated);
+    EXPECT_EQ(divergence->pair, repeated);
+  }
+}
+
+TEST(CheckFinder, SaysWhoAndWhichPairAndWhere) {
+  EXPECT_EQ(
+      divergence_of({pair(0, 1)})->text,
+      "fixed: frame 0, search: pair (1, 2) is missing; expected to be reported; box 1 is [(1, 1), (2, 2)]; "
+      "box 2 is [(2, 2), (3, 3)]");
+}
+
+/// Gives frame after frame the events it was made with.
+class FixedTracker final : public PairTracker<2> {
+ public:
+  struct Events {
+    Pairs begun;
+    Pairs ended;
+  };
+
+  explicit FixedTracker(std::vector<Events> frames) : frames_(std::move(frames)) {}
+
+ private:
+  void update_valid(const Change<2>&, PairSink& begun, PairSink& ended) override {
+    for (const Pair pair : frames_[frame_].begun) begun.add(pair.first, pair.second);
+    for (const Pair pair : frames_[frame_].ended) ended.add(pair.first, pair.second);
+    ++frame_;
+  }
+
+  std::vector<Events> frames_;
+  std::size_t frame_ = 0;
+};
+
+/// Box 1 leaves box 0 for box 3 (with which no one overlapped) and keeps box 2 behind.
+const History<2> leaving = {row, {{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, {4, {}, {}}}};
+
+std::optional<Divergence> tracking_divergence(const std::vector<FixedTracker::Events>& frames) {
+  FixedTracker tracker(frames);
+  return check_tracker<2>(tracker, leaving, "fixed");
+}
+
+TEST(CheckTracker, PassesTheRightEvents) {
+  EXPECT_FALSE(
+      tracking_divergence({{{pair(0, 1), pair(1, 2)}, {}}, {{pair(1, 3)}, {pair(0, 1), pair(1, 2)}}, {}}));
+}
+
+TEST(CheckTracker, SeesEventsThatAreMissingOrExtra) {
+  const FixedTracker::Events first = {{pair(0, 1), pair(1, 2)}, {}};
+  const FixedTracker::Events second = {{pair(1, 3)}, {pair(0, 1), pair(1, 2)}};
+  using Kind = Divergence::Kind;
+  const auto expect = [](const std::vector<FixedTracker::Events>& frames, Kind kind, std::size_t frame) {
+    const auto divergence = tracking_divergence(frames);
+    ASSERT_TRUE(divergence.has_value());
+    EXPECT_EQ(divergence->kind, kind) << divergence->text;
+    EXPECT_EQ(divergence->frame, frame) << divergence->text;
+  };
+  expect({{{pair(0, 1)}, {}}, second, {}}, Kind::missing, 0);
+  expect({{first.begun, {pair(0, 1)}}, second, {}}, Kind::extra, 0);
+  expect({first, {{}, second.ended}, {}}, Kind::missing, 1);
+  expect({first, {second.begun, {pair(0, 1)}}, {}}, Kind::missing, 1);
+  expect({first, second, {{pair(1, 3)}, {}}}, Kind::extra, 2);
+  expect({first, second, {{}, {pair(0, 1)}}}, Kind::extra, 2);
+}
+
+TEST(CheckTracker, SeesNothingWrongInAnEventThatAnAlgorithmWritesTwice) {
+  EXPECT_FALSE(tracking_divergence({{{pair(0, 1), pair(1, 2), pair(0, 1)}, {}},
+                                    {{pair(1, 3)}, {pair(0, 1), pair(1, 2), pair(1, 2)}},
+                                    {}}));
+}
+
+TEST(CheckTracker, SaysWhichFrameAndWhichEvent) {
+  EXPECT_EQ(
+      tracking_divergence({{{pair(0, 1), pair(1, 2)}, {}}, {{}, {pair(0, 1), pair(1, 2)}}, {}})->text,
+      "fixed: frame 1, begun: pair (1, 3) is missing; expected to be reported; box 1 is [(6, 6), (7, 7)]; "
+      "box 3 is [(5, 5), (6, 6)]");
+}
+
+}  // namespace
+}  // namespace broadside::lab

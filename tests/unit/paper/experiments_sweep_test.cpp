@@ -1,0 +1,226 @@
+// The verdicts of the experiments on sweep and prune follow from their tables.
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "paper/experiments/experiment.hpp"
+
+namespace broadside::lab {
+namespace {
+
+Finding judged(const char* experiment, const std::vector<Table>& tables) {
+  return find_experiment(experiment).judge(tables);
+}
+
+/// What the sweeps cost in a world without bounds and with infinite boxes, over the bounded ones.
+Table worlds(double boundless, double infinite) {
+  Table table{.name = "worlds",
+              .title = {},
+              .columns = {{"world"}, {"algorithm"}, {"tests"}, {"time"}, {"memory"}, {"bounded world"}}};
+  for (const std::string name :
+       {"sweep_and_prune", "paper_sweep_and_prune", "paper_grid", "paper_quadtree"}) {
+    const bool is_sweep = name.find("sweep") != std::string::npos;
+    const double cost = is_sweep ? boundless : 90;
+    table.add({"compact", name, 1000.0, 1.0, 5000.0, "compact"});
+    table.add({"1 box far away", name, 1000 * cost, cost, 5000.0, "compact"});
+    table.add({"4 infinite boxes", name, 1000 * infinite, infinite, 5000.0, "compact"});
+  }
+  return table;
+}
+
+Table axes() {
+  Table table{.name = "axes",
+              .title = {},
+              .columns = {{"scene"}, {"sweep"}, {"tests a box"}, {"time"}, {"time over best axis's"}}};
+  table.add({"one_line 2D", "x", 500.0, 12.0, 12.0});
+  table.add({"one_line 2D", "y", 2.0, 1.0, 1.0});
+  table.add({"one_line 2D", "auto", 2.0, 1.1, 1.1});
+  table.add({"one_line 2D", "auto, stripes", 2.0, 0.55, 0.55});
+  table.add({"one_line 2D", "paper, x", 500.0, 40.0, 40.0});
+  return table;
+}
+
+Table growth() {
+  Table table{.name = "growth", .title = {}, .columns = {{"boxes"}, {"sweep"}, {"tests"}}};
+  for (const double boxes : {100.0, 10'000.0}) {
+    table.add({boxes, "sweep_and_prune:axes=1 2D", boxes * boxes});
+    table.add({boxes, "sweep_and_prune:axes=1 3D", boxes * boxes});
+    table.add({boxes, "sweep_and_prune 2D", boxes});
+  }
+  return table;
+}
+
+TEST(SweepAxisExperiment, HoldsWhereBoundlessWorldsCostNothing) {
+  const Finding finding = judged("sweep_axis", {worlds(1, 1), axes(), growth()});
+  EXPECT_EQ(finding.verdict, Verdict::holds);
+  EXPECT_NE(finding.reason.find("12.0 times the best one's time (one_line 2D)"), std::string::npos)
+      << finding.reason;
+  EXPECT_NE(finding.reason.find("n^2.00 in 2D"), std::string::npos) << finding.reason;
+}
+
+TEST(SweepAxisExperiment, HoldsWhenNoBoxIsInfiniteWhereThoseCost) {
+  EXPECT_EQ(judged("sweep_axis", {worlds(1, 30), axes(), growth()}).verdict_text(),
+            "holds when no box is infinite");
+}
+
+TEST(SweepAxisExperiment, DoesNotHoldWhereABoxFarAwayCosts) {
+  EXPECT_EQ(judged("sweep_axis", {worlds(30, 1), axes(), growth()}).verdict, Verdict::does_not_hold);
+}
+
+TEST(SweepAxisExperiment, RefusesTablesWithoutWhatItJudgesBy) {
+  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), axes()}), std::invalid_argument);
+  Table bounded = worlds(1, 1);
+  bounded.rows.resize(1);
+  EXPECT_THROW(judged("sweep_axis", {bounded, axes(), growth()}), std::invalid_argument);
+  Table no_scene = axes();
+  no_scene.rows.clear();
+  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), no_scene, growth()}), std::invalid_argument);
+  Table short_growth = growth();
+  short_growth.rows.resize(3);
+  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), axes(), short_growth}), std::invalid_argument);
+}
+
+/// Insertion takes 10 ns and what the places cost, a sort 40 ns.
+Table sorting(double nanoseconds_a_place) {
+  Table table{.name = "sorting", .title = {}, .columns = {{"sort"}, {"places moved a box"}, {"time a box"}}};
+  for (const double places : {0.1, 1.0, 10.0, 100.0}) {
+    table.add({"insertion", places, 10 + nanoseconds_a_place * places});
+    table.add({"sort anew", places, 40.0});
+    table.add({"heap", places, 60.0});
+  }
+  return table;
+}
+
+/// The places that boxes move grow with their number to the power of these exponents.
+Table order_growth(double in_corridor, double in_plane, double in_space) {
+  Table table{.name = "growth",
+              .title = {},
+              .columns = {{"world"}, {"boxes"}, {"places moved a box"}, {"places moved"}, {"insertion"}}};
+  const auto add = [&table](const std::string& world, double exponent) {
+    for (const double boxes : {1'000.0, 16'000.0}) {
+      const double places = std::pow(boxes, exponent);
+      table.add({world, boxes, places / boxes, places, places});
+    }
+  };
+  add("corridor", in_corridor);
+  add("plane", in_plane);
+  add("space", in_space);
+  return table;
+}
+
+Table motion_frames() {
+  Table table{.name = "frames", .title = {}, .columns = {{"motion"}, {"update"}, {"time"}}};
+  for (const std::string motion : {"0.1 sizes", "anywhere"}) {
+    table.add({motion, "insertion", 2.0});
+    table.add({motion, "merge", 1.0});
+    table.add({motion, "rebuild", 0.5});
+  }
+  return table;
+}
+
+TEST(SweepInsertionExperiment, HoldsWhenFewArePassedWhereMoreBoxesMeanMorePlaces) {
+  const Finding finding =
+      judged("sweep_insertion", {sorting(1), order_growth(1, 1.5, 1.67), motion_frames()});
+  EXPECT_EQ(finding.verdict, Verdict::holds_when);
+  // 10 + p crosses 40 at p = 30; between 10 and 100 places on straight lines of logarithms.
+  EXPECT_EQ(finding.condition.find("a box passes fewer than about "), 0U) << finding.condition;
+  EXPECT_NE(finding.reason.find("n^1.50 in a plane"), std::string::npos) << finding.reason;
+}
+
+TEST(SweepInsertionExperiment, HoldsWhereItIsLinearInEachWorldAndAlwaysAhead) {
+  EXPECT_EQ(judged("sweep_insertion", {sorting(0.1), order_growth(1, 1, 1.05), motion_frames()}).verdict,
+            Verdict::holds);
+}
+
+TEST(SweepInsertionExperiment, DoesNotHoldWhereItIsNeverLinearOrNeverAhead) {
+  EXPECT_EQ(judged("sweep_insertion", {sorting(1), order_growth(1.5, 1.5, 1.6), motion_frames()}).verdict,
+            Verdict::does_not_hold);
+  EXPECT_EQ(judged("sweep_insertion", {sorting(500), order_growth(1, 1.5, 1.6), motion_frames()}).verdict,
+            Verdict::does_not_hold);
+}
+
+TEST(SweepInsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
+  const Table growing = order_growth(1, 1.5, 1.67);
+  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing}), std::invalid_argument);
+  Table no_frames = motion_frames();
+  no_frames.rows.clear();
+  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing, no_frames}), std::invalid_argument);
+  Table no_sorts = sorting(1);
+  no_sorts.rows.clear();
+  EXPECT_THROW(judged("sweep_insertion", {no_sorts, growing, motion_frames()}), std::invalid_argument);
+  Table one_number = growing;
+  one_number.rows.resize(1);
+  EXPECT_THROW(judged("sweep_insertion", {sorting(1), one_number, motion_frames()}), std::invalid_argument);
+}
+
+/// A search takes 50 ns; what each place costs is moved beside it.
+Table reinsertion_growth(double nanoseconds_a_place) {
+  Table table{
+      .name = "growth",
+      .title = {},
+      .columns = {
+          {"boxes go"}, {"boxes"}, {"comparisons"}, {"places moved"}, {"searching"}, {"moving"}, {"time"}}};
+  for (const bool is_near : {true, false}) {
+    for (const double boxes : {1'000.0, 16'000.0, 256'000.0}) {
+      const double places = is_near ? 1 : boxes / 3;
+      const double moving = nanoseconds_a_place * places;
+      table.add({is_near ? "a fifth of their size" : "anywhere", boxes, 2 * std::log2(boxes), places, 50.0,
+                 moving, 50 + moving});
+    }
+  }
+  return table;
+}
+
+Table heaps() {
+  Table table{.name = "heap", .title = {}, .columns = {{"sort"}, {"boxes"}, {"time a box"}}};
+  table.add({"heap", 1'000.0, 60.0});
+  table.add({"sort", 1'000.0, 40.0});
+  return table;
+}
+
+Table mover_frames() {
+  Table table{
+      .name = "frames", .title = {}, .columns = {{"boxes go"}, {"k"}, {"update"}, {"boxes"}, {"time"}}};
+  for (const double k : {1.0, 10.0, 100.0}) {
+    table.add({"anywhere", k, "binary", 5'000.0, k});
+    table.add({"anywhere", k, "insertion", 5'000.0, 30.0});
+    table.add({"anywhere", k, "merge", 5'000.0, 20.0});
+    table.add({"anywhere", k, "heap", 5'000.0, 200.0});
+    table.add({"anywhere", k, "rebuild", 5'000.0, 200.0});
+  }
+  return table;
+}
+
+TEST(SweepReinsertionExperiment, HoldsWhereMovingNeverDominates) {
+  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(1e-6), heaps(), mover_frames()}).verdict,
+            Verdict::holds);
+}
+
+TEST(SweepReinsertionExperiment, HoldsWhenThereAreFewBoxesOrTheyStayNearWhereMovingDominatesOtherwise) {
+  const Finding finding = judged("sweep_reinsertion", {reinsertion_growth(0.02), heaps(), mover_frames()});
+  EXPECT_EQ(finding.verdict_text(),
+            "holds when there are fewer than about 7,500 boxes, or boxes stay near their places");
+  EXPECT_NE(finding.reason.find("up to about 20.0 boxes"), std::string::npos) << finding.reason;
+}
+
+TEST(SweepReinsertionExperiment, DoesNotHoldWhereMovingAlwaysDominates) {
+  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(60), heaps(), mover_frames()}).verdict,
+            Verdict::does_not_hold);
+}
+
+TEST(SweepReinsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
+  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), heaps()}), std::invalid_argument);
+  Table no_heaps = heaps();
+  no_heaps.rows.clear();
+  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), no_heaps, mover_frames()}),
+               std::invalid_argument);
+  Table near_only = reinsertion_growth(1);
+  near_only.rows.resize(3);
+  EXPECT_THROW(judged("sweep_reinsertion", {near_only, heaps(), mover_frames()}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace broadside::lab
