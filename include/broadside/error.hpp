@@ -9,18 +9,29 @@
 
 namespace broadside {
 
-/// A box that no algorithm may see: a NaN, or min > max without being absent. Thrown before anything has
-/// changed.
+/// A box that no algorithm may see: a NaN, or min > max without being absent; or, where a box is added to a
+/// world, an absent one. Thrown before anything has changed.
 class InvalidInput : public std::invalid_argument {
  public:
   InvalidInput(std::size_t index, const std::string& message)
       : std::invalid_argument(message), index_(index) {}
 
-  /// The index of the first such box in the array that was handed in.
+  /// The place of the first such box in the array that it was handed in with; 0 for one box alone.
   std::size_t index() const noexcept { return index_; }
 
  private:
   std::size_t index_;
+};
+
+/// A frame or an array whose parts do not fit together: too many boxes, a filter missing, a listed place that
+/// is none, a change that is not listed. Thrown before anything has changed.
+class InvalidFrame : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A question with a NaN, or with an infinity where there may be none.
+class InvalidQuery : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
 /// A spec that cannot be read, or that names an algorithm or a tunable that does not exist or a value out of

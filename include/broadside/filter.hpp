@@ -13,8 +13,8 @@ namespace broadside {
 /// What a box is, and what it wants to meet. Two boxes count as a pair if they overlap and their filters
 /// accept each other: see accepts().
 struct Filter {
-  std::uint32_t category = 1;        ///< bits: what the box is
-  std::uint32_t mask = 0xffffffffU;  ///< bits: the categories it meets
+  std::uint64_t category = 1;              ///< bits: what the box is
+  std::uint64_t mask = ~std::uint64_t{0};  ///< bits: the categories it meets
 
   /// Two boxes of the same group other than 0 meet whatever their bits if it is positive, and never if it is
   /// negative.

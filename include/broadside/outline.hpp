@@ -24,8 +24,9 @@ struct Outline {
   std::vector<std::vector<Box<D, Real>>> levels;
 };
 
-/// A second face of a finder that lays something over boxes: its class derives from this one as well.
-template <int D, typename Real = float>
+/// A second face of a finder that lays something over boxes: its class derives from this one as well, and its
+/// outlined() returns itself.
+template <int D, typename Real>
 class Outlined {
  public:
   Outlined() = default;
@@ -38,7 +39,7 @@ class Outlined {
   virtual Outline<D, Real> lay_out(std::span<const Box<D, Real>> boxes) = 0;
 };
 
-/// What the finder's find() would lay over these boxes; nothing for a finder that is not Outlined, or if no
+/// What the finder's find() would lay over these boxes; nothing for a finder without an outlined(), or if no
 /// box is present. Takes what laying it out takes, and no search pays for it. Throws as find() does.
 template <int D, typename Real>
 Outline<D, Real> outline(PairFinder<D, Real>& finder,

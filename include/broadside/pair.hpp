@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "broadside/cpp_version.hpp"
 
 namespace broadside {
+namespace core {
+class FilterSink;
+}  // namespace core
 
 /// A box's place in the array that was handed in, counted from 0.
 enum class BoxId : std::uint32_t {};
@@ -88,9 +90,12 @@ class PairSink {
   virtual std::unique_ptr<PairSink> empty_clone() const { return nullptr; }
 
   /// Takes over what a flushed clone of this sink has made of its pairs. In the thread that called find().
-  virtual void merge([[maybe_unused]] PairSink& clone) {
-    throw std::logic_error("a PairSink has empty_clone() but no merge(); expected both or none");
-  }
+  /// Throws std::logic_error where it is not overridden.
+  virtual void merge(PairSink& clone);
+
+  /// For the library, which shares the work of its own filters among threads: this sink, if it is one of
+  /// them.
+  virtual core::FilterSink* as_filter() noexcept { return nullptr; }
 
  protected:
   PairSink() = default;

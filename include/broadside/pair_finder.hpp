@@ -14,6 +14,13 @@
 #include "broadside/statistics.hpp"
 
 namespace broadside {
+namespace core {
+template <int D>
+class Yielding;
+}  // namespace core
+
+template <int D, typename Real = float>
+class Outlined;
 
 /// Finds every overlapping pair in an array of boxes, from nothing, at each call.
 ///
@@ -66,6 +73,12 @@ class PairFinder {
   /// Where the algorithm is one that chooses: what it chose for the last find(), and why, in a sentence.
   /// Empty for others.
   virtual std::string explanation() const { return {}; }
+
+  /// What it lays over boxes, to be drawn, where it lays something: see outline().
+  virtual Outlined<D, Real>* outlined() noexcept { return nullptr; }
+
+  /// For the library: this finder, if its searches can give up.
+  virtual core::Yielding<D>* yielding() noexcept { return nullptr; }
 
  protected:
   /// For find_valid: what this search did.

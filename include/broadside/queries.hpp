@@ -58,7 +58,7 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
 /// With an `asker`, only boxes whose filter accepts it are. Results have an order that the boxes' history
 /// fixes, and that means nothing but where it is said. A query takes some tens of nanoseconds and what it
-/// finds; none allocates. Each throws InvalidInput if something asked about is NaN, or infinite where it must
+/// finds; none allocates. Each throws InvalidQuery if something asked about is NaN, or infinite where it must
 /// not be, and what the visitor throws.
 template <int D, typename Real = float>
 class BoxIndex {
@@ -71,8 +71,9 @@ class BoxIndex {
   virtual ~BoxIndex() = default;
 
   /// Takes a frame, as a PairTracker does: in the first one everything has changed; ignored pairs are not
-  /// looked at. Throws InvalidInput before anything has changed; after running out of memory, queries find
-  /// nothing until an update ends. Cost: O(changed), or for many changes that of finding all pairs.
+  /// looked at. Throws InvalidInput or InvalidFrame before anything has changed; after running out of memory,
+  /// queries find nothing until an update ends. Cost: O(changed), or for many changes that of finding all
+  /// pairs.
   void update(const Frame<D, Real>& frame);
 
   /// The boxes that overlap `box`; false if the visitor ended the search. Nothing overlaps an absent box.

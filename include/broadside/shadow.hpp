@@ -74,7 +74,7 @@ struct ShadowOptions {
 /// caller's list of what changed.
 ///
 /// update() throws, besides what every tracker's does: DivergenceOf, and from then on the same each time;
-/// InvalidInput, before the tracker is asked, if a box, a filter or an ignored pair has changed and is not
+/// InvalidFrame, before the tracker is asked, if a box, a filter or an ignored pair has changed and is not
 /// listed.
 ///
 /// Cost a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the

@@ -81,8 +81,8 @@ class World {
   void remove(std::span<const Handle> handles);
 
   /// Makes `origin` the new origin: subtracts it from all coordinates. O(slots), and the next update has
-  /// everything changed. Pairs that rounding makes or parts begin or end there. Throws InvalidInput if a
-  /// coordinate of `origin` is not finite.
+  /// everything changed. Pairs that rounding makes or parts begin or end there. Throws
+  /// std::invalid_argument if a coordinate of `origin` is not finite.
   void shift_origin(const std::array<Real, D>& origin);
 
   /// Replaces a box's filter. O(1), but the first one other than the standard one makes the next update take

@@ -174,7 +174,7 @@ bool has_outline(const Contender& contender, int dimension) {
   if (!contender.algorithm->has_dimension(dimension)) return false;
   const auto in_dimension = [&]<int D>() {
     const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*contender.algorithm, contender.spec);
-    return dynamic_cast<const Outlined<D>*>(finder.get()) != nullptr;
+    return finder->outlined() != nullptr;
   };
   return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
 }

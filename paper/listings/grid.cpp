@@ -55,6 +55,8 @@ double choose_size(std::span<const Box2> boxes, const World& world) {
 
 class Grid final : public PairFinder<2>, public Outlined<2> {
  public:
+  Outlined<2>* outlined() noexcept override { return this; }
+
   explicit Grid(const Settings& settings)
       : world_settings_(settings), cell_(settings.is_auto("cell") ? 0 : settings.number("cell")) {}
 

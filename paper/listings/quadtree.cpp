@@ -203,6 +203,8 @@ int choose_depth(std::span<const Box2> boxes, const World& world) {
 
 class Quadtree final : public PairFinder<2>, public Outlined<2> {
  public:
+  Outlined<2>* outlined() noexcept override { return this; }
+
   explicit Quadtree(const Settings& settings)
       : world_settings_(settings), capacity_(static_cast<std::size_t>(settings.integer("capacity"))) {}
 

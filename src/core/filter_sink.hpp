@@ -12,6 +12,7 @@ namespace broadside::core {
 class FilterSink : public PairSink {
  public:
   PairSink& target() const noexcept { return *target_; }
+  FilterSink* as_filter() noexcept final { return this; }
 
   /// The same filter onto another target, which must outlive it.
   virtual std::unique_ptr<FilterSink> onto(PairSink& target) const = 0;

@@ -49,8 +49,7 @@ class BufferSink final : public PairSink {
 /// earlier search is handed on: its pairs come before those of this one.
 std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   std::vector<const FilterSink*> filters;
-  for (auto* filter = dynamic_cast<FilterSink*>(&pairs); filter != nullptr;
-       filter = dynamic_cast<FilterSink*>(&filter->target())) {
+  for (FilterSink* filter = pairs.as_filter(); filter != nullptr; filter = filter->target().as_filter()) {
     filter->flush();
     filters.push_back(filter);
   }

@@ -21,9 +21,9 @@ namespace {
 
 using Pairs = std::vector<Pair>;
 
-[[noreturn]] void refuse_unlisted(std::size_t place, std::size_t frame, const std::string& what) {
-  throw InvalidInput(place, "frame " + std::to_string(frame) + ": " + what +
-                                ", and is not listed; expected every change in the frame's lists");
+[[noreturn]] void refuse_unlisted(std::size_t frame, const std::string& what) {
+  throw InvalidFrame("frame " + std::to_string(frame) + ": " + what +
+                     ", and is not listed; expected every change in the frame's lists");
 }
 
 /// Throws if a box or a filter in the frame is not the one that trackers see.
@@ -36,11 +36,10 @@ void check_listed(const Change<D, Real>& change, std::size_t frame) {
     const bool is_box = is_present(box) || is_absent(box);
     // What is no box can only have been let in as an absent one.
     if (box != seen && (is_box || !is_absent(seen)))
-      refuse_unlisted(
-          i, frame,
-          "box " + std::to_string(i) + " had " + core::text_of(seen) + ", has now " + core::text_of(box));
+      refuse_unlisted(frame, "box " + std::to_string(i) + " had " + core::text_of(seen) + ", has now " +
+                                 core::text_of(box));
     if (!given.filters.empty() && given.filters[i] != change.filters_now[i])
-      refuse_unlisted(i, frame, "box " + std::to_string(i) + " has another filter than before");
+      refuse_unlisted(frame, "box " + std::to_string(i) + " has another filter than before");
   }
 }
 
@@ -63,9 +62,8 @@ void check_listed(const Pairs& toggled, std::span<const Pair> listed, std::size_
   for (const Pair pair : listed) named.insert(pair);
   for (const Pair pair : toggled) {
     if (named.contains(pair)) continue;
-    refuse_unlisted(index(pair.first), frame,
-                    "the pair (" + std::to_string(index(pair.first)) + ", " +
-                        std::to_string(index(pair.second)) + ") is newly ignored or no longer");
+    refuse_unlisted(frame, "the pair (" + std::to_string(index(pair.first)) + ", " +
+                               std::to_string(index(pair.second)) + ") is newly ignored or no longer");
   }
 }
 

@@ -26,6 +26,8 @@ namespace broadside::core {
 template <int D>
 class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, double> {
  public:
+  Outlined<D, double>* outlined() noexcept override { return this; }
+
   explicit DoubleFinder(std::unique_ptr<PairFinder<D>> finder);
 
   std::string explanation() const override { return finder_->explanation(); }

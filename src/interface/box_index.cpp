@@ -25,7 +25,7 @@ template <typename Real>
   message << name << " is ";
   for (int i = 0; i < count; ++i) message << (i == 0 ? "" : ", ") << values[i];
   message << "; expected " << expected;
-  throw InvalidInput(0, message.str());
+  throw InvalidQuery(message.str());
 }
 
 template <int D, typename Real>
@@ -72,16 +72,15 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
   const std::size_t size = std::max(size_, frame.boxes.size());
   core::check_count(frame.boxes.size());
   if (!frame.filters.empty() && frame.filters.size() != frame.boxes.size()) {
-    throw InvalidInput(frame.filters.size(),
-                       std::to_string(frame.filters.size()) + " filters for a frame of " +
-                           std::to_string(frame.boxes.size()) + " boxes; expected one for each box, or none");
+    throw InvalidFrame(std::to_string(frame.filters.size()) + " filters for a frame of " +
+                       std::to_string(frame.boxes.size()) + " boxes; expected one for each box, or none");
   }
   std::size_t first = dirty_ ? 0 : std::min(size_, frame.boxes.size());
   for (const BoxId id : frame.changed) {
     if (index(id) >= size) {
-      throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
-                                        std::to_string(frame.boxes.size()) +
-                                        " boxes; expected a place in this frame or the last");
+      throw InvalidFrame("changed box " + std::to_string(index(id)) + " of a frame of " +
+                         std::to_string(frame.boxes.size()) +
+                         " boxes; expected a place in this frame or the last");
     }
     if (index(id) >= first) continue;
     const Box<D, Real>& box = frame.boxes[index(id)];

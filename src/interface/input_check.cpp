@@ -57,7 +57,7 @@ std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, B
 void check_count(std::size_t count) {
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
   if (count > most)
-    throw InvalidInput(most, std::to_string(count) + " boxes; expected at most " + std::to_string(most));
+    throw InvalidFrame(std::to_string(count) + " boxes; expected at most " + std::to_string(most));
 }
 
 template bool is_present_by_value(const Box<2>&) noexcept;

@@ -49,7 +49,7 @@ Outline<D, Real> outline(PairFinder<D, Real>& finder,
   const core::DefaultEnvironment environment;
   core::check_count(boxes.size());
   core::check_boxes(boxes, 0, finder.bad_input());
-  auto* const outlined = dynamic_cast<Outlined<D, Real>*>(&finder);
+  Outlined<D, Real>* const outlined = finder.outlined();
   std::vector<Box<D, Real>> present;
   std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(present), is_present<D, Real>);
   if (outlined == nullptr || present.empty()) return {};

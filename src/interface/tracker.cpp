@@ -77,16 +77,14 @@ void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
   const std::size_t size = std::max(boxes.size(), before_.size());
   core::check_count(boxes.size());
   if (!frame.filters.empty() && frame.filters.size() != boxes.size()) {
-    throw InvalidInput(frame.filters.size(), std::to_string(frame.filters.size()) +
-                                                 " filters for a frame of " + std::to_string(boxes.size()) +
-                                                 " boxes; expected one for each box, or none");
+    throw InvalidFrame(std::to_string(frame.filters.size()) + " filters for a frame of " +
+                       std::to_string(boxes.size()) + " boxes; expected one for each box, or none");
   }
   std::size_t first = dirty_ ? 0 : std::min(before_.size(), boxes.size());
   for (const BoxId id : frame.changed) {
     if (index(id) >= size) {
-      throw InvalidInput(index(id), "changed box " + std::to_string(index(id)) + " of a frame of " +
-                                        std::to_string(boxes.size()) +
-                                        " boxes; expected a place in this frame or the last");
+      throw InvalidFrame("changed box " + std::to_string(index(id)) + " of a frame of " +
+                         std::to_string(boxes.size()) + " boxes; expected a place in this frame or the last");
     }
     if (index(id) < first && core::is_invalid(boxes[index(id)])) first = index(id);
   }

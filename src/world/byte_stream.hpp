@@ -63,7 +63,10 @@ class ByteWriter {
 /// Takes numbers from bytes. Throws InvalidSnapshot where there are no more.
 class ByteReader {
  public:
-  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  /// `version` is that of the format, for parts that were written in another way once.
+  ByteReader(std::span<const std::byte> bytes, std::uint32_t version) : bytes_(bytes), version_(version) {}
+
+  std::uint32_t version() const noexcept { return version_; }
 
   std::size_t left() const noexcept { return bytes_.size() - at_; }
 
@@ -103,6 +106,7 @@ class ByteReader {
  private:
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
+  std::uint32_t version_;
 };
 
 }  // namespace broadside::core

@@ -8,7 +8,8 @@
 namespace broadside::snapshot {
 
 inline constexpr std::array<unsigned char, 8> magic = {0x89, 'B', 'W', 'S', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t version = 1;
+/// What is written. Version 1, which is read as well, had 32 bits for a filter's category and its mask.
+inline constexpr std::uint32_t version = 2;
 inline constexpr std::uint16_t byte_order = 0x0102;
 inline constexpr std::size_t checksum_bytes = 4;
 

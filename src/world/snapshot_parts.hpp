@@ -45,7 +45,7 @@ struct Part<Pair> {
 
 template <>
 struct Part<Filter> {
-  static constexpr std::size_t bytes = 13;
+  static constexpr std::size_t bytes = 13;  // at least: of version 1
   static void put(ByteWriter& out, const Filter& filter) {
     out.put(filter.category);
     out.put(filter.mask);
@@ -54,8 +54,15 @@ struct Part<Filter> {
   }
   static Filter get(ByteReader& in) {
     Filter filter;
-    filter.category = in.get<std::uint32_t>();
-    filter.mask = in.get<std::uint32_t>();
+    if (in.version() == 1) {
+      filter.category = in.get<std::uint32_t>();
+      const auto mask = in.get<std::uint32_t>();
+      // A mask of all 32 categories becomes one of all 64.
+      filter.mask = mask == 0xffffffffU ? ~std::uint64_t{0} : mask;
+    } else {
+      filter.category = in.get<std::uint64_t>();
+      filter.mask = in.get<std::uint64_t>();
+    }
     filter.group = in.get<std::int32_t>();
     const auto is_static = in.get<std::uint8_t>();
     if (is_static > 1)

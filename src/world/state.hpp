@@ -1,5 +1,4 @@
-// What a World keeps. Its members are in world.cpp (boxes), world_batch.cpp, world_filters.cpp,
-// world_update.cpp, world_memory.cpp, world_pairs.cpp, world_queries.cpp and world_snapshot*.cpp.
+// What a World keeps. Its member functions are in members/, a header for each concern.
 #pragma once
 
 #include <algorithm>
@@ -72,7 +71,7 @@ struct World<D, Real>::State {
   /// The tracker that these options ask for.
   static std::unique_ptr<PairTracker<D, Real>> make_own_tracker(const WorldOptions& options);
 
-  // world.cpp: slots and boxes.
+  // boxes.hpp.
   bool is_live(Handle handle) const noexcept;
   std::uint32_t live_slot(Handle handle, const char* action) const;
   std::uint32_t readable_slot(Handle handle) const;
@@ -90,12 +89,12 @@ struct World<D, Real>::State {
   void mark_changed(std::uint32_t slot) noexcept;
   void mark_moved(std::uint32_t slot) noexcept;
 
-  // world_queries.cpp.
+  // queries.hpp.
   void bring_index_up_to_date() const;
   void note_changes_for_index();
   void drop_index() noexcept;
 
-  // world_update.cpp.
+  // update.hpp.
   Frame<D, Real> frame() const noexcept;
   void ask_tracker();
   void apply_candidates();
@@ -117,7 +116,7 @@ struct World<D, Real>::State {
     void get(core::ByteReader& in, const Frame<D, Real>& now);
   };
 
-  // world_snapshot.cpp, world_snapshot_restore.cpp and world_snapshot_tracker.cpp.
+  // snapshot.hpp, snapshot_restore.hpp and snapshot_tracker.hpp.
   void put(core::ByteWriter& out, std::span<const HandlePair> pairs_now) const;
   static std::unique_ptr<State> get(core::ByteReader& in, const State& like, LastFrame& last);
   void get_slots(core::ByteReader& in);
@@ -131,7 +130,7 @@ struct World<D, Real>::State {
   void lead_back();
   void take_tracker(State& other, const LastFrame& last);
 
-  // world_snapshot_check.cpp.
+  // snapshot_check.hpp.
   bool is_paired(std::uint32_t slot) const noexcept;
   void expect_paired(Pair pair) const;
   void check_last_frame(const LastFrame& last) const;
@@ -139,7 +138,7 @@ struct World<D, Real>::State {
   void check_marks(bool asks_predicate) const;
   void check_pairs(const std::vector<Pair>& tracked) const;
 
-  // world_memory.cpp.
+  // memory.hpp.
   void trim() noexcept;
   void release_unneeded() noexcept;
   void release();

@@ -41,7 +41,7 @@ const std::vector<Rule>& rules() {
       {"src/algorithms/", algorithm},
       {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")" +
                            R"(|"algorithms/hierarchical_grid/tracker\.hpp")"},
-      {"src/world/", interface + R"(|"world/[a-z_]+\.hpp")"},
+      {"src/world/", interface + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"interface/outline_text\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},

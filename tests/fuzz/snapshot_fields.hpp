@@ -100,7 +100,7 @@ struct SnapshotFields {
 /// Takes fields from the bytes of a snapshot.
 class FieldReader {
  public:
-  explicit FieldReader(std::span<const std::byte> bytes) : in_(bytes) {}
+  explicit FieldReader(std::span<const std::byte> bytes) : in_(bytes, snapshot::version) {}
 
   template <typename T>
   void number(T& value) {

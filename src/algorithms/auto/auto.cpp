@@ -93,6 +93,8 @@ constexpr std::array<std::string_view, 9> chosen_algorithm = {
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D> {
  public:
+  Outlined<D>* outlined() noexcept override { return this; }
+
   std::string explanation() const override {
     std::string text = reason();
     if (has_handed_over_)
@@ -140,7 +142,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     has_handed_over_ = false;
     PairFinder<D>& finder = chosen_for(boxes);
     this->search_with(finder, boxes, pairs);
-    const auto* search = dynamic_cast<const core::Yielding<D>*>(&finder);
+    const core::Yielding<D>* const search = finder.yielding();
     if (search == nullptr || !search->has_yielded()) return;
     has_handed_over_ = true;
     Statistics statistics = this->statistics().value_or(Statistics{});
@@ -160,7 +162,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (!finder) {
       const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
       finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
-      if (auto* search = dynamic_cast<core::Yielding<D>*>(finder.get())) search->let_yield();
+      if (core::Yielding<D>* const search = finder->yielding()) search->let_yield();
     }
     return *finder;
   }

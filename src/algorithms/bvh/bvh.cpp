@@ -23,6 +23,9 @@ namespace {
 template <int D>
 class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
+  Outlined<D>* outlined() noexcept override { return this; }
+  core::Yielding<D>* yielding() noexcept override { return this; }
+
   /// A leaf is joined with all behind it.
   bool is_left(const Box<D>&, BoxId a, const Box<D>&, BoxId b) const override {
     return !is_joined_[index(a)] && !is_joined_[index(b)];

@@ -35,6 +35,9 @@ namespace {
 template <int D>
 class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
+  Outlined<D>* outlined() noexcept override { return this; }
+  core::Yielding<D>* yielding() noexcept override { return this; }
+
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
 
   /// Cells are swept in order, slab by slab; in each slab up to where it gave up.

@@ -24,6 +24,9 @@ namespace {
 
 template <int D>
 class HierarchicalGrid final : public PairFinder<D>, public Outlined<D> {
+ public:
+  Outlined<D>* outlined() noexcept override { return this; }
+
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     cells_.build(boxes, boxes);

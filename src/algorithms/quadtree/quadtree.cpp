@@ -44,6 +44,8 @@ constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 template <int D>
 class Quadtree final : public PairFinder<D>, public Outlined<D> {
  public:
+  Outlined<D>* outlined() noexcept override { return this; }
+
   explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
 
  private:

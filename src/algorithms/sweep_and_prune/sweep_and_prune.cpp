@@ -43,6 +43,9 @@ constexpr std::size_t rows_at_once = 64;
 template <int D>
 class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
  public:
+  Outlined<D>* outlined() noexcept override { return this; }
+  core::Yielding<D>* yielding() noexcept override { return this; }
+
   explicit SweepAndPrune(const Settings& settings) {
     if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
     if (!settings.is_auto("axes")) axes_ = static_cast<int>(settings.text("axes")[0] - '0');

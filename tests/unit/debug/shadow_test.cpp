@@ -182,7 +182,7 @@ TEST(ShadowTracker, RefusesAChangeThatIsNotListed) {
   std::vector<Box2> boxes = {at(0), at(5)};
   update(shadow, {boxes, {}});
   boxes[1] = at(7);
-  const std::string message = message_of<InvalidInput>([&] { update(shadow, {boxes, {}}); });
+  const std::string message = message_of<InvalidFrame>([&] { update(shadow, {boxes, {}}); });
   EXPECT_THAT(message, HasSubstr("frame 1: box 1 had min (5, 0) and max (6, 1), has now min (7, 0)"));
   EXPECT_THAT(message, HasSubstr("not listed"));
   boxes[1] = at(0);
@@ -195,7 +195,7 @@ TEST(ShadowTracker, RefusesAFilterThatIsNotListed) {
   std::vector<Filter> filters(2);
   update(shadow, {boxes, {}, filters});
   filters[0].mask = 0;
-  EXPECT_THAT(message_of<InvalidInput>([&] {
+  EXPECT_THAT(message_of<InvalidFrame>([&] {
                 update(shadow, {boxes, {}, filters});
               }),
               HasSubstr("box 0 has another filter"));
@@ -207,7 +207,7 @@ TEST(ShadowTracker, RefusesAnIgnoredPairThatIsNotListed) {
   IgnoredPairs ignored;
   EXPECT_EQ(update(shadow, {boxes, {}, {}, &ignored}).begun.size(), 1u);
   ignored.insert(pair(0, 1));
-  EXPECT_THAT(message_of<InvalidInput>([&] {
+  EXPECT_THAT(message_of<InvalidFrame>([&] {
                 update(shadow, {boxes, {}, {}, &ignored});
               }),
               HasSubstr("the pair (0, 1)"));

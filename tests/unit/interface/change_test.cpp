@@ -213,7 +213,7 @@ TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
   EXPECT_EQ(update(tracker, {boxes, {}}), (Events{without_one, {}}));
   EXPECT_EQ(tracker.changed(), 3u);
   filters.pop_back();
-  EXPECT_EQ(message_of<InvalidInput>([&] {
+  EXPECT_EQ(message_of<InvalidFrame>([&] {
               update(tracker, {boxes, {}, filters});
             }),
             "2 filters for a frame of 3 boxes; expected one for each box, or none");

@@ -85,7 +85,7 @@ TEST(InputCheck, WritesNumbersTheSameWayInAnyLocale) {
 TEST(InputCheck, RefusesMoreBoxesThanIds) {
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
   EXPECT_NO_THROW(core::check_count(most));
-  EXPECT_EQ(message_of<InvalidInput>([] { core::check_count(most + 1); }),
+  EXPECT_EQ(message_of<InvalidFrame>([] { core::check_count(most + 1); }),
             "4294967296 boxes; expected at most 4294967295");
 }
 

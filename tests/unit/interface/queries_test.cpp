@@ -138,9 +138,9 @@ TEST(BoxIndex, KeepsItsAnswersWhenAFrameIsRefused) {
   EXPECT_THROW(index->update({.boxes = boxes, .changed = changed}), InvalidInput);
   EXPECT_THAT(overlapping(*index, {{4, 0}, {4, 0}}), ElementsAre(BoxId(2)));
   const std::vector beyond = {BoxId(50)};
-  EXPECT_THROW(index->update({.boxes = row(50), .changed = beyond}), InvalidInput);
+  EXPECT_THROW(index->update({.boxes = row(50), .changed = beyond}), InvalidFrame);
   const std::vector<Filter> filters(49);
-  EXPECT_THROW(index->update({.boxes = row(50), .changed = {}, .filters = filters}), InvalidInput);
+  EXPECT_THROW(index->update({.boxes = row(50), .changed = {}, .filters = filters}), InvalidFrame);
 }
 
 TEST(BoxIndex, EndsASearchWhenTheVisitorSaysSo) {
@@ -207,18 +207,18 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   const Ray<2> good{{0, 0}, {1, 0}};
   Ray<2> bad = good;
   bad.origin[1] = infinity;
-  EXPECT_THAT(message_of<InvalidInput>([&] { index->first_hit(bad); }), HasSubstr("0, inf; expected finite"));
+  EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("0, inf; expected finite"));
   bad = good;
   bad.direction[0] = not_a_number;
-  EXPECT_THAT(message_of<InvalidInput>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
+  EXPECT_THAT(message_of<InvalidQuery>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
   bad = good;
   bad.furthest = -1;
-  EXPECT_THAT(message_of<InvalidInput>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
-  EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidInput);
-  EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidInput);
-  EXPECT_THROW(index->holding({0, not_a_number}, ignore), InvalidInput);
-  EXPECT_THROW(index->nearest({0, not_a_number}, 1, found), InvalidInput);
-  EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidInput);
+  EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
+  EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidQuery);
+  EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
+  EXPECT_THROW(index->holding({0, not_a_number}, ignore), InvalidQuery);
+  EXPECT_THROW(index->nearest({0, not_a_number}, 1, found), InvalidQuery);
+  EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidQuery);
 }
 
 TEST(BoxIndex, LetsAVisitorsExceptionThroughAndGoesOn) {

@@ -171,7 +171,7 @@ TEST(PairTracker, RefusesAnIdBeyondThisFrameAndTheLast) {
   const auto tracker = diff_tracker();
   update(*tracker, {at(0), at(1), at(2)}, {});
   EXPECT_NO_THROW(update(*tracker, {at(0)}, {BoxId{2}}));
-  EXPECT_EQ(message_of<InvalidInput>([&] {
+  EXPECT_EQ(message_of<InvalidFrame>([&] {
               update(*tracker, {at(0), at(1)}, {BoxId{2}});
             }),
             "changed box 2 of a frame of 2 boxes; expected a place in this frame or the last");
@@ -183,7 +183,7 @@ TEST(PairTracker, IsUnchangedByAFrameThatWasRefused) {
   const Box2 wrong = {{0, 0}, {1, -1}};
   EXPECT_THROW(update(*tracker, {at(9), wrong, at(0)}, {BoxId{0}, BoxId{1}}), InvalidInput);
   EXPECT_THROW(update(*tracker, {at(9), at(1), wrong}, {BoxId{0}}), InvalidInput);
-  EXPECT_THROW(update(*tracker, {at(9), at(1)}, {BoxId{0}, BoxId{2}}), InvalidInput);
+  EXPECT_THROW(update(*tracker, {at(9), at(1)}, {BoxId{0}, BoxId{2}}), InvalidFrame);
   const Events rest = update(*tracker, {at(0), at(1)}, {});
   EXPECT_TRUE(rest.begun.empty());
   EXPECT_TRUE(rest.ended.empty());

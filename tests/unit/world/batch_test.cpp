@@ -132,7 +132,7 @@ TEST_F(WorldBatchTest, ShiftsTheOrigin) {
   EXPECT_TRUE(events.begun.empty());
   EXPECT_TRUE(events.ended.empty());
   EXPECT_EQ(world_.pairs().size(), 1u);
-  EXPECT_EQ(message_of<InvalidInput>([&] {
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
               world_.shift_origin({0, nan});
             }),
             "coordinate 1 of a new origin is nan; expected a finite number");

@@ -342,9 +342,9 @@ TEST(Snapshot, SaysWhatItIsNotASnapshotOf) {
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { deep.restore(bytes); }),
               HasSubstr("the dimension of a snapshot is 2; expected 3"));
   Bytes newer = bytes;
-  newer[8] = std::byte{2};
+  newer[8] = std::byte{3};
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(newer); }),
-              HasSubstr("the version of a snapshot is 2; expected 1"));
+              HasSubstr("the version of a snapshot is 3; expected 2"));
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(std::span(bytes).first(3)); }),
               HasSubstr("expected"));
   World2 choosy;
@@ -421,7 +421,7 @@ TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {
   // One part a line; docs/snapshot-format.md has the same. A change of these bytes is a new version.
   EXPECT_EQ(text,
             "894257530d0a1a0a"                  // magic number
-            "01000000"                          // version 1
+            "02000000"                          // version 2
             "02040201"                          // 2D, coordinates of 4 bytes, byte order
             "8301000000000000"                  // length: 387
             "43000000"                          // flags: keeps pairs, own algorithm, has had an update

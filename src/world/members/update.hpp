@@ -3,6 +3,8 @@
 //
 // Each step first does all that can fail and then changes something, so that an update that throws can be
 // tried again: what its steps had done by then waits in `candidates`, `fresh` and `refined`.
+#pragma once
+
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -229,10 +231,5 @@ void World<D, Real>::State::settle() noexcept {
     is_refining = false;
   }
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

@@ -1,4 +1,5 @@
 // World: snapshots. What stands in their bytes is described in docs/snapshot-format.md.
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -143,20 +144,21 @@ void World<D, Real>::State::put(ByteWriter& out, std::span<const HandlePair> pai
 template <int D, typename Real>
 void World<D, Real>::restore(std::span<const std::byte> bytes) {
   const core::DefaultEnvironment environment;
-  ByteReader in(bytes);
+  ByteReader in(bytes, snapshot::version);
   for (const unsigned char byte : snapshot::magic)
     expect_equal("a byte of the magic number", in.get<unsigned char>(), byte);
-  expect_equal("the version", in.get<std::uint32_t>(), snapshot::version);
+  const auto version = in.get<std::uint32_t>();
+  if (version != 1) expect_equal("the version", version, snapshot::version);
   expect_equal("the dimension", int{in.get<std::uint8_t>()}, D);
   expect_equal("the size of a coordinate", std::size_t{in.get<std::uint8_t>()}, sizeof(Real));
   expect_equal("the byte order", in.get<std::uint16_t>(), snapshot::byte_order);
   expect_equal("the length", in.get<std::uint64_t>(), std::uint64_t{bytes.size()});
   in.need(1, snapshot::checksum_bytes, "bytes of a checksum");
   const auto body = bytes.first(bytes.size() - snapshot::checksum_bytes);
-  ByteReader end(bytes.last(snapshot::checksum_bytes));
+  ByteReader end(bytes.last(snapshot::checksum_bytes), version);
   expect_equal("the checksum", end.get<std::uint32_t>(), ByteWriter::checksum_of(body));
 
-  ByteReader rest(body.subspan(bytes.size() - in.left()));
+  ByteReader rest(body.subspan(bytes.size() - in.left()), version);
   typename State::LastFrame last;
   std::unique_ptr<State> restored = State::get(rest, *state_, last);
   expect_equal("the number of bytes behind the end", rest.left(), std::size_t{0});
@@ -176,10 +178,5 @@ std::vector<Pair> World<D, Real>::State::graph_pairs(bool (*is_wanted)(const cor
   std::ranges::sort(edges);
   return edges;
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

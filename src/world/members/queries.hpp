@@ -1,9 +1,10 @@
 // World: its index for queries, built when the first one is asked.
-#include "broadside/queries.hpp"
+#pragma once
 
 #include <mutex>
 #include <vector>
 
+#include "broadside/queries.hpp"
 #include "broadside/world.hpp"
 
 #include "world/state.hpp"
@@ -61,10 +62,5 @@ void World<D, Real>::State::drop_index() noexcept {
   unindexed = {};
   is_indexed.store(false, std::memory_order_relaxed);
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

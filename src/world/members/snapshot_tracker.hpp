@@ -1,4 +1,6 @@
 // World: the way from what its tracker knows to what the tracker of a snapshot knew.
+#pragma once
+
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -141,10 +143,5 @@ void World<D, Real>::State::take_tracker(State& other, const LastFrame& last) {
   }
   tracker = std::move(other.tracker);
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

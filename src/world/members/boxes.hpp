@@ -1,5 +1,5 @@
 // World: slots, their boxes, and the handles that name them.
-#include "broadside/world.hpp"
+#pragma once
 
 #include <cmath>
 #include <stdexcept>
@@ -8,6 +8,7 @@
 
 #include "broadside/error.hpp"
 #include "broadside/shadow.hpp"
+#include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
 #include "interface/encloses.hpp"
@@ -314,10 +315,5 @@ void World<D, Real>::State::mark_moved(std::uint32_t slot) noexcept {
   slots[slot].is_moved = true;
   moved.push_back(BoxId{slot});
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

@@ -1,4 +1,6 @@
 // World: the pairs that hold, and those between two worlds.
+#pragma once
+
 #include <algorithm>
 #include <iterator>
 #include <mutex>
@@ -60,10 +62,5 @@ void World<D, Real>::join(const World& other, std::vector<HandlePair>& pairs) co
   finder->find_between(left.boxes, right.boxes, collector);
   std::ranges::sort(pairs);
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

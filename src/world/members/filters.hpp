@@ -1,4 +1,6 @@
 // World: which overlapping boxes count as pairs.
+#pragma once
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -108,10 +110,5 @@ template <int D, typename Real>
 void World<D, Real>::refilter() {
   state_->refilters_all |= static_cast<bool>(state_->predicate);
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

@@ -1,6 +1,6 @@
 // World: what must hold of a snapshot's parts together, so that update(), pairs() and queries can rely on it.
-// Each part alone is checked where it is read, in world_snapshot_restore.cpp.
-#include "world/snapshot_check.hpp"
+// Each part alone is checked where it is read, in snapshot_restore.hpp.
+#pragma once
 
 #include <algorithm>
 #include <string>
@@ -9,6 +9,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "world/snapshot_check.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
@@ -132,10 +133,5 @@ void World<D, Real>::State::check_pairs(const Pairs& tracked) const {
   expect_within(slots_of(begun), told, "began with the last update; expected it to hold");
   expect_apart(slots_of(ended), told, "ended with the last update; expected it not to hold");
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

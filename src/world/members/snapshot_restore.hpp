@@ -1,5 +1,7 @@
 // World: what a snapshot says, checked. How a tracker comes to know what the snapshot's knew is in
-// world_snapshot_tracker.cpp.
+// snapshot_tracker.hpp.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -275,10 +277,5 @@ void World<D, Real>::State::get_pairs_and_events(ByteReader& in) {
   fresh = get_pairs(in, slots.size(), "new candidates");
   expect(is_refining || (refined.empty() && fresh.empty()), "it refines no pairs and has refined some");
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

@@ -1,4 +1,6 @@
 // World: many boxes at once, all or none; and all of them in a new origin.
+#pragma once
+
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -94,9 +96,8 @@ void World<D, Real>::shift_origin(const std::array<Real, D>& origin) {
   State& state = *state_;
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(origin[axis])) continue;
-    throw InvalidInput(static_cast<std::size_t>(axis),
-                       "coordinate " + std::to_string(axis) + " of a new origin is " +
-                           std::to_string(origin[axis]) + "; expected a finite number");
+    throw std::invalid_argument("coordinate " + std::to_string(axis) + " of a new origin is " +
+                                std::to_string(origin[axis]) + "; expected a finite number");
   }
   make_room(state.changed, state.slots.size());
   make_room(state.moved, state.slots.size());
@@ -116,10 +117,5 @@ void World<D, Real>::shift_origin(const std::array<Real, D>& origin) {
   for (auto& removed : state.removed) removed.box = shifted(removed.box);
   for (auto& reported : state.reported) reported.box = shifted(reported.box);
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside

@@ -1,4 +1,6 @@
 // World: the memory it holds, how it is given back, and what there is to count.
+#pragma once
+
 #include <algorithm>
 #include <utility>
 
@@ -121,10 +123,5 @@ WorldStatistics World<D, Real>::statistics() const {
   bytes.tracker = state.tracker->bytes();
   return statistics;
 }
-
-template class World<2, float>;
-template class World<2, double>;
-template class World<3, float>;
-template class World<3, double>;
 
 }  // namespace broadside
