@@ -2,11 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstring>
 #include <limits>
+#include <ranges>
+#include <type_traits>
 
 #include "broadside/cpp_version.hpp"
 
 namespace broadside {
+
+/// A place, a direction or a size in D dimensions.
+template <int D, typename Real = float>
+using Point = std::array<Real, static_cast<std::size_t>(D)>;
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
@@ -19,8 +27,8 @@ namespace broadside {
 /// Functions that are inline in these headers, such as overlap(), compute in the caller's.
 template <int D, typename Real = float>
 struct Box {
-  std::array<Real, D> min;
-  std::array<Real, D> max;
+  Point<D, Real> min;
+  Point<D, Real> max;
 
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
@@ -50,7 +58,7 @@ constexpr bool is_absent(const Box<D, Real>& box) noexcept {
 template <int D, typename Real>
 constexpr bool is_present(const Box<D, Real>& box) noexcept {
   bool present = true;
-  for (int axis = 0; axis < D; ++axis) present &= box.min[axis] <= box.max[axis];
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) present &= box.min[axis] <= box.max[axis];
   return present;
 }
 
@@ -58,11 +66,50 @@ constexpr bool is_present(const Box<D, Real>& box) noexcept {
 template <int D, typename Real>
 constexpr bool overlap(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   bool touching = true;
-  for (int axis = 0; axis < D; ++axis) {
+  for (std::size_t axis = 0; axis < a.min.size(); ++axis) {
     touching &= a.min[axis] <= b.max[axis];
     touching &= b.min[axis] <= a.max[axis];
   }
   return touching;
 }
+
+/// Boxes where they are: in an array of boxes, or in structs of the caller's own, one every `stride` bytes.
+/// Nothing is copied; the memory must outlive the view.
+template <int D, typename Real = float>
+class BoxView {
+ public:
+  BoxView() = default;
+
+  /// The boxes of a std::vector, std::array, std::span ...
+  template <std::ranges::contiguous_range Boxes>
+  requires std::ranges::sized_range<Boxes> &&
+      std::is_same_v<std::remove_cv_t<std::ranges::range_value_t<Boxes>>, Box<D, Real>>
+  constexpr BoxView(const Boxes& boxes) : boxes_(std::ranges::data(boxes)), size_(std::ranges::size(boxes)) {}
+
+  /// `count` boxes of which the first begins at `first`, each `stride` bytes behind the one before. A box is
+  /// its D minima and then its D maxima, as in Box, aligned or not.
+  BoxView(const void* first, std::size_t count, std::size_t stride)
+      : first_(static_cast<const std::byte*>(first)), stride_(stride), size_(count) {}
+
+  constexpr std::size_t size() const noexcept { return size_; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+
+  constexpr Box<D, Real> operator[](std::size_t place) const noexcept {
+    if (first_ == nullptr) return boxes_[place];
+    Box<D, Real> box;
+    std::memcpy(&box, first_ + place * stride_, sizeof(box));
+    return box;
+  }
+
+  /// The boxes as an array, if that is what they were given as; else null.
+  constexpr const Box<D, Real>* array() const noexcept { return first_ == nullptr ? boxes_ : nullptr; }
+  constexpr bool is_array() const noexcept { return first_ == nullptr; }
+
+ private:
+  const Box<D, Real>* boxes_ = nullptr;
+  const std::byte* first_ = nullptr;
+  std::size_t stride_ = 0;
+  std::size_t size_ = 0;
+};
 
 }  // namespace broadside

@@ -66,4 +66,15 @@ class IgnoredPairs {
   std::unordered_set<std::uint64_t> keys_;
 };
 
+/// Which overlapping boxes of one search count as pairs; all, where nothing is given.
+struct PairFilters {
+  std::span<const Filter> filters{};        ///< one for each box (of the left set), or none
+  std::span<const Filter> right_filters{};  ///< of two sets: one for each box of the right one, or none
+  const IgnoredPairs* ignored = nullptr;    ///< pairs that never count; of one set only
+
+  bool empty() const noexcept {
+    return filters.empty() && right_filters.empty() && (ignored == nullptr || ignored->empty());
+  }
+};
+
 }  // namespace broadside

@@ -29,10 +29,22 @@ struct HandlePair {
   friend constexpr auto operator<=>(const HandlePair&, const HandlePair&) = default;
 };
 
+/// The user data of a pair's boxes.
+struct UserDataPair {
+  std::uint64_t first;
+  std::uint64_t second;
+
+  friend constexpr bool operator==(const UserDataPair&, const UserDataPair&) = default;
+};
+
 /// What one update brought, sorted by slots. Valid until the next update of the world it came from.
 struct Events {
   std::span<const HandlePair> begun;
   std::span<const HandlePair> ended;
+
+  /// The user data of these pairs' boxes, one for each; empty in a world whose boxes never had any.
+  std::span<const UserDataPair> begun_data{};
+  std::span<const UserDataPair> ended_data{};
 };
 
 namespace detail {

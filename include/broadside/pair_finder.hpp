@@ -1,6 +1,7 @@
 // PairFinder: boxes to pairs, from nothing, at each call. The interface of every algorithm.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/statistics.hpp"
 
@@ -39,12 +41,15 @@ class PairFinder {
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
   /// max without being absent, unless bad_input() says otherwise; and what the sink throws.
-  void find(std::span<const Box<D, Real>> boxes, PairSink& pairs);
+  /// Boxes that are no array are gathered first. With `filters`, pairs that they do not let count are not
+  /// written; throws InvalidFrame if there are some and not one for each box.
+  void find(BoxView<D, Real> boxes, PairSink& pairs, const PairFilters& filters = {});
 
   /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
   /// is a place in `left` and its second one in `right`, so the two may be equal. No pair within a set is
   /// ever written; the library's own algorithms do not even look for one. Throws as find() does.
-  void find_between(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right, PairSink& pairs);
+  void find_between(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs,
+                    const PairFilters& filters = {});
 
   /// The same for two sets that lie one behind the other: the first `left_count` <= boxes.size() boxes are
   /// the left set. Where none is absent this saves copying them.
@@ -103,12 +108,16 @@ class PairFinder {
   /// Checks the boxes, and returns how many are absent or quarantined.
   std::size_t check(std::span<const Box<D, Real>> boxes) const;
 
+  /// The boxes as an array: themselves, or gathered into `scratch`.
+  static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& scratch);
+
   /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
   void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first);
 
   /// Appends the present ones of `boxes` to present_ and their places to ids_.
   void take_present(std::span<const Box<D, Real>> boxes);
 
+  std::array<std::vector<Box<D, Real>>, 2> gathered_;  // boxes that were given as no array
   std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
   std::vector<BoxId> ids_;             // and their places in the caller's array
   std::vector<BoxId> quarantined_;

@@ -63,7 +63,7 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 template <int D, typename Real = float>
 class BoxIndex {
  public:
-  using Point = std::array<Real, D>;
+  using Point = broadside::Point<D, Real>;
 
   BoxIndex() = default;
   BoxIndex(const BoxIndex&) = delete;

@@ -15,16 +15,16 @@ namespace broadside {
 /// direction's length, which may be any. A direction of zeros is a point.
 template <int D, typename Real = float>
 struct Ray {
-  std::array<Real, D> origin;     ///< finite
-  std::array<Real, D> direction;  ///< finite
+  Point<D, Real> origin;     ///< finite
+  Point<D, Real> direction;  ///< finite
   Real furthest = std::numeric_limits<Real>::infinity();
 };
 
 /// A box moved along a direction: it stands at `box` + t * direction, 0 <= t <= furthest.
 template <int D, typename Real = float>
 struct BoxCast {
-  Box<D, Real> box;               ///< finite, min <= max
-  std::array<Real, D> direction;  ///< finite
+  Box<D, Real> box;          ///< finite, min <= max
+  Point<D, Real> direction;  ///< finite
   Real furthest = std::numeric_limits<Real>::infinity();
 };
 
@@ -38,7 +38,7 @@ template <int D, typename Real>
 constexpr std::optional<Real> entry(const BoxCast<D, Real>& cast, const Box<D, Real>& box) noexcept {
   Real enter = 0;
   Real leave = cast.furthest;
-  for (int axis = 0; axis < D; ++axis) {
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
     const Real direction = cast.direction[axis];
     const Real before = box.min[axis] - cast.box.max[axis];
     const Real behind = box.max[axis] - cast.box.min[axis];
@@ -72,7 +72,6 @@ constexpr std::optional<Real> entry(const Ray<D, Real>& ray, const Box<D, Real>&
 ///
 /// Compiled in the library, so that no program's compiler rounds it in another way.
 template <int D, typename Real>
-Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
-                      const Box<D, Real>& box) noexcept;
+Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const Box<D, Real>& box) noexcept;
 
 }  // namespace broadside

@@ -75,15 +75,14 @@ class World {
   /// boxes; `options` are one for each box, or none. Adding a million boxes to an empty world is one build at
   /// the next update. Throws std::invalid_argument if the lengths differ; of a handle given twice, the last
   /// move counts and the second removal is refused.
-  void add(std::span<const Box<D, Real>> boxes, std::span<Handle> handles,
-           std::span<const BoxOptions> options = {});
-  void move(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes);
+  void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options = {});
+  void move(std::span<const Handle> handles, BoxView<D, Real> boxes);
   void remove(std::span<const Handle> handles);
 
   /// Makes `origin` the new origin: subtracts it from all coordinates. O(slots), and the next update has
   /// everything changed. Pairs that rounding makes or parts begin or end there. Throws
   /// std::invalid_argument if a coordinate of `origin` is not finite.
-  void shift_origin(const std::array<Real, D>& origin);
+  void shift_origin(const Point<D, Real>& origin);
 
   /// Replaces a box's filter. O(1), but the first one other than the standard one makes the next update take
   /// all boxes for changed. Throws InvalidHandle.
@@ -119,8 +118,9 @@ class World {
   std::span<const HandlePair> persisting() const;
 
   /// Puts into `pairs` those of a box of this world and an overlapping one of `other`, if their filters
-  /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Cost:
-  /// one search between two sets, which takes memory of its own.
+  /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Found
+  /// by this world's algorithm, or by the standard one where the tracker is the caller's. Cost: one search
+  /// between two sets, whose memory is kept for the next join.
   void join(const World& other, std::vector<HandlePair>& pairs) const;
 
   /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
@@ -133,7 +133,7 @@ class World {
         box, [&](BoxId id) { return function(handle_of(id)); }, asker);
   }
   template <typename Function>
-  bool holding(const std::array<Real, D>& point, Function&& function, const Filter* asker = nullptr) const {
+  bool holding(const Point<D, Real>& point, Function&& function, const Filter* asker = nullptr) const {
     return box_index().holding(
         point, [&](BoxId id) { return function(handle_of(id)); }, asker);
   }
@@ -150,7 +150,7 @@ class World {
   }
 
   /// Sets `found` to the nearest boxes, as BoxIndex::nearest() does; equally distant ones by slot.
-  void nearest(const std::array<Real, D>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
+  void nearest(const Point<D, Real>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
                const Filter* asker = nullptr) const;
 
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until

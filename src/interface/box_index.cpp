@@ -30,10 +30,10 @@ template <typename Real>
 
 template <int D, typename Real>
 void check(const BoxCast<D, Real>& cast) {
-  const auto are_finite = [](const std::array<Real, D>& values) {
+  const auto are_finite = [](const Point<D, Real>& values) {
     return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
   };
-  if (!is_present(cast.box)) core::refuse_box(cast.box, 0, "the box that is cast");
+  if (!is_present(cast.box)) throw InvalidQuery(core::fault_of(cast.box, "the box that is cast"));
   for (const auto& corner : {cast.box.min, cast.box.max}) {
     if (!are_finite(corner)) refuse("a ray's origin or a cast box", corner.data(), D, "finite numbers");
   }
@@ -59,8 +59,7 @@ class CallersVisitor final : public Visitor<Found> {
 }  // namespace
 
 template <int D, typename Real>
-Real distance_squared(const std::type_identity_t<std::array<Real, D>>& point,
-                      const Box<D, Real>& box) noexcept {
+Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const Box<D, Real>& box) noexcept {
   const core::DefaultEnvironment environment;
   const volatile Real result = core::squared_distance<D, Real>(point, box);
   return result;
@@ -114,7 +113,7 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
   const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
-    core::refuse_box(box, 0, "the box or point asked about");
+    throw InvalidQuery(core::fault_of(box, "the box or point asked about"));
   }
   if (dirty_) return true;
   if (!environment.is_foreign()) return find_overlapping(box, visitor, asker);

@@ -78,6 +78,51 @@ class CrossingSink final : public core::FilterSink {
   std::uint32_t left_count_;
 };
 
+/// Passes on pairs that filters let count.
+class FilteringSink final : public core::FilterSink {
+ public:
+  /// Of two sets if `right` is not null.
+  FilteringSink(std::span<const Filter> left, const std::span<const Filter>* right,
+                const IgnoredPairs* ignored, PairSink& target)
+      : FilterSink(target), left_(left), right_(right), ignored_(ignored) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<FilteringSink>(left_, right_, ignored_, target);
+  }
+
+ private:
+  static Filter filter_of(std::span<const Filter> filters, BoxId id) {
+    return filters.empty() ? Filter{} : filters[index(id)];
+  }
+
+  void consume(std::span<const Pair> pairs) override {
+    const std::span<const Filter> right = right_ == nullptr ? left_ : *right_;
+    while (!pairs.empty()) {
+      const std::size_t count = std::min(pairs.size(), max_room);
+      Pair* const out = target().room(count);
+      std::size_t written = 0;
+      for (const Pair pair : pairs.first(count)) {
+        out[written] = pair;
+        written +=
+            static_cast<std::size_t>(accepts(filter_of(left_, pair.first), filter_of(right, pair.second)) &&
+                                     (ignored_ == nullptr || !ignored_->contains(pair)));
+      }
+      target().commit(written);
+      pairs = pairs.subspan(count);
+    }
+  }
+
+  std::span<const Filter> left_;
+  const std::span<const Filter>* right_;
+  const IgnoredPairs* ignored_;
+};
+
+void check_filters(std::span<const Filter> filters, std::size_t boxes, const char* set) {
+  if (filters.empty() || filters.size() == boxes) return;
+  throw InvalidFrame(std::to_string(filters.size()) + " filters for " + std::to_string(boxes) + set +
+                     " boxes; expected one for each box, or none");
+}
+
 /// Checks one of two sets by `check` and returns how many boxes are absent; a box at fault is named as one of
 /// `side`.
 template <typename Check>
@@ -104,11 +149,28 @@ void deliver(PairSink& pairs, Search search) {
 }  // namespace
 
 template <int D, typename Real>
-void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pairs) {
+std::span<const Box<D, Real>> PairFinder<D, Real>::array_of(BoxView<D, Real> boxes,
+                                                            std::vector<Box<D, Real>>& scratch) {
+  if (boxes.is_array()) return {boxes.array(), boxes.size()};
+  scratch.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) scratch[i] = boxes[i];
+  return scratch;
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {
   const core::DefaultEnvironment environment;
   if (environment.is_foreign())
-    return core::search_for_caller(pairs, [&](PairSink& sink) { find(boxes, sink); });
-  core::check_count(boxes.size());
+    return core::search_for_caller(pairs, [&](PairSink& sink) { find(view, sink, filters); });
+  core::check_count(view.size());
+  if (!filters.right_filters.empty())
+    throw InvalidFrame("filters of a right set for a search in one set; expected none");
+  if (!filters.empty()) {
+    check_filters(filters.filters, view.size(), "");
+    FilteringSink filtered(filters.filters, nullptr, filters.ignored, pairs);
+    return deliver(pairs, [&] { find(view, filtered); });
+  }
+  const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
   const std::size_t absent = check(boxes);
   quarantined_.clear();
   if (absent > 0) list_invalid(boxes, 0);
@@ -129,12 +191,23 @@ void PairFinder<D, Real>::find(std::span<const Box<D, Real>> boxes, PairSink& pa
 }
 
 template <int D, typename Real>
-void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> left,
-                                       std::span<const Box<D, Real>> right, PairSink& pairs) {
+void PairFinder<D, Real>::find_between(BoxView<D, Real> left_view, BoxView<D, Real> right_view,
+                                       PairSink& pairs, const PairFilters& filters) {
   const core::DefaultEnvironment environment;
   if (environment.is_foreign())
-    return core::search_for_caller(pairs, [&](PairSink& sink) { find_between(left, right, sink); });
-  core::check_count(left.size() + right.size());
+    return core::search_for_caller(
+        pairs, [&](PairSink& sink) { find_between(left_view, right_view, sink, filters); });
+  core::check_count(left_view.size() + right_view.size());
+  if (!filters.empty()) {
+    if (filters.ignored != nullptr && !filters.ignored->empty())
+      throw InvalidFrame("ignored pairs for a search between two sets; expected none");
+    check_filters(filters.filters, left_view.size(), " left");
+    check_filters(filters.right_filters, right_view.size(), " right");
+    FilteringSink filtered(filters.filters, &filters.right_filters, nullptr, pairs);
+    return deliver(pairs, [&] { find_between(left_view, right_view, filtered); });
+  }
+  const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
+  const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
   const std::size_t absent_left = check_side("left", [&] { return check(left); });
   const std::size_t absent_right = check_side("right", [&] { return check(right); });
   quarantined_.clear();

@@ -21,9 +21,9 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
 template <int D, typename Real>
 bool is_present_by_value(const Box<D, Real>& box) noexcept;
 
-/// Throws InvalidInput with the box's values, which `name` goes before.
+/// What is wrong with a box that is not present, for an exception: its values, which `name` goes before.
 template <int D, typename Real>
-[[noreturn]] void refuse_box(const Box<D, Real>& box, std::size_t index, const std::string& name);
+std::string fault_of(const Box<D, Real>& box, const std::string& name);
 
 /// Throws InvalidInput, naming `index` and the box's values, unless `box` is present or absent.
 template <int D, typename Real>
@@ -35,7 +35,7 @@ template <int D, typename Real>
 std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from = 0,
                         BadInput bad_input = BadInput::reject);
 
-/// Throws InvalidInput if there are more boxes than ids.
+/// Throws InvalidFrame if there are more boxes than ids.
 void check_count(std::size_t count);
 
 }  // namespace broadside::core

@@ -9,7 +9,7 @@ namespace broadside::core {
 
 /// distance_squared() for code that is in a DefaultEnvironment already.
 template <int D, typename Real>
-Real squared_distance(const std::array<Real, D>& point, const Box<D, Real>& box) noexcept {
+Real squared_distance(const Point<D, Real>& point, const Box<D, Real>& box) noexcept {
   Real sum = 0;
   for (int axis = 0; axis < D; ++axis) {
     Real outside = 0;

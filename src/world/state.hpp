@@ -198,6 +198,8 @@ struct World<D, Real>::State {
 
   std::vector<HandlePair> begun;  // by the last update
   std::vector<HandlePair> ended;
+  std::vector<UserDataPair> begun_data;  // of their boxes; empty without user data
+  std::vector<UserDataPair> ended_data;
   std::size_t pair_count = 0;
 
   // Readers, of which there may be several, bring these up to date when first asked.
@@ -206,7 +208,9 @@ struct World<D, Real>::State {
   mutable std::atomic<bool> is_current = true;
   mutable std::vector<HandlePair> persisting;
   mutable std::atomic<bool> is_persisting = false;
-  mutable std::unique_ptr<BoxIndex<D, Real>> queried;  // null until a query is asked
+  mutable std::mutex join_in_progress;
+  mutable std::unique_ptr<PairFinder<D, Real>> join_finder;  // null until worlds are joined
+  mutable std::unique_ptr<BoxIndex<D, Real>> queried;        // null until a query is asked
   mutable std::vector<BoxId> unindexed;  // changes that updates have taken and the index has not
   mutable std::atomic<bool> is_indexed = false;
 };

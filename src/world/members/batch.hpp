@@ -25,7 +25,7 @@ void check_lengths(std::size_t found, const char* things, std::size_t boxes) {
 }  // namespace
 
 template <int D, typename Real>
-void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> handles,
+void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
                          std::span<const BoxOptions> options) {
   check_lengths(handles.size(), "handles", boxes.size());
   if (!options.empty()) check_lengths(options.size(), "options", boxes.size());
@@ -42,8 +42,9 @@ void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> 
   std::vector<Box<D, Real>> copies;
   const std::less<const Box<D, Real>*> is_before;
   const std::span<const Box<D, Real>> own = state_->boxes;
-  if (!is_before(boxes.data(), own.data()) && is_before(boxes.data(), own.data() + own.size())) {
-    copies.assign(boxes.begin(), boxes.end());
+  if (boxes.is_array() && !is_before(boxes.array(), own.data()) &&
+      is_before(boxes.array(), own.data() + own.size())) {
+    copies.assign(boxes.array(), boxes.array() + boxes.size());
     boxes = copies;
   }
   state_->reserve(boxes.size(), has_filters, has_user_data);
@@ -52,7 +53,7 @@ void World<D, Real>::add(std::span<const Box<D, Real>> boxes, std::span<Handle> 
 }
 
 template <int D, typename Real>
-void World<D, Real>::move(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes) {
+void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxes) {
   check_lengths(handles.size(), "handles", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!state_->is_live(handles[i])) state_->refuse(handles[i], "move");
@@ -91,7 +92,7 @@ std::vector<Handle> World<D, Real>::quarantined() const {
 }
 
 template <int D, typename Real>
-void World<D, Real>::shift_origin(const std::array<Real, D>& origin) {
+void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   const core::DefaultEnvironment environment;
   State& state = *state_;
   for (int axis = 0; axis < D; ++axis) {

@@ -202,7 +202,7 @@ void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t place
   if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
   const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
   if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
-  core::refuse_box(box, place, name);
+  throw InvalidInput(place, core::fault_of(box, name));
 }
 
 /// The slot that the next box gets: the lowest free one, so that the arrays stay dense.

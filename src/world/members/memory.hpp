@@ -92,7 +92,8 @@ void World<D, Real>::State::release() {
   shrink(boxes, enlarged, generations, slots, filters, user_data);
   shrink(changed, moved, removed, reported, ignored_changed, refiltered, touched, questions, fresh);
   shrink(candidates.begun, candidates.ended, refined.begun, refined.ended, sorting, begun, ended);
-  shrink(persisting);
+  shrink(persisting, begun_data, ended_data);
+  join_finder.reset();
 }
 
 template <int D, typename Real>
@@ -118,7 +119,8 @@ WorldStatistics World<D, Real>::statistics() const {
                   state.ignored.size() * ignored_pair_bytes;
   bytes.pairs = bytes_of(state.begun, state.ended, state.persisting, state.candidates.begun,
                          state.candidates.ended, state.refined.begun, state.refined.ended, state.sorting) +
-                bytes_of(state.touched, state.questions, state.fresh, state.refiltered) +
+                bytes_of(state.begun_data, state.ended_data, state.touched, state.questions, state.fresh,
+                         state.refiltered) +
                 state.current.bytes() + state.graph.bytes();
   bytes.tracker = state.tracker->bytes();
   return statistics;

@@ -49,17 +49,21 @@ template <int D, typename Real>
 void World<D, Real>::join(const World& other, std::vector<HandlePair>& pairs) const {
   const State& left = *state_;
   const State& right = *other.state_;
-  const auto finder = make_finder<D, Real>(default_algorithm);
+  // The finder kept is for one reader at a time.
+  const std::unique_lock lock(left.join_in_progress, std::try_to_lock);
+  std::unique_ptr<PairFinder<D, Real>> another;
+  std::unique_ptr<PairFinder<D, Real>>& finder = lock.owns_lock() ? left.join_finder : another;
+  if (finder == nullptr)
+    finder = make_finder<D, Real>(left.is_own_tracker ? left.options.algorithm : default_algorithm);
   finder->set_workers(left.tracker->workers());
   pairs.clear();
   PairFunction collector([&](std::span<const Pair> found) {
-    for (const Pair pair : found) {
-      const Filter ours = left.uses_filters ? left.filters[index(pair.first)] : Filter{};
-      const Filter theirs = right.uses_filters ? right.filters[index(pair.second)] : Filter{};
-      if (accepts(ours, theirs)) pairs.push_back({left.handle(pair.first), right.handle(pair.second)});
-    }
+    for (const Pair pair : found) pairs.push_back({left.handle(pair.first), right.handle(pair.second)});
   });
-  finder->find_between(left.boxes, right.boxes, collector);
+  const auto filters_of = [](const State& state) {
+    return state.uses_filters ? std::span<const Filter>(state.filters) : std::span<const Filter>();
+  };
+  finder->find_between(left.boxes, right.boxes, collector, {filters_of(left), filters_of(right)});
   std::ranges::sort(pairs);
 }
 

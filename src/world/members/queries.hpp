@@ -22,7 +22,7 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
 }
 
 template <int D, typename Real>
-void World<D, Real>::nearest(const std::array<Real, D>& point, std::size_t count,
+void World<D, Real>::nearest(const Point<D, Real>& point, std::size_t count,
                              std::vector<HandleNeighbour<Real>>& found, const Filter* asker) const {
   std::vector<Neighbour<Real>> neighbours;
   box_index().nearest(point, count, neighbours, asker);

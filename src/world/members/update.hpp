@@ -60,7 +60,7 @@ Events World<D, Real>::update() {
   state.settle();
   state.trim();
   state.release_unneeded();
-  return {state.begun, state.ended};
+  return {state.begun, state.ended, state.begun_data, state.ended_data};
 }
 
 template <int D, typename Real>
@@ -183,17 +183,26 @@ template <int D, typename Real>
 void World<D, Real>::State::deliver(PairEvents& events) {
   begun.reserve(events.begun.size());
   ended.reserve(events.ended.size());
+  if (uses_user_data) {
+    begun_data.reserve(events.begun.size());
+    ended_data.reserve(events.ended.size());
+  }
   if (options.keep_pairs) current.add(events.begun, events.ended, generations);
   is_current = current.is_merged();
   is_persisting = false;
   pair_count += events.begun.size();
   pair_count -= events.ended.size();
-  const auto collect = [this](std::span<const Pair> pairs, std::vector<HandlePair>& handles) {
+  const auto collect = [this](std::span<const Pair> pairs, std::vector<HandlePair>& handles,
+                              std::vector<UserDataPair>& data) {
     handles.clear();
-    for (const Pair pair : pairs) handles.push_back({handle(pair.first), handle(pair.second)});
+    data.clear();
+    for (const Pair pair : pairs) {
+      handles.push_back({handle(pair.first), handle(pair.second)});
+      if (uses_user_data) data.push_back({user_data[index(pair.first)], user_data[index(pair.second)]});
+    }
   };
-  collect(events.begun, begun);
-  collect(events.ended, ended);
+  collect(events.begun, begun, begun_data);
+  collect(events.ended, ended, ended_data);
   events.clear();
 }
 

@@ -1,6 +1,7 @@
 // find_pairs: one call from boxes to pairs.
 #include "broadside/find_pairs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -57,10 +58,44 @@ TEST(FindPairs, RefusesABadBoxAndABadSpec) {
 TEST(FindPairs, ListsWhatItQuarantines) {
   const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{1, 1}, {0, 0}}};
   std::vector<BoxId> quarantined = {BoxId{7}};
-  EXPECT_EQ(find_pairs(boxes, "auto", nullptr, &quarantined), first_two);
+  EXPECT_EQ(find_pairs(boxes, {.quarantined = &quarantined}), first_two);
   EXPECT_EQ(quarantined, std::vector{BoxId{2}});
-  EXPECT_EQ(find_pairs(boxes, boxes, "auto", nullptr, &quarantined).size(), 4u);
+  EXPECT_EQ(find_pairs(boxes, boxes, {.quarantined = &quarantined}).size(), 4u);
   EXPECT_EQ(quarantined, (std::vector{BoxId{2}, BoxId{5}}));
+}
+
+TEST(FindPairs, LeavesOutWhatFiltersDoNotLetCount) {
+  const std::vector<Box2> boxes(4, Box2{{0, 0}, {1, 1}});
+  std::vector<Filter> filters(4);
+  filters[3].mask = 0;
+  IgnoredPairs ignored;
+  ignored.insert({BoxId{2}, BoxId{0}});
+  for (const char* const algorithm : {"brute_force", "grid", "grid:threads=2"}) {
+    const FindOptions options{.algorithm = algorithm, .filters = filters, .ignored = &ignored};
+    std::vector<Pair> pairs = find_pairs(boxes, options);
+    std::ranges::sort(pairs);
+    EXPECT_EQ(pairs, (std::vector<Pair>{{BoxId{0}, BoxId{1}}, {BoxId{1}, BoxId{2}}})) << algorithm;
+  }
+  EXPECT_EQ(find_pairs(boxes, boxes, {.filters = filters}).size(), 12U);
+  EXPECT_EQ(find_pairs(boxes, boxes, {.right_filters = filters}).size(), 12U);
+  EXPECT_THROW(find_pairs(std::span(boxes).first(3), {.filters = filters}), InvalidFrame);
+  EXPECT_THROW(find_pairs(boxes, {.right_filters = filters}), InvalidFrame);
+  EXPECT_THROW(find_pairs(boxes, boxes, {.ignored = &ignored}), InvalidFrame);
+}
+
+TEST(FindPairs, TakesBoxesInStructsOfTheCallers) {
+  struct Body {
+    char name;
+    DoubleBox2 box;
+    double mass;
+  };
+  const std::vector<Body> bodies = {
+      {'a', {{0, 0}, {2, 2}}, 1}, {'b', {{1, 1}, {3, 3}}, 1}, {'c', {{9, 9}, {9, 9}}, 1}};
+  const BoxView<2, double> view(&bodies[0].box, bodies.size(), sizeof(Body));
+  EXPECT_EQ(find_pairs(view), first_two);
+  EXPECT_EQ(find_pairs(view, view, "grid").size(), 5U);
+  EXPECT_EQ(find_pairs(bodies, "grid", &Body::box), first_two);
+  EXPECT_EQ(find_pairs(bodies, FindOptions{}, [](const Body& body) { return body.box; }), first_two);
 }
 
 }  // namespace
