@@ -461,7 +461,7 @@ TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {
             "0000000000000000"                          // no pairs of enlarged boxes
             "0000000000000000000000000000000000000000"  // no events of a failed update: five lists
             "0000000000000000000000000000000000000000"
-            "f4c1f97f");  // checksum
+            "66361191");  // checksum
 }
 
 }  // namespace
