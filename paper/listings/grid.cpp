@@ -2,16 +2,16 @@
 // mended, and why, is in docs/paper/errata.md.
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <memory>
-#include <string>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
-#include "interface/outline_text.hpp"
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/world.hpp"
@@ -93,8 +93,10 @@ class Grid final : public PairFinder<2>, public Outlined<2> {
         outline.levels[0].push_back({{left, top}, {right, bottom}});
       }
     }
-    outline.caption =
-        std::to_string(columns) + " x " + core::counted(rows, "cell") + " of " + core::three_digits(size_);
+    std::ostringstream caption;
+    caption << columns << " x " << rows << (rows == 1 ? " cell of " : " cells of ") << std::setprecision(3)
+            << size_;
+    outline.caption = caption.str();
     return outline;
   }
 

@@ -12,7 +12,6 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
-#include "interface/outline_text.hpp"
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/world.hpp"
@@ -226,8 +225,11 @@ class Quadtree final : public PairFinder<2>, public Outlined<2> {
     const std::size_t leaves = fill(tree, world).lay_out(outline.levels);
     std::size_t nodes = 0;
     for (const std::vector<Box2>& level : outline.levels) nodes += level.size();
-    outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
-                      ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+    const auto counted = [](std::size_t count, const std::string& one) {
+      return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+    };
+    outline.caption = counted(nodes, "node") + " on " + counted(outline.levels.size(), "level") + ", " +
+                      (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
     return outline;
   }
 
