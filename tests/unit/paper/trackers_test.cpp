@@ -12,6 +12,7 @@
 #include "lab/scenes/motion.hpp"
 #include "lab/verify/verify.hpp"
 #include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/printed.hpp"
 
 namespace broadside::paper {
 namespace {
@@ -152,6 +153,39 @@ TEST(PaperQuadtreeTracker, CousinsAreReachedWithoutTheRootAndSiblingsAreNot) {
     cousins += Followed("paper_quadtree:update=cousins", boxes).move(box, next(box)).visited;
   }
   EXPECT_LT(cousins, root);
+}
+
+TEST(ErratumT7, AChangeIsToBeComparedWithTheDistanceToTheBoundaryAhead) {
+  EXPECT_FALSE(printed::section_vi_b_changes_cell(18, 3, 10)) << "and yet 21 is in the next cell";
+  EXPECT_TRUE(printed::section_vi_b_changes_cell(12, 3, 10)) << "and yet 15 is in the same cell";
+  const auto moved = [](float from, float to) {
+    const std::vector<Box2> boxes = {{{0, 0}, {0, 0}}, {{from, 5}, {from, 5}}, {{100, 100}, {100, 100}}};
+    return Followed("paper_grid:cell=10:update=translate", boxes).move(1, {{to, 5}, {to, 5}}).moved;
+  };
+  EXPECT_EQ(moved(18, 21), 2U);
+  EXPECT_EQ(moved(12, 15), 0U);
+  EXPECT_EQ(moved(21, 18), 2U);
+  EXPECT_EQ(moved(15, 95), 2U) << "more than one cell on";
+}
+
+TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
+  std::vector<Box2> boxes;
+  for (std::size_t i = 1; i <= 1000; ++i)
+    boxes.push_back({{static_cast<float>(i), 0}, {static_cast<float>(i), 1}});
+  const UpdateParts parts =
+      Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
+  EXPECT_LE(parts.visited, 20U);
+  EXPECT_EQ(parts.moved, 1000U);
+}
+
+TEST(ErratumT12, ABoxThatGrowsReachesLeavesWithoutLeavingAny) {
+  for (const char* const update : {"siblings", "cousins", "relative", "root"}) {
+    const std::vector<Box2> boxes = {{{10, 10}, {20, 20}}, {{80, 80}, {90, 90}}, {{60, 15}, {60, 15}}};
+    const std::string spec = std::string("paper_quadtree:capacity=1:update=") + update;
+    const History<2> history = {boxes, {{{BoxId{0}}, {{{10, 10}, {60, 20}}}}}};
+    const auto divergence = lab::check_tracker<2>(*make_tracker<2>(spec), history, spec);
+    EXPECT_FALSE(divergence) << divergence->text;
+  }
 }
 
 }  // namespace
