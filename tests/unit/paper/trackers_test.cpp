@@ -182,7 +182,10 @@ TEST(ErratumT12, ABoxThatGrowsReachesLeavesWithoutLeavingAny) {
   for (const char* const update : {"siblings", "cousins", "relative", "root"}) {
     const std::vector<Box2> boxes = {{{10, 10}, {20, 20}}, {{80, 80}, {90, 90}}, {{60, 15}, {60, 15}}};
     const std::string spec = std::string("paper_quadtree:capacity=1:update=") + update;
-    const History<2> history = {boxes, {{{BoxId{0}}, {{{10, 10}, {60, 20}}}}}};
+    History<2> history;
+    history.boxes = boxes;
+    const Box2 grown = {{10, 10}, {60, 20}};
+    history.steps.push_back({3, {BoxId{0}}, {grown}});
     const auto divergence = lab::check_tracker<2>(*make_tracker<2>(spec), history, spec);
     EXPECT_FALSE(divergence) << divergence->text;
   }
