@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/version.hpp"
 
 #include "cli/help.hpp"
@@ -79,8 +80,8 @@ int run_program(int count, const char* const* values, std::vector<Algorithm> alg
   cli::on_failing_write();
   cli::on_signal(cli::OnSignal::end);
   try {
-    lab::Catalogue catalogue;
-    for (Algorithm& algorithm : algorithms) catalogue.add(std::move(algorithm));
+    for (Algorithm& algorithm : algorithms) register_algorithm(std::move(algorithm));
+    const lab::Catalogue catalogue;
     const Exit exit = run(arguments, catalogue);
     cli::flush_output();
     return static_cast<int>(exit);

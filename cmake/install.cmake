@@ -20,9 +20,11 @@ endif()
 
 set(program_packages "")
 if(BROADSIDE_BUILD_PROGRAM)
-  set_target_properties(broadside_lab PROPERTIES EXPORT_NAME lab)
+  foreach(part IN ITEMS listings lab experiments)
+    set_target_properties(broadside_${part} PROPERTIES EXPORT_NAME ${part})
+  endforeach()
   set_target_properties(broadside_cli PROPERTIES EXPORT_NAME program)
-  install(TARGETS broadside_lab broadside_cli EXPORT BroadsideProgramTargets
+  install(TARGETS broadside_listings broadside_lab broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder})

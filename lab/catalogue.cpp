@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <utility>
 
@@ -14,15 +13,10 @@
 #include "broadside/suggestion.hpp"
 
 #include "lab/peers/peers.hpp"
+#include "paper/listings/descriptions.hpp"
 
 namespace broadside::lab {
 namespace {
-
-bool is_name(std::string_view name) {
-  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
-  });
-}
 
 /// Whether `group` is a group's name and `algorithm` is in it.
 bool in_group(const Algorithm& algorithm, std::string_view group) {
@@ -69,14 +63,13 @@ std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
   return all;
 }
 
-Catalogue::Catalogue() : algorithms_(broadside::algorithms().begin(), broadside::algorithms().end()) {
-  for (Algorithm& peer : peers::peers()) algorithms_.push_back(std::move(peer));
+Catalogue::Catalogue() {
+  paper::register_listings();
+  for (const Algorithm& algorithm : broadside::algorithms()) add(algorithm);
+  for (Algorithm& peer : peers::peers()) add(std::move(peer));
 }
 
 void Catalogue::add(Algorithm algorithm) {
-  if (!is_name(algorithm.name))
-    throw InvalidSpec("algorithm name '" + algorithm.name +
-                      "'; expected lower-case letters, digits and underscores");
   if (is_group(algorithm.name) || find_algorithm(algorithm.name, algorithms_) != nullptr)
     throw InvalidSpec("algorithm name '" + algorithm.name + "' is taken; expected another one");
   algorithms_.push_back(std::move(algorithm));

@@ -1,4 +1,4 @@
-// The lab's list of algorithms: the library's, the peers', and whatever a user adds.
+// The lab's list of algorithms: the library's, the paper's, the peers', and whatever a user adds.
 #pragma once
 
 #include <cstddef>
@@ -29,10 +29,11 @@ std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
 /// point into it.
 class Catalogue {
  public:
-  /// The library's algorithms and the peers that were built in.
+  /// Registers the paper's listings; takes all algorithms that then have a name, and the peers that were
+  /// built in. Throws InvalidSpec if somebody has registered the name of a group, a listing or a peer.
   Catalogue();
 
-  /// Adds a user's algorithm. Throws InvalidSpec if its name is taken or is no name.
+  /// Adds an algorithm to this list alone. Throws InvalidSpec if its name is taken.
   void add(Algorithm algorithm);
 
   std::span<const Algorithm> algorithms() const noexcept { return algorithms_; }

@@ -1,5 +1,5 @@
 // What the library knows of an algorithm: its description, how to make one from a spec, and the list of all
-// of them.
+// of them, to which users add their own.
 #pragma once
 
 #include <cstddef>
@@ -71,8 +71,18 @@ struct Algorithm {
 /// make_finder() and make_tracker() make the Workers' of what they make.
 bool has_threads(const Algorithm& algorithm);
 
-/// The library's algorithms: its own, then the paper's, in a fixed order. Thread-safe.
+/// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
+/// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
 std::span<const Algorithm> algorithms();
+
+/// Adds an algorithm of your own, so that find_pairs(), World, make_finder() and make_tracker() know it by
+/// its name. Throws InvalidSpec if the name is taken, or is not of lower-case letters, digits and
+/// underscores.
+///
+/// Call it before anything is made by name: it must not run at the same time as anything that looks up a
+/// name. Spans and references that algorithms() and find_algorithm() have returned stay valid; the spans do
+/// not grow. Cost: a copy of the list, once for each algorithm.
+void register_algorithm(Algorithm algorithm);
 
 /// The algorithm called `name` among `among`, or a null pointer.
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
@@ -89,7 +99,7 @@ std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm, con
 template <int D, typename Real = float>
 std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm, const Spec& spec);
 
-/// Makes a finder or a tracker of one of the library's algorithms, from a spec such as "grid:cell=2.5".
+/// Makes a finder or a tracker of one of algorithms(), from a spec such as "grid:cell=2.5".
 /// Throws InvalidSpec, naming the algorithms there are, if there is none of that name.
 template <int D, typename Real = float>
 std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);

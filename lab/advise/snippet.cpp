@@ -11,7 +11,8 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
   const std::string_view real = precision == Precision::float64 ? "Double" : "";
   const std::string box = fmt::format("broadside::{}Box{}", real, dimension);
   const std::string name = Spec::parse(spec).name;
-  const bool is_ours = find_algorithm(name) != nullptr;
+  const Algorithm* const algorithm = find_algorithm(name);
+  const bool is_ours = algorithm != nullptr && algorithm->kind != AlgorithmKind::peer;
   std::string text = "#include <broadside/broadside.hpp>\n\n";
   if (!is_ours)
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);

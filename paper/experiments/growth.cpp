@@ -57,4 +57,22 @@ std::optional<double> crossover(const std::vector<std::pair<double, double>>& fi
   return std::exp(begin + (end - begin) * -lead[from - 1] / (lead[from] - lead[from - 1]));
 }
 
+std::optional<double> crossover_in(const Table& table, std::string_view x, std::string_view first,
+                                   std::string_view second) {
+  std::vector<std::pair<double, double>> below;
+  std::vector<std::pair<double, double>> above;
+  const std::size_t at_x = table.column(x);
+  const std::size_t at_first = table.column(first);
+  const std::size_t at_second = table.column(second);
+  for (const std::vector<Cell>& row : table.rows) {
+    const auto* const place = std::get_if<double>(&row[at_x]);
+    const auto* const one = std::get_if<double>(&row[at_first]);
+    const auto* const other = std::get_if<double>(&row[at_second]);
+    if (place == nullptr || one == nullptr || other == nullptr) continue;
+    below.emplace_back(*place, *one);
+    above.emplace_back(*place, *other);
+  }
+  return crossover(below, above);
+}
+
 }  // namespace broadside::lab

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 
@@ -17,5 +20,10 @@ double growth_of(const std::vector<std::pair<double, double>>& points);
 /// that is not above 0.
 std::optional<double> crossover(const std::vector<std::pair<double, double>>& first,
                                 const std::vector<std::pair<double, double>>& second);
+
+/// The least x from which on `first` stays below `second`, two columns of a table over the column `x`; as
+/// crossover(), of the rows that have both.
+std::optional<double> crossover_in(const Table& table, std::string_view x, std::string_view first,
+                                   std::string_view second);
 
 }  // namespace broadside::lab

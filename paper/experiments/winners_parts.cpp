@@ -8,7 +8,6 @@
 #include "broadside/instruction_set.hpp"
 
 #include "lab/measure/samples.hpp"
-#include "paper/experiments/following.hpp"
 #include "paper/experiments/winners_measure.hpp"
 
 namespace broadside::lab {
@@ -75,7 +74,7 @@ Table measure_instruction_sets(const Laboratory& laboratory) {
   const std::size_t boxes = laboratory.either<std::size_t>(10'000, 5'000);
   const Effort effort = effort_of(laboratory, laboratory.either(0.05, 0.01));
   for (const int dimension : {2, 3}) {
-    const std::string axes = dimension_text(dimension);
+    const std::string axes = fmt::format("{}D", dimension);
     table.charts.push_back(
         time_chart("instruction set", ChartKind::bars, "algorithm", "instruction set", axes));
     // One set after the other, more than once: the least of each, so that what else the machine does is not
@@ -118,7 +117,7 @@ Table measure_threads(const Laboratory& laboratory) {
   }
   const Effort effort = effort_of(laboratory, laboratory.either(0.5, 0.02));
   for (const int dimension : {2, 3}) {
-    const std::string axes = dimension_text(dimension);
+    const std::string axes = fmt::format("{}D", dimension);
     table.charts.push_back(time_chart("threads", ChartKind::lines, "threads", "algorithm", axes));
     const CaseResult result = laboratory.measure(
         list_of(specs), {.scene = "uniform", .dimension = dimension, .boxes = boxes}, effort);

@@ -1,4 +1,4 @@
-// The descriptions in which the mended listings of this folder end, for the registry.
+// The mended listings as algorithms that the library knows by name.
 #pragma once
 
 #include "broadside/algorithm.hpp"
@@ -9,5 +9,8 @@ Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
+
+/// Registers the four with the library, as paper_brute_force and so on. Further calls do nothing.
+void register_listings();
 
 }  // namespace broadside::paper

@@ -163,4 +163,8 @@ void algorithm_10_traverse(const QuadTreeNode& q, const TestCollide& test_collid
   algorithm_1_brute_force(q.e, To::excluding, test_collide);
 }
 
+bool section_vi_b_changes_cell(double position, double change, double size) {
+  return change > std::fmod(position, size);
+}
+
 }  // namespace broadside::paper::printed

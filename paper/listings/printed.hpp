@@ -108,4 +108,8 @@ void algorithm_9_spanning_add_element(QuadTreeNode& node, const Object& e);
 /// (erratum 10c).
 void algorithm_10_traverse(const QuadTreeNode& q, const TestCollide& test_collide);
 
+/// Section VI-B in words: whether the references of an object at `position` that moves by `change` go to
+/// another cell, "if the change in position is greater than the offset".
+bool section_vi_b_changes_cell(double position, double change, double size);
+
 }  // namespace broadside::paper::printed

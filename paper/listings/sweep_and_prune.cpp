@@ -1,15 +1,15 @@
-// Sweep and prune as section IV of paper.md has it: Algorithms 5 and 6, along the x axis. What was mended,
-// and why, is in docs/paper/errata.md.
-#include <algorithm>
+// The paper's sweep and prune as an algorithm: its finder, and its description.
 #include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
+#include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "paper/listings/sweep_listing.hpp"
+#include "paper/listings/sweep_tracker.hpp"
 
 namespace broadside::paper {
 namespace {
@@ -21,12 +21,9 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
 
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    boxes_ = boxes;
-    statistics_ = {.references = boxes.size()};
-    e_.clear();
-    for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
-    algorithm_5_sweep(e_, pairs);
-    this->count(statistics_);
+    SweepListing<D>::sort(boxes, e_);
+    this->count(listing_.algorithm_5_sweep(boxes, e_.size(), pairs,
+                                           [next = e_.begin()]() mutable { return (next++)->id; }));
   }
 
   Outline<D> lay_out(std::span<const Box<D>>) override {
@@ -36,44 +33,8 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
     return {.kind = "sweep", .caption = "one sweep along x", .swept_axis = 0, .levels = {{all}}};
   }
 
-  /// Algorithm 5, "Sweep".
-  void algorithm_5_sweep(std::vector<BoxId>& e, PairSink& pairs) {
-    std::sort(e.begin(), e.end(), [this](BoxId a, BoxId b) {  // Erratum 5b
-      return std::pair(min_x(a), a) < std::pair(min_x(b), b);
-    });
-    std::vector<BoxId>& f = active_;
-    f.clear();                                    // Erratum 5d
-    for (std::size_t i = 0; i < e.size(); ++i) {  // Erratum 5a
-      algorithm_6_prune(f, e[i]);
-      for (const BoxId active : f) test_collide(active, e[i], pairs);  // Erratum 5c
-      f.push_back(e[i]);
-    }
-  }
-
-  /// Algorithm 6, "Prune".
-  void algorithm_6_prune(std::vector<BoxId>& f, BoxId e) const {
-    for (std::size_t i = 0; i < f.size();) {  // Erratum 6a
-      if (max_x(f[i]) < min_x(e)) {
-        f[i] = f.back();  // Erratum 6b: what now stands at place i has not been looked at
-        f.pop_back();
-      } else {
-        ++i;
-      }
-    }
-  }
-
-  void test_collide(BoxId a, BoxId b, PairSink& pairs) {
-    ++statistics_.tests;
-    if (overlap(boxes_[index(a)], boxes_[index(b)])) pairs.add(a, b);
-  }
-
-  float min_x(BoxId e) const { return boxes_[index(e)].min[0]; }
-  float max_x(BoxId e) const { return boxes_[index(e)].max[0]; }
-
-  std::span<const Box<D>> boxes_;
-  std::vector<BoxId> e_;
-  std::vector<BoxId> active_;
-  Statistics statistics_;
+  SweepListing<D> listing_;
+  std::vector<SweepEntry> e_;
 };
 
 }  // namespace
@@ -82,10 +43,21 @@ Algorithm sweep_and_prune() {
   return {
       .name = "paper_sweep_and_prune",
       .summary = "one sweep along the x axis with an active list, as the paper lists it, mended",
-      .source = "paper.md, section IV, Algorithms 5 and 6",
+      .source = "paper.md, sections IV (Algorithms 5 and 6) and VI-C",
       .kind = AlgorithmKind::paper,
+      .tunables = {{.name = "update",
+                    .summary =
+                        "how a tracker mends its order before it sweeps: sorted anew; a heap, from which "
+                        "minima are taken as the sweep goes; insertion sort; or a binary search for the "
+                        "place of each mover",
+                    .standard = "rebuild",
+                    .type = Tunable::Type::choice,
+                    .choices = {"rebuild", "heap", "insertion", "binary"}},
+                   detect_tunable()},
       .finder_2d = [](const Settings&) { return std::make_unique<SweepAndPrune<2>>(); },
       .finder_3d = [](const Settings&) { return std::make_unique<SweepAndPrune<3>>(); },
+      .tracker_2d = make_sweep_tracker<2>,
+      .tracker_3d = make_sweep_tracker<3>,
   };
 }
 

@@ -1,16 +1,21 @@
-// The descriptions in which the files of this folder end, for the registry.
+// The descriptions of the algorithms in this folder, for the registry.
 #pragma once
+
+#include <vector>
 
 #include "broadside/algorithm.hpp"
 
 namespace broadside::own {
 
-Algorithm automatic();  // src/auto.cpp, above the others
+Algorithm automatic();  // of auto/
 Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
 Algorithm bvh();
 Algorithm hierarchical_grid();
+
+/// Those that BROADSIDE_ALGORITHMS lists, in its order: CMake writes this function.
+std::vector<Algorithm> linked_algorithms();
 
 }  // namespace broadside::own

@@ -1,6 +1,9 @@
-// The library's one list of algorithms, and how a spec becomes a finder or a tracker.
+// The one list of algorithms, and how a spec becomes a finder or a tracker.
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <list>
+#include <utility>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
@@ -9,10 +12,16 @@
 #include "algorithms/descriptions.hpp"
 #include "core/float_environment.hpp"
 #include "doubles/double_finder.hpp"
-#include "paper/listings/descriptions.hpp"
 
 namespace broadside {
 namespace {
+
+/// The list of algorithms after each registration; the last one counts. The earlier ones stay, because spans
+/// and references into them were given out.
+std::list<std::vector<Algorithm>>& lists() {
+  static std::list<std::vector<Algorithm>> lists = {own::linked_algorithms()};
+  return lists;
+}
 
 const Algorithm& require_algorithm(std::string_view name) {
   if (const Algorithm* const algorithm = find_algorithm(name)) return *algorithm;
@@ -58,14 +67,20 @@ bool has_threads(const Algorithm& algorithm) {
   });
 }
 
-std::span<const Algorithm> algorithms() {
-  static const std::array list = {
-      own::automatic(),         own::brute_force(),   own::grid(),
-      own::sweep_and_prune(),   own::quadtree(),      own::bvh(),
-      own::hierarchical_grid(), paper::brute_force(), paper::grid(),
-      paper::sweep_and_prune(), paper::quadtree(),
-  };
-  return list;
+std::span<const Algorithm> algorithms() { return lists().back(); }
+
+void register_algorithm(Algorithm algorithm) {
+  const bool is_name = !algorithm.name.empty() && std::ranges::all_of(algorithm.name, [](unsigned char c) {
+    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
+  });
+  if (!is_name)
+    throw InvalidSpec("algorithm name '" + algorithm.name +
+                      "'; expected lower-case letters, digits and underscores");
+  if (find_algorithm(algorithm.name) != nullptr)
+    throw InvalidSpec("algorithm name '" + algorithm.name + "' is taken; expected another one");
+  std::vector<Algorithm> longer = lists().back();
+  longer.push_back(std::move(algorithm));
+  lists().push_back(std::move(longer));
 }
 
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {

@@ -49,9 +49,10 @@ std::vector<Spec> strained_specs(const LawCase& law_case) {
     }
   }
   // Leaves of a few boxes are many: only then does a mover have far to go in a tree.
-  if (const Spec spec{"quadtree", {{"capacity", "3"}, {"update", "siblings"}}};
-      law_case.algorithm->name == spec.name && is_accepted(law_case, spec))
-    specs.push_back(spec);
+  for (const char* const update : {"siblings", "cousins"}) {
+    const Spec spec{"paper_quadtree", {{"capacity", "3"}, {"update", update}}};
+    if (law_case.algorithm->name == spec.name && is_accepted(law_case, spec)) specs.push_back(spec);
+  }
   return specs;
 }
 

@@ -2,12 +2,16 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
+#include "broadside/world.hpp"
 
 #include "tests/message.hpp"
 
@@ -67,6 +71,36 @@ TEST(Registry, FindsAnAlgorithmByItsName) {
 }
 
 TEST(Registry, HasTheStandardAlgorithm) { EXPECT_NE(find_algorithm(default_algorithm), nullptr); }
+
+TEST(Registry, MakesARegisteredAlgorithmByItsNameEverywhere) {
+  const std::span<const Algorithm> before = algorithms();
+  const Algorithm* const first = &before.front();
+  const std::string name = "registered_here_" + std::to_string(before.size());  // tests may be repeated
+  Algorithm algorithm = planar();
+  algorithm.name = name;
+  register_algorithm(algorithm);
+  EXPECT_EQ(&before.front(), first);
+  EXPECT_FALSE(before.front().name.empty()) << "what was given out before stays valid";
+  EXPECT_EQ(algorithms().size(), before.size() + 1);
+  EXPECT_EQ(algorithms().back().name, name);
+
+  const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}};
+  EXPECT_EQ(find_pairs(boxes, name + ":cell=3").size(), 1U);
+  World2 world(name);
+  for (const Box2& box : boxes) world.add(box);
+  EXPECT_EQ(world.update().begun.size(), 1U);
+  EXPECT_EQ(message_of<InvalidSpec>([&] { register_algorithm(algorithm); }),
+            "algorithm name '" + name + "' is taken; expected another one");
+}
+
+TEST(Registry, RefusesToRegisterWhatIsNoName) {
+  for (const char* const name : {"", "Grid", "my-grid", "grid:cell"}) {
+    Algorithm algorithm = planar();
+    algorithm.name = name;
+    EXPECT_EQ(message_of<InvalidSpec>([&] { register_algorithm(algorithm); }),
+              "algorithm name '" + algorithm.name + "'; expected lower-case letters, digits and underscores");
+  }
+}
 
 TEST(Registry, RefusesAnUnknownNameAndNamesTheKnownOnes) {
   std::string known;

@@ -1,0 +1,111 @@
+// What the trackers of section VI have in common.
+#include "paper/listings/coherent_tracker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "broadside/sinks.hpp"
+
+namespace broadside::paper {
+namespace {
+
+/// The milliseconds since the last call.
+class Lap {
+ public:
+  double operator()() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+template <int D>
+std::size_t count_present(std::span<const Box<D>> boxes) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(boxes, [](const Box<D>& box) { return is_present(box); }));
+}
+
+}  // namespace
+
+Tunable detect_tunable() {
+  return {.name = "detect",
+          .summary =
+              "how a tracker knows what changed: a flag at each box, or a comparison of each box with its "
+              "previous state",
+          .standard = "flag",
+          .type = Tunable::Type::choice,
+          .choices = {"flag", "compare"}};
+}
+
+template <int D>
+CoherentTracker<D>::CoherentTracker(const Settings& settings)
+    : detection_(settings.text("detect") == "flag" ? Detection::flag : Detection::compare) {}
+
+template <int D>
+void CoherentTracker<D>::find_movers(const Change<D>& change) {
+  movers_.clear();
+  for (std::size_t i = 0; i < change.now.size(); ++i) {
+    const bool changed = detection_ == Detection::flag ? change.flags[i] != 0 : !(change.now[i] == boxes_[i]);
+    if (!changed) continue;
+    movers_.push_back(BoxId(i));
+    present_ += static_cast<std::size_t>(is_present(change.now[i]));
+    present_ -= static_cast<std::size_t>(is_present(boxes_[i]));
+  }
+}
+
+template <int D>
+void CoherentTracker<D>::build_anew(std::span<const Box<D>> boxes) {
+  boxes_.assign(boxes.begin(), boxes.end());
+  built_for_ = present_ = count_present(boxes);
+  parts_.built = true;
+  build();
+}
+
+template <int D>
+void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
+  const auto search_into = [this](std::vector<Pair>& pairs) {
+    pairs.clear();
+    PairCollector collector(pairs);
+    const Statistics statistics = search(collector);
+    collector.flush();
+    return statistics;
+  };
+  parts_ = {};
+  if (change.rebuild) {  // the events start from the frame before, of which nothing was kept
+    build_anew(change.before);
+    search_into(pairs_);
+    parts_ = {};
+  }
+  Lap lap;
+  boxes_.resize(change.now.size(), absent_box<D>());
+  find_movers(change);
+  parts_.movers = movers_.size();
+  parts_.detecting_ms = lap();
+  if (change.rebuild || present_ > 2 * built_for_ || !mend(movers_, change.now)) build_anew(change.now);
+  parts_.mending_ms = lap();
+  const Statistics statistics = search_into(found_);
+  parts_.searching_ms = lap();
+  for (const std::vector<Pair>* const pairs : {&found_, &pairs_}) {
+    for (const Pair pair : *pairs) {
+      if ((change.flags[index(pair.first)] | change.flags[index(pair.second)]) != 0)
+        change.report(pair.first, pair.second, begun, ended);
+    }
+  }
+  std::swap(pairs_, found_);
+  parts_.comparing_ms = lap();
+  this->count(statistics);
+}
+
+template <int D>
+std::size_t CoherentTracker<D>::algorithm_bytes() const noexcept {
+  return boxes_.capacity() * sizeof(Box<D>) + movers_.capacity() * sizeof(BoxId) +
+         (pairs_.capacity() + found_.capacity()) * sizeof(Pair) + structure_bytes();
+}
+
+template class CoherentTracker<2>;
+template class CoherentTracker<3>;
+
+}  // namespace broadside::paper

@@ -1,0 +1,88 @@
+// Section VI of paper.md: a structure is kept from frame to frame and mended where boxes changed, then
+// searched as its listing does. What this tells of a frame is the difference to the pairs of the frame
+// before.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+#include "broadside/spec.hpp"
+
+namespace broadside::paper {
+
+/// VI-A: how a tracker knows which boxes changed: each has a flag, or each is compared with its previous
+/// state.
+enum class Detection { flag, compare };
+
+/// Where the time of one update went, and what mending the structure came to.
+struct UpdateParts {
+  double detecting_ms = 0;
+  double mending_ms = 0;  ///< or building anew
+  double searching_ms = 0;
+  double comparing_ms = 0;    ///< the pairs of the two frames
+  std::size_t movers = 0;     ///< boxes that changed
+  std::uint64_t visited = 0;  ///< entries, cells or nodes looked at to find a mover's places, old and new
+  std::uint64_t moved = 0;    ///< entries written: references put in or taken out, places of an order moved
+  bool built = false;         ///< the structure was built anew, whatever `update` says
+};
+
+/// The tunable `detect`.
+Tunable detect_tunable();
+
+/// A tracker over one structure. Derived classes say how it is built, mended and searched.
+///
+/// The structure is built anew where `update` says so, after a failed update, where the boxes have become
+/// more than twice as many as it was built for, and where mend() asks for it.
+template <int D>
+class CoherentTracker : public PairTracker<D> {
+ public:
+  /// Of the last update().
+  const UpdateParts& parts() const noexcept { return parts_; }
+
+ protected:
+  explicit CoherentTracker(const Settings& settings);
+
+  /// The previous state of each box, absent ones among them. A box that mend() has dealt with is to be
+  /// brought up to date by it.
+  std::vector<Box<D>>& boxes() noexcept { return boxes_; }
+  const std::vector<Box<D>>& boxes() const noexcept { return boxes_; }
+
+  /// How many boxes of this frame are present.
+  std::size_t present() const noexcept { return present_; }
+
+  /// Where mending is counted.
+  UpdateParts& work() noexcept { return parts_; }
+
+ private:
+  /// Makes the structure of boxes() as the listing does.
+  virtual void build() = 0;
+
+  /// Brings the structure and boxes() from the previous state of the movers, ascending, to `now`. False if it
+  /// has to be built anew instead; all that it has changed until then does not matter.
+  virtual bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) = 0;
+
+  /// The listing's search. Returns what it counted.
+  virtual Statistics search(PairSink& pairs) = 0;
+
+  /// The bytes of the structure.
+  virtual std::size_t structure_bytes() const noexcept = 0;
+
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) final;
+  std::size_t algorithm_bytes() const noexcept final;
+  void find_movers(const Change<D>& change);
+  void build_anew(std::span<const Box<D>> boxes);
+
+  Detection detection_;
+  std::vector<Box<D>> boxes_;
+  std::vector<BoxId> movers_;
+  std::vector<Pair> pairs_;  // those that overlapped in the frame before
+  std::vector<Pair> found_;
+  std::size_t present_ = 0;
+  std::size_t built_for_ = 0;  // boxes present when the structure was built
+  UpdateParts parts_;
+};
+
+}  // namespace broadside::paper

@@ -1,0 +1,130 @@
+// The quadtree as section V of paper.md has it: Algorithms 7 to 10. What was mended, and why, is in
+// docs/paper/errata.md.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "broadside/broad_phase.hpp"
+
+#include "paper/listings/algorithm_1.hpp"
+#include "paper/listings/world.hpp"
+
+namespace broadside::paper {
+
+/// The points for which begin <= x < end on both axes; +inf lies in what ends at +inf.
+struct Region {
+  std::array<double, 2> begin;
+  std::array<double, 2> end;
+
+  bool holds(double x, double y) const {
+    return begin[0] <= x && begin[1] <= y && ends_after(x, 0) && ends_after(y, 1);
+  }
+
+  /// Whether all of a present box is in it, and whether some of it is: then, and only then, Algorithm 9 takes
+  /// the box to a leaf with this region.
+  bool holds(const Box2& e) const {
+    return holds(e.min[0], e.min[1]) && ends_after(e.max[0], 0) && ends_after(e.max[1], 1);
+  }
+  bool meets(const Box2& e) const {
+    return e.max[0] >= begin[0] && e.max[1] >= begin[1] && ends_after(e.min[0], 0) && ends_after(e.min[1], 1);
+  }
+
+ private:
+  bool ends_after(double x, int axis) const { return x < end[axis] || std::isinf(end[axis]); }
+};
+
+class QuadTreeNode;
+
+/// What all nodes of a tree share.
+struct QuadTree {
+  std::span<const Box2> boxes;
+  std::size_t count_max = 0;
+  int depth_max = 0;
+  std::size_t nodes = 0;     ///< that there are
+  std::uint64_t visits = 0;  ///< of nodes, on the ways down of boxes that were added
+
+  /// For each box the leaves that it is in, where section VI-D needs them; else empty.
+  std::vector<std::vector<QuadTreeNode*>> leaves{};
+};
+
+class QuadTreeNode {
+ public:
+  /// The root of a tree without boxes, for the given world.
+  QuadTreeNode(QuadTree& tree, const World& world);
+
+  /// Algorithm 7, "Add Element".
+  void algorithm_7_add_element(BoxId e);
+
+  /// Algorithm 10, "Traverse". Calls test_collide(region, a, b) for the pairs of each leaf.
+  template <typename TestCollide>
+  void algorithm_10_traverse(TestCollide& test_collide) const {
+    if (qi_ != nullptr) qi_->algorithm_10_traverse(test_collide);      // Erratum 10c
+    if (qii_ != nullptr) qii_->algorithm_10_traverse(test_collide);    // Erratum 10c
+    if (qiii_ != nullptr) qiii_->algorithm_10_traverse(test_collide);  // Erratum 10c
+    if (qiv_ != nullptr) qiv_->algorithm_10_traverse(test_collide);    // Erratum 10c
+    algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) { test_collide(region_, a, b); });
+  }
+
+  /// Algorithm 9 from here, for a box that may be in some of the leaves: it is added to the others.
+  void add_where_missing(BoxId e);
+
+  /// Takes a box out of this leaf.
+  void remove(BoxId e);
+
+  /// Splits a leaf that has become too full while its boxes moved in it.
+  void split_if_full();
+
+  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  std::size_t lay_out(std::vector<std::vector<Box2>>& levels) const;
+
+  /// The entries in this node's leaves.
+  std::size_t references() const;
+
+  const Region& region() const noexcept { return region_; }
+  QuadTreeNode* parent() const noexcept { return parent_; }
+  bool is_leaf() const noexcept { return qi_ == nullptr; }
+
+ private:
+  QuadTreeNode(QuadTreeNode& parent, int x_side, int y_side);
+
+  void algorithm_8_split();
+  void algorithm_9_spanning_add_element(BoxId id);
+  bool can_split() const;
+
+  QuadTree* tree_;
+  QuadTreeNode* parent_ = nullptr;
+  int depth_ = 0;
+  Region region_;
+  double x_origin_;
+  double y_origin_;
+  double half_width_;
+  double half_height_;
+  std::size_t count_ = 0;
+  std::vector<BoxId> e_;
+  std::unique_ptr<QuadTreeNode> qi_;
+  std::unique_ptr<QuadTreeNode> qii_;
+  std::unique_ptr<QuadTreeNode> qiii_;
+  std::unique_ptr<QuadTreeNode> qiv_;
+};
+
+/// The entries of a present box in all leaves if every node down to `depth` is split; no tree of that depth
+/// has more.
+double references_at(int depth, const Box2& box, const World& world);
+
+/// The most references that the leaves may come to hold, whatever the order in which boxes are added (erratum
+/// 7c).
+double most_references_in_tree(std::size_t boxes);
+
+/// The greatest depth at which they cannot hold more. Absent boxes do not count.
+int choose_depth(std::span<const Box2> boxes, const World& world);
+
+/// Traverse from `root`, and what it counted.
+Statistics search_tree(const QuadTree& tree, const QuadTreeNode& root, PairSink& pairs);
+
+}  // namespace broadside::paper

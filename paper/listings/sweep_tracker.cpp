@@ -1,0 +1,161 @@
+// Section VI-C of paper.md: the order of the sweep is kept and mended, then Algorithm 5 sweeps once. What was
+// mended in the text, and why, is in docs/paper/errata.md.
+#include "paper/listings/sweep_tracker.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/sweep_listing.hpp"
+
+namespace broadside::paper {
+namespace {
+
+/// How the order is mended where boxes changed.
+enum class ReorderMethod {
+  rebuild,    ///< all boxes are sorted
+  heap,       ///< "keep the objects in a heap and extract the minimum when needed"
+  insertion,  ///< "insertion sort if objects in the collection are relatively in order"
+  binary      ///< "inserting only a subset of k objects using an insertion sort with binary search"
+};
+
+ReorderMethod method_of(const Settings& settings) {
+  const std::string& text = settings.text("update");
+  if (text == "heap") return ReorderMethod::heap;
+  if (text == "insertion") return ReorderMethod::insertion;
+  return text == "binary" ? ReorderMethod::binary : ReorderMethod::rebuild;
+}
+
+/// For std::push_heap and its like, which take the greatest: the least first.
+bool is_later(const SweepEntry& a, const SweepEntry& b) { return b < a; }
+
+template <int D>
+class SweepTracker final : public CoherentTracker<D> {
+ public:
+  explicit SweepTracker(const Settings& settings)
+      : CoherentTracker<D>(settings), method_(method_of(settings)) {}
+
+ private:
+  void build() override {
+    SweepListing<D>::sort(this->boxes(), e_);
+    this->work().moved += e_.size();
+  }
+
+  bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) override {
+    if (method_ == ReorderMethod::rebuild) return false;
+    if (method_ == ReorderMethod::binary) {
+      for (const BoxId id : movers) reinsert(id, now[index(id)]);
+      return true;
+    }
+    take_keys(movers, now);
+    if (method_ == ReorderMethod::insertion) {
+      sort_by_insertion();
+    } else {
+      std::make_heap(e_.begin(), e_.end(), is_later);
+      this->work().visited += e_.size();
+    }
+    return true;
+  }
+
+  Statistics search(PairSink& pairs) override {
+    if (method_ != ReorderMethod::heap) {
+      return listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs,
+                                        [next = e_.begin()]() mutable { return (next++)->id; });
+    }
+    // What has been extracted stands behind the heap. At the end that is everything in reverse, which is the
+    // next frame's heap once it is turned round.
+    auto end = e_.end();
+    const Statistics statistics = listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, [&] {
+      std::pop_heap(e_.begin(), end, is_later);
+      return (--end)->id;
+    });
+    std::ranges::reverse(e_);
+    return statistics;
+  }
+
+  std::size_t structure_bytes() const noexcept override {
+    return e_.capacity() * sizeof(SweepEntry) + changed_.capacity();
+  }
+
+  /// Gives the movers' entries their new keys, wherever they stand: drops those of boxes that are gone, and
+  /// appends those of new ones.
+  void take_keys(std::span<const BoxId> movers, std::span<const Box<D>> now) {
+    changed_.assign(now.size(), 0);
+    for (const BoxId id : movers) {
+      changed_[index(id)] = 1;
+      const bool is_new = !is_present(this->boxes()[index(id)]) && is_present(now[index(id)]);
+      this->boxes()[index(id)] = now[index(id)];
+      if (is_new) e_.push_back({now[index(id)].min[0], id});
+    }
+    this->work().visited += e_.size();
+    std::erase_if(e_, [&](const SweepEntry& entry) { return !is_present(now[index(entry.id)]); });
+    for (SweepEntry& entry : e_) {
+      if (changed_[index(entry.id)] != 0) entry.min_x = now[index(entry.id)].min[0];
+    }
+  }
+
+  void sort_by_insertion() {
+    for (std::size_t i = 1; i < e_.size(); ++i) {
+      const SweepEntry entry = e_[i];
+      std::size_t place = i;
+      for (; place > 0 && entry < e_[place - 1]; --place) e_[place] = e_[place - 1];
+      e_[place] = entry;
+      this->work().moved += i - place;
+    }
+    this->work().visited += e_.size();
+  }
+
+  /// Takes the box from its place and puts it into the new one; those between the two give way (erratum T8).
+  void reinsert(BoxId id, const Box<D>& now) {
+    Box<D>& before = this->boxes()[index(id)];
+    if (is_present(before) && is_present(now)) {
+      const auto from = place_of({before.min[0], id});
+      const auto to = place_of({now.min[0], id});
+      *from = {now.min[0], id};
+      if (to > from) {
+        std::rotate(from, from + 1, to);
+        this->work().moved += static_cast<std::uint64_t>(to - from);
+      } else {
+        std::rotate(to, from, from + 1);
+        this->work().moved += static_cast<std::uint64_t>(from - to) + 1;
+      }
+    } else if (is_present(before)) {
+      const auto from = place_of({before.min[0], id});
+      this->work().moved += static_cast<std::uint64_t>(e_.end() - from);
+      e_.erase(from);
+    } else if (is_present(now)) {
+      const auto to = place_of({now.min[0], id});
+      this->work().moved += static_cast<std::uint64_t>(e_.end() - to) + 1;
+      e_.insert(to, {now.min[0], id});
+    }
+    before = now;
+  }
+
+  /// The first entry that is not before `wanted`; counts comparisons as visits.
+  std::vector<SweepEntry>::iterator place_of(const SweepEntry& wanted) {
+    return std::lower_bound(e_.begin(), e_.end(), wanted, [this](const SweepEntry& a, const SweepEntry& b) {
+      ++this->work().visited;
+      return a < b;
+    });
+  }
+
+  ReorderMethod method_;
+  SweepListing<D> listing_;
+  std::vector<SweepEntry> e_;  // sorted; of the heap method, a heap between mending and searching
+  std::vector<std::uint8_t> changed_;
+};
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<PairTracker<D>> make_sweep_tracker(const Settings& settings) {
+  return std::make_unique<SweepTracker<D>>(settings);
+}
+
+template std::unique_ptr<PairTracker<2>> make_sweep_tracker<2>(const Settings&);
+template std::unique_ptr<PairTracker<3>> make_sweep_tracker<3>(const Settings&);
+
+}  // namespace broadside::paper

@@ -1,0 +1,195 @@
+// Section VI: every way to mend a structure gives the right events, does the work that it says, and is
+// searched as the listing searches.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/scenes/motion.hpp"
+#include "lab/verify/verify.hpp"
+#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/printed.hpp"
+
+namespace broadside::paper {
+namespace {
+
+const std::vector<std::string> updates_2d = {
+    "paper_grid:update=rebuild",
+    "paper_grid:update=search_delete_reinsert",
+    "paper_grid:update=reinsert",
+    "paper_grid:update=translate",
+    "paper_grid:update=translate:cell=0.7",
+    "paper_grid:update=reinsert:left=2:top=2:width=1:height=1:cell=0.1",
+    "paper_sweep_and_prune:update=rebuild",
+    "paper_sweep_and_prune:update=heap",
+    "paper_sweep_and_prune:update=insertion",
+    "paper_sweep_and_prune:update=binary",
+    "paper_quadtree:update=rebuild",
+    "paper_quadtree:update=root",
+    "paper_quadtree:update=relative",
+    "paper_quadtree:update=siblings",
+    "paper_quadtree:update=cousins",
+    "paper_quadtree:update=siblings:capacity=1",
+    "paper_quadtree:update=cousins:capacity=1",
+};
+
+template <int D>
+void expect_lawful(const std::string& spec) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto history = lab::random_history<D>(
+        {.boxes = 20 + 15 * seed, .frames = 40, .seed = seed, .infinite_boxes = seed % 2 == 0});
+    const auto divergence = lab::check_tracker<D>(*make_tracker<D>(spec), history, spec);
+    ASSERT_FALSE(divergence) << divergence->text << ", seed " << seed;
+  }
+}
+
+TEST(PaperTrackers, GiveTheEventsOfEveryHistory) {
+  for (const std::string& spec : updates_2d) {
+    for (const char* const detect : {":detect=flag", ":detect=compare"}) expect_lawful<2>(spec + detect);
+  }
+  for (const char* const update : {"heap", "insertion", "binary"})
+    expect_lawful<3>(std::string("paper_sweep_and_prune:detect=compare:update=") + update);
+}
+
+/// A tracker, the boxes that it follows, and what moving some of them comes to.
+class Followed {
+ public:
+  Followed(const std::string& spec, std::vector<Box2> boxes)
+      : tracker_(make_tracker<2>(spec)), boxes_(std::move(boxes)) {
+    update({});
+  }
+
+  UpdateParts move(std::size_t box, const Box2& to) {
+    boxes_[box] = to;
+    const BoxId changed{static_cast<std::uint32_t>(box)};
+    return update({&changed, 1});
+  }
+
+  UpdateParts rest() { return update({}); }
+  std::size_t tests() const { return tracker_->statistics()->tests; }
+  std::size_t references() const { return tracker_->statistics()->references; }
+
+ private:
+  UpdateParts update(std::span<const BoxId> changed) {
+    PairCounter begun;
+    PairCounter ended;
+    tracker_->update({boxes_, changed}, begun, ended);
+    return dynamic_cast<CoherentTracker<2>&>(*tracker_).parts();
+  }
+
+  std::unique_ptr<PairTracker<2>> tracker_;
+  std::vector<Box2> boxes_;
+};
+
+/// Boxes of 1 x 1 whose corners stand at multiples of 2.
+std::vector<Box2> rows(std::size_t columns, std::size_t count) {
+  std::vector<Box2> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto x = static_cast<float>(2 * (i % columns));
+    const auto y = static_cast<float>(2 * (i / columns));
+    boxes.push_back({{x, y}, {x + 1, y + 1}});
+  }
+  return boxes;
+}
+
+TEST(PaperTrackers, BuildAnewOnlyWhereUpdateSaysSo) {
+  for (const std::string& spec : updates_2d) {
+    Followed followed(spec, rows(20, 400));
+    EXPECT_EQ(followed.rest().built, spec.find("update=rebuild") != std::string::npos) << spec;
+  }
+}
+
+TEST(PaperTrackers, SearchLikeTheListingOnWhateverTheyHaveMended) {
+  for (const std::string& spec : updates_2d) {
+    std::vector<Box2> boxes = rows(20, 400);
+    Followed followed(spec, boxes);
+    boxes[7] = {{5.5F, 9.5F}, {6.5F, 10.5F}};
+    followed.move(7, boxes[7]);
+    const auto finder = make_finder<2>(spec);
+    PairCounter pairs;
+    finder->find(boxes, pairs);
+    if (spec.find("quadtree") == std::string::npos) {
+      EXPECT_EQ(followed.tests(), finder->statistics()->tests) << spec;
+      EXPECT_EQ(followed.references(), finder->statistics()->references) << spec;
+    } else {  // splits depend on the order in which boxes were added, and are not undone
+      EXPECT_NEAR(static_cast<double>(followed.references()),
+                  static_cast<double>(finder->statistics()->references), 20)
+          << spec;
+    }
+  }
+}
+
+TEST(PaperTrackers, AMoverIsSeenByItsFlagEvenAtRestAndByComparisonOnlyWhereItHasMoved) {
+  const std::vector<Box2> boxes = rows(20, 400);
+  for (const char* const algorithm : {"paper_grid", "paper_sweep_and_prune", "paper_quadtree"}) {
+    EXPECT_EQ(Followed(std::string(algorithm) + ":detect=flag", boxes).move(3, boxes[3]).movers, 1U);
+    EXPECT_EQ(Followed(std::string(algorithm) + ":detect=compare", boxes).move(3, boxes[3]).movers, 0U);
+  }
+}
+
+TEST(PaperGridTracker, TranslatesOnlyTheReferencesThatLeaveTheirCells) {
+  std::vector<Box2> boxes = rows(20, 400);
+  boxes[0] = {{0.5F, 0.5F}, {8.5F, 8.5F}};  // cells 0 to 8 on both axes, since a cell is 1 wide
+  const Box2 next = {{1.5F, 0.5F}, {9.5F, 8.5F}};
+  EXPECT_EQ(Followed("paper_grid:cell=1:update=translate", boxes).move(0, next).moved, 18U);
+  EXPECT_EQ(Followed("paper_grid:cell=1:update=reinsert", boxes).move(0, next).moved, 162U);
+  EXPECT_GE(Followed("paper_grid:cell=1:update=search_delete_reinsert", boxes).move(0, next).visited,
+            39U * 39U);
+}
+
+TEST(PaperQuadtreeTracker, CousinsAreReachedWithoutTheRootAndSiblingsAreNot) {
+  std::vector<Box2> boxes = rows(64, 64 * 64);
+  const auto next = [&boxes](std::size_t box) {
+    return Box2{{boxes[box].min[0] + 2, boxes[box].min[1]}, {boxes[box].max[0] + 2, boxes[box].max[1]}};
+  };
+  std::uint64_t root = 0;
+  std::uint64_t cousins = 0;
+  for (std::size_t box = 0; box < 60; ++box) {
+    root += Followed("paper_quadtree:update=root", boxes).move(box, next(box)).visited;
+    cousins += Followed("paper_quadtree:update=cousins", boxes).move(box, next(box)).visited;
+  }
+  EXPECT_LT(cousins, root);
+}
+
+TEST(ErratumT7, AChangeIsToBeComparedWithTheDistanceToTheBoundaryAhead) {
+  EXPECT_FALSE(printed::section_vi_b_changes_cell(18, 3, 10)) << "and yet 21 is in the next cell";
+  EXPECT_TRUE(printed::section_vi_b_changes_cell(12, 3, 10)) << "and yet 15 is in the same cell";
+  const auto moved = [](float from, float to) {
+    const std::vector<Box2> boxes = {{{0, 0}, {0, 0}}, {{from, 5}, {from, 5}}, {{100, 100}, {100, 100}}};
+    return Followed("paper_grid:cell=10:update=translate", boxes).move(1, {{to, 5}, {to, 5}}).moved;
+  };
+  EXPECT_EQ(moved(18, 21), 2U);
+  EXPECT_EQ(moved(12, 15), 0U);
+  EXPECT_EQ(moved(21, 18), 2U);
+  EXPECT_EQ(moved(15, 95), 2U) << "more than one cell on";
+}
+
+TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
+  std::vector<Box2> boxes;
+  for (std::size_t i = 1; i <= 1000; ++i)
+    boxes.push_back({{static_cast<float>(i), 0}, {static_cast<float>(i), 1}});
+  const UpdateParts parts =
+      Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
+  EXPECT_LE(parts.visited, 20U);
+  EXPECT_EQ(parts.moved, 1000U);
+}
+
+TEST(ErratumT12, ABoxThatGrowsReachesLeavesWithoutLeavingAny) {
+  for (const char* const update : {"siblings", "cousins", "relative", "root"}) {
+    const std::vector<Box2> boxes = {{{10, 10}, {20, 20}}, {{80, 80}, {90, 90}}, {{60, 15}, {60, 15}}};
+    const std::string spec = std::string("paper_quadtree:capacity=1:update=") + update;
+    History<2> history;
+    history.boxes = boxes;
+    const Box2 grown = {{10, 10}, {60, 20}};
+    history.steps.push_back({3, {BoxId{0}}, {grown}});
+    const auto divergence = lab::check_tracker<2>(*make_tracker<2>(spec), history, spec);
+    EXPECT_FALSE(divergence) << divergence->text;
+  }
+}
+
+}  // namespace
+}  // namespace broadside::paper
