@@ -17,7 +17,7 @@ bool is_file(const lab::Scene& scene) { return scene.kind == lab::SceneKind::fil
 bool has_count(const lab::Scene& scene) { return !scene.fixed_count; }
 bool has_seed(const lab::Scene& scene) { return !scene.fixed_seed; }
 bool moves_by_itself(const lab::Scene& scene) { return scene.history_2d || scene.history_3d; }
-bool is_set_moving(const lab::Scene& scene) { return !moves_by_itself(scene); }
+bool is_still(const lab::Scene& scene) { return !moves_by_itself(scene); }
 
 /// An option, the scenes that it means something to, and what is said of one and of several others.
 struct Rule {
@@ -41,9 +41,9 @@ constexpr std::array rules = {
     Rule{"--precision", is_file, "is of floats and no file", "are of floats and no files"},
     Rule{"-n", has_count, "has a number of boxes of its own", "have numbers of boxes of their own"},
     Rule{"--seed", has_seed, "is the same for every seed", "are the same for every seed"},
-    Rule{"--moving", is_set_moving, mover, movers},
-    Rule{"--drift", is_set_moving, mover, movers},
-    Rule{"--teleport", is_set_moving, mover, movers},
+    Rule{"--moving", is_still, mover, movers},
+    Rule{"--drift", is_still, mover, movers},
+    Rule{"--teleport", is_still, mover, movers},
 };
 
 /// The value that an option was given, as it was written; empty where it was not given, or the verb has none.

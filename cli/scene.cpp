@@ -25,8 +25,6 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_boxes = 10'000;
-
 struct SceneArguments {
   std::vector<std::string> scenes;
   std::string scene;  ///< the one that there is

@@ -16,7 +16,6 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_boxes = 10'000;
 constexpr std::size_t standard_frames = 20;  // of a scene that moves by itself
 
 template <int D>

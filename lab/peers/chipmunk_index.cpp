@@ -21,12 +21,12 @@ ChipmunkObject object_of(const Box2& box, BoxId id) {
 cpHashValue hash_of(const ChipmunkObject& object) { return index(object.id); }
 
 /// What a search hands through to its callback: margins and cells tell more than the overlapping pairs.
-struct Search {
+struct PairQuery {
   std::span<const Box2> boxes;
   CallbackSink pairs;
 
   static cpCollisionID take(void* first, void* second, cpCollisionID id, void* data) {
-    auto& search = *static_cast<Search*>(data);
+    auto& search = *static_cast<PairQuery*>(data);
     const BoxId a = static_cast<ChipmunkObject*>(first)->id;
     const BoxId b = static_cast<ChipmunkObject*>(second)->id;
     if (overlap(search.boxes[index(a)], search.boxes[index(b)])) search.pairs.add(a, b);
@@ -41,8 +41,8 @@ struct Search {
 };
 
 void find_all(cpSpatialIndex* spatial_index, std::span<const Box2> boxes, PairSink& pairs) {
-  Search search{boxes, CallbackSink(pairs)};
-  cpSpatialIndexReindexQuery(spatial_index, Search::take, &search);
+  PairQuery search{boxes, CallbackSink(pairs)};
+  cpSpatialIndexReindexQuery(spatial_index, PairQuery::take, &search);
   search.pairs.finish();
 }
 
@@ -121,10 +121,10 @@ class ChipmunkTracker final : public PeerTracker<2> {
 
   /// The index of what rests knows no pairs within: each box is looked up.
   void find_resting(std::span<const Box2> boxes, PairSink& pairs) {
-    Search search{boxes, CallbackSink(pairs)};
+    PairQuery search{boxes, CallbackSink(pairs)};
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       if (is_present(boxes[i]))
-        cpSpatialIndexQuery(resting_.get(), &objects_[i], objects_[i].bounds, Search::take_once, &search);
+        cpSpatialIndexQuery(resting_.get(), &objects_[i], objects_[i].bounds, PairQuery::take_once, &search);
     }
     search.pairs.finish();
   }

@@ -42,7 +42,7 @@ double shift_of(std::span<const Box3> boxes) {
   return std::ldexp(1.0, levels_of(boxes).least + bits);
 }
 
-OdeSpace make_space(std::span<const Box3> boxes) {
+OdeSpace make_hash_space(std::span<const Box3> boxes) {
   // Its manual: the sizes of the smallest and the largest cells are 2^level. A box goes to cells as large as
   // itself, and the smaller half of all where the typical one goes.
   OdeSpace space(dHashSpaceCreate(nullptr));
@@ -56,7 +56,7 @@ OdeSpace make_space(std::span<const Box3> boxes) {
 // Its table is new in each search, so that following motion is searching.
 Algorithm ode_hash() {
   Algorithm algorithm =
-      ode_space({.make = make_space, .shift = shift_of, .tracks = false, .most_boxes = most_boxes});
+      ode_space({.make = make_hash_space, .shift = shift_of, .tracks = false, .most_boxes = most_boxes});
   algorithm.name = "ode_hash";
   algorithm.summary =
       "ODE's hash space: grids of several cell sizes in one table, and a bit for every two boxes";

@@ -9,7 +9,7 @@
 namespace broadside::lab::peers {
 namespace {
 
-OdeSpace make_space(std::span<const Box3> boxes) {
+OdeSpace make_quadtree_space(std::span<const Box3> boxes) {
   // The blocks of the whole tree are made beforehand: about as many leaves as boxes, none smaller than a box.
   constexpr int greatest_depth = 10;
   dVector3 centre{};
@@ -30,7 +30,7 @@ OdeSpace make_space(std::span<const Box3> boxes) {
 }  // namespace
 
 Algorithm ode_quadtree() {
-  Algorithm algorithm = ode_space({.make = make_space});
+  Algorithm algorithm = ode_space({.make = make_quadtree_space});
   algorithm.name = "ode_quadtree";
   algorithm.summary = "ODE's quadtree space: each box in the smallest block of x and y that holds it";
   algorithm.source = "ODE, dQuadTreeSpaceCreate";

@@ -5,7 +5,7 @@
 namespace broadside::lab::peers {
 namespace {
 
-OdeSpace make_space(std::span<const Box3> boxes) {
+OdeSpace make_sap_space(std::span<const Box3> boxes) {
   // ODE's dSAP_AXES_XYZ and its like: the first axis is swept along.
   const auto [first, second, third] = axes_by_extent(boxes);
   return OdeSpace(dSweepAndPruneSpaceCreate(nullptr, first | second << 2 | third << 4));
@@ -14,7 +14,7 @@ OdeSpace make_space(std::span<const Box3> boxes) {
 }  // namespace
 
 Algorithm ode_sap() {
-  Algorithm algorithm = ode_space({.make = make_space});
+  Algorithm algorithm = ode_space({.make = make_sap_space});
   algorithm.name = "ode_sap";
   algorithm.summary =
       "ODE's sweep and prune space: radix-sorted along the axis of the longest extent, one sweep";

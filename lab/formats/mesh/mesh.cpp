@@ -30,7 +30,7 @@ class MeshFrames final : public FrameReader<3, double> {
   std::string_view importer_;
 };
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& options) {
   const std::string part = options.boxes.empty() ? "triangles" : options.boxes;
   const bool are_triangles = part == "triangles";
   IndexedMesh mesh = read_mesh(*input);
@@ -66,7 +66,7 @@ Format mesh() {
           [](std::string_view bytes, std::string_view extension) {
             return !mesh_content(bytes).empty() || is_mesh_extension(extension);
           },
-      .open = open,
+      .open = open_mesh,
   };
 }
 
