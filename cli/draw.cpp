@@ -11,12 +11,10 @@
 #include <fmt/format.h>
 
 #include "cli/applicability.hpp"
-#include "cli/contender_options.hpp"
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/message.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"

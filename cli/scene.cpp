@@ -12,11 +12,9 @@
 
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/message.hpp"
-#include "cli/motion_options.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/convert.hpp"

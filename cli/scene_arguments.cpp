@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/applicability.hpp"
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 #include "cli/values.hpp"
 #include "lab/scenes/scene.hpp"
 

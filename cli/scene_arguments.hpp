@@ -9,7 +9,7 @@
 
 #include <CLI/App.hpp>
 
-#include "cli/input_options.hpp"
+#include "cli/options.hpp"
 #include "lab/formats/format.hpp"
 
 namespace broadside::cli {

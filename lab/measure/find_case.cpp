@@ -1,6 +1,4 @@
 // Measures finders: every algorithm on the same boxes, in rounds, each result checked.
-#include "lab/measure/find_case.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <type_traits>
@@ -11,6 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/allocation.hpp"
+#include "lab/measure/cases.hpp"
 #include "lab/measure/floor.hpp"
 #include "lab/measure/memory_state.hpp"
 #include "lab/measure/reference.hpp"

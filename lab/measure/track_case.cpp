@@ -1,6 +1,4 @@
 // Measures trackers: every algorithm over the same histories, frame by frame in turns, all events checked.
-#include "lab/measure/track_case.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +8,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "lab/measure/cases.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/memory_state.hpp"
 #include "lab/measure/rounds.hpp"

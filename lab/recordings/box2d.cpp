@@ -8,7 +8,6 @@
 
 #include <box2d/box2d.h>
 
-#include "lab/recordings/record.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/random.hpp"
 

@@ -9,7 +9,6 @@
 
 #include <btBulletDynamicsCommon.h>
 
-#include "lab/recordings/record.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/random.hpp"
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/csv/names.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {

@@ -17,10 +17,8 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/mesh/content.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
-#include "lab/formats/shown.hpp"
-#include "lab/formats/text_words.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/mesh/content.hpp"
 #include "lab/formats/mesh/elements.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 

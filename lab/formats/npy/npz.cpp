@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 #include "lab/formats/zip_archive.hpp"
 
 namespace broadside::lab::readers {
