@@ -4,13 +4,13 @@
 // is the time of what was named over the best of all.
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "bench/guarded.hpp"
 #include "lab/advise/advise.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/measure/compare.hpp"
@@ -111,14 +111,12 @@ void run(bool is_long, double budget, const std::string& scenes) {
 }  // namespace broadside::bench
 
 int main(int count, char** arguments) {
-  try {
-    const std::string plan = count > 1 ? arguments[1] : "quick";
+  using namespace broadside::bench;
+  return guarded("advice", 1, [&] {
+    const std::string plan = text_at(count, arguments, 1, "quick");
     if (plan != "quick" && plan != "long")
       throw std::runtime_error("the plan is '" + plan + "'; expected quick or long");
-    broadside::bench::run(plan == "long", count > 2 ? std::stod(arguments[2]) : 3,
-                          count > 3 ? arguments[3] : "");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "advice: {}\n", error.what());
-    return 1;
-  }
+    run(plan == "long", count > 2 ? std::stod(arguments[2]) : 3, text_at(count, arguments, 3, ""));
+    return 0;
+  });
 }

@@ -3,7 +3,6 @@
 // ratios move from run to run.
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <fstream>
 #include <map>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/guarded.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/samples.hpp"
 
@@ -79,14 +79,11 @@ void print(const std::map<std::string, lab::PairedRatio>& first,
 }  // namespace
 }  // namespace broadside::bench
 
-int main(int count, char** values) {
-  try {
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("agreement", 2, [&] {
     if (count != 3) throw std::runtime_error(fmt::format("{} files; expected two", count - 1));
-    broadside::bench::print(broadside::bench::ratios_of(broadside::bench::read(values[1])),
-                            broadside::bench::ratios_of(broadside::bench::read(values[2])));
+    print(ratios_of(read(arguments[1])), ratios_of(read(arguments[2])));
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "agreement: %s\n", error.what());
-    return 2;
-  }
+  });
 }

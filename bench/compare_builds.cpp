@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -19,6 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/guarded.hpp"
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
@@ -100,20 +100,17 @@ void run(const std::vector<std::string>& programs, std::size_t rounds,
 }  // namespace
 }  // namespace broadside::bench
 
-int main(int count, char** values) {
-  const std::vector<std::string> arguments(values + 1, values + count);
-  try {
-    if (arguments.size() < 2)
-      throw std::runtime_error(fmt::format(
-          "{} arguments; expected OLD NEW [ROUNDS] [ARGUMENTS OF compare ...]", arguments.size()));
-    const bool has_rounds =
-        arguments.size() > 2 && arguments[2].find_first_not_of("0123456789") == std::string::npos;
-    const std::size_t rounds = has_rounds ? std::stoul(arguments[2]) : 5;
-    broadside::bench::run({arguments[0], arguments[1]}, std::max<std::size_t>(rounds, 1),
-                          {arguments.begin() + (has_rounds ? 3 : 2), arguments.end()});
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("compare_builds", 2, [&] {
+    const std::vector<std::string> given(arguments + 1, arguments + count);
+    if (given.size() < 2)
+      throw std::runtime_error(
+          fmt::format("{} arguments; expected OLD NEW [ROUNDS] [ARGUMENTS OF compare ...]", given.size()));
+    const bool has_rounds = given.size() > 2 && given[2].find_first_not_of("0123456789") == std::string::npos;
+    const std::size_t rounds = has_rounds ? std::stoul(given[2]) : 5;
+    run({given[0], given[1]}, std::max<std::size_t>(rounds, 1),
+        {given.begin() + (has_rounds ? 3 : 2), given.end()});
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "compare_builds: %s\n", error.what());
-    return 2;
-  }
+  });
 }

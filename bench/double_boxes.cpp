@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +20,7 @@
 
 #include "broadside/broadside.hpp"
 
+#include "bench/guarded.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
@@ -184,14 +184,10 @@ void run(std::size_t count, std::size_t rounds) {
 }  // namespace
 }  // namespace broadside::bench
 
-int main(int argc, char** argv) {
-  try {
-    const auto argument = [&](int place, std::size_t standard) {
-      return argc > place ? std::stoul(argv[place]) : standard;
-    };
-    broadside::bench::run(argument(1, 1'000'000), argument(2, 9));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "double_boxes: {}\n", error.what());
-    return 1;
-  }
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("double_boxes", 1, [&] {
+    run(number_at(count, arguments, 1, 1'000'000), number_at(count, arguments, 2, 9));
+    return 0;
+  });
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -19,6 +18,7 @@
 
 #include "broadside/broadside.hpp"
 
+#include "bench/guarded.hpp"
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
@@ -215,14 +215,11 @@ void run(std::size_t boxes, std::size_t queries, std::size_t rounds) {
 }  // namespace
 }  // namespace broadside::bench
 
-int main(int argc, char** argv) {
-  try {
-    const auto argument = [&](int place, std::size_t standard) {
-      return argc > place ? std::stoul(argv[place]) : standard;
-    };
-    broadside::bench::run(argument(1, 100'000), argument(2, 10'000), argument(3, 21));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "queries: {}\n", error.what());
-    return 1;
-  }
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("queries", 1, [&] {
+    run(number_at(count, arguments, 1, 100'000), number_at(count, arguments, 2, 10'000),
+        number_at(count, arguments, 3, 21));
+    return 0;
+  });
 }

@@ -4,7 +4,6 @@
 // call takes above the boxes that go in and the pairs that come out. All must find the same pairs.
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +11,7 @@
 
 #include "broadside/broadside.hpp"
 
+#include "bench/guarded.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/measure/allocation.hpp"
 #include "lab/measure/benchmark.hpp"
@@ -66,11 +66,10 @@ void run(std::size_t boxes, const std::string& scene, const std::string& algorit
 }  // namespace broadside::bench
 
 int main(int count, char** arguments) {
-  try {
-    broadside::bench::run(count > 1 ? std::stoul(arguments[1]) : 10'000'000,
-                          count > 2 ? arguments[2] : "uniform", count > 3 ? arguments[3] : "own");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "scale: {}\n", error.what());
-    return 1;
-  }
+  using namespace broadside::bench;
+  return guarded("scale", 1, [&] {
+    run(number_at(count, arguments, 1, 10'000'000), text_at(count, arguments, 2, "uniform"),
+        text_at(count, arguments, 3, "own"));
+    return 0;
+  });
 }

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -17,6 +16,8 @@
 #include <unistd.h>
 
 #include "broadside/broadside.hpp"
+
+#include "bench/guarded.hpp"
 
 namespace broadside::bench {
 namespace {
@@ -101,12 +102,10 @@ void run(std::uint64_t frames, const std::string& spec) {
 }  // namespace
 }  // namespace broadside::bench
 
-int main(int argument_count, char** arguments) {
-  try {
-    broadside::bench::run(argument_count > 1 ? std::stoull(arguments[1]) : 20'000,
-                          argument_count > 2 ? arguments[2] : "auto");
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "soak: %s\n", error.what());
-    return 1;
-  }
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("soak", 1, [&] {
+    run(number_at(count, arguments, 1, 20'000), text_at(count, arguments, 2, "auto"));
+    return 0;
+  });
 }

@@ -14,15 +14,11 @@
 #include <fmt/format.h>
 
 #include "cli/applicability.hpp"
-#include "cli/contender_options.hpp"
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
-#include "cli/motion_options.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/formats/write_file.hpp"
@@ -56,17 +52,16 @@ struct Boxes {
   AnyHistory history;
 };
 
-bool is_set_moving(const AdviseArguments& arguments) {
+bool asks_for_motion(const AdviseArguments& arguments) {
   return arguments.moving || !arguments.frames.empty() || arguments.motion.any();
 }
 
 lab::SceneRequest request_of(const AdviseArguments& arguments) {
-  constexpr std::size_t standard_boxes = 10'000;
   constexpr std::size_t standard_frames = 20;
   lab::SceneRequest request;
   request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
-  if (is_set_moving(arguments))
+  if (asks_for_motion(arguments))
     request.frames = arguments.frames.empty() ? standard_frames : read_count("--frames", arguments.frames);
   request.moving = arguments.moving.value_or(request.moving);
   request.drift = arguments.motion.drift_or_standard();
@@ -84,7 +79,7 @@ AnyHistory whole(lab::FrameReader<D, Real>& frames, std::string& warning) {
 Boxes read_file(const AdviseArguments& arguments) {
   lab::ReadOptions options = read_options(arguments.read, arguments.input);
   // What is set moving is of floats.
-  if (is_set_moving(arguments)) {
+  if (asks_for_motion(arguments)) {
     if (options.precision == lab::Precision::float64)
       throw Unusable("--precision is double for boxes that are set moving; expected float");
     options.precision = lab::Precision::float32;
@@ -92,7 +87,7 @@ Boxes read_file(const AdviseArguments& arguments) {
   lab::BoxFile file = lab::open_file(arguments.input, options);
   Boxes boxes{file.name, {}, {}};
   boxes.history = std::visit([&](const auto& frames) { return whole(*frames, boxes.warning); }, file.frames);
-  if (!is_set_moving(arguments)) return boxes;
+  if (!asks_for_motion(arguments)) return boxes;
   const lab::SceneRequest request = request_of(arguments);
   std::visit(
       [&]<int D, typename Real>(lab::History<D, Real>& history) {

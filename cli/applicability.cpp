@@ -8,16 +8,16 @@
 
 #include <fmt/format.h>
 
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 
 namespace broadside::cli {
 namespace {
 
-bool is_file(const lab::Scene& scene) { return scene.kind == lab::SceneKind::file; }
+bool is_read_from_file(const lab::Scene& scene) { return scene.kind == lab::SceneKind::file; }
 bool has_count(const lab::Scene& scene) { return !scene.fixed_count; }
 bool has_seed(const lab::Scene& scene) { return !scene.fixed_seed; }
 bool moves_by_itself(const lab::Scene& scene) { return scene.history_2d || scene.history_3d; }
-bool is_set_moving(const lab::Scene& scene) { return !moves_by_itself(scene); }
+bool is_still(const lab::Scene& scene) { return !moves_by_itself(scene); }
 
 /// An option, the scenes that it means something to, and what is said of one and of several others.
 struct Rule {
@@ -33,17 +33,17 @@ constexpr std::string_view mover = "moves by itself";
 constexpr std::string_view movers = "move by themselves";
 
 constexpr std::array rules = {
-    Rule{"--format", is_file, no_file, no_files},
-    Rule{"--boxes", is_file, no_file, no_files},
-    Rule{"--layer", is_file, no_file, no_files},
-    Rule{"--columns", is_file, no_file, no_files},
-    Rule{"--skip-invalid", is_file, no_file, no_files},
-    Rule{"--precision", is_file, "is of floats and no file", "are of floats and no files"},
+    Rule{"--format", is_read_from_file, no_file, no_files},
+    Rule{"--boxes", is_read_from_file, no_file, no_files},
+    Rule{"--layer", is_read_from_file, no_file, no_files},
+    Rule{"--columns", is_read_from_file, no_file, no_files},
+    Rule{"--skip-invalid", is_read_from_file, no_file, no_files},
+    Rule{"--precision", is_read_from_file, "is of floats and no file", "are of floats and no files"},
     Rule{"-n", has_count, "has a number of boxes of its own", "have numbers of boxes of their own"},
     Rule{"--seed", has_seed, "is the same for every seed", "are the same for every seed"},
-    Rule{"--moving", is_set_moving, mover, movers},
-    Rule{"--drift", is_set_moving, mover, movers},
-    Rule{"--teleport", is_set_moving, mover, movers},
+    Rule{"--moving", is_still, mover, movers},
+    Rule{"--drift", is_still, mover, movers},
+    Rule{"--teleport", is_still, mover, movers},
 };
 
 /// The value that an option was given, as it was written; empty where it was not given, or the verb has none.
@@ -61,7 +61,7 @@ bool is_flag(const CLI::App& verb, std::string_view option) {
 std::string names_of(std::span<const lab::NamedScene> scenes) {
   constexpr std::size_t most = 3;
   if (scenes.size() == 1)
-    return fmt::format("{} '{}'", is_file(scenes[0].scene) ? "file" : "scene", scenes[0].spec.name);
+    return fmt::format("{} '{}'", is_read_from_file(scenes[0].scene) ? "file" : "scene", scenes[0].spec.name);
   std::string names = "scenes ";
   for (std::size_t i = 0; i < std::min(scenes.size(), most); ++i) {
     const bool is_last = i + 1 == scenes.size();
@@ -76,7 +76,7 @@ bool is_number(std::string_view text) {
 }
 
 std::string expected_for(const CLI::App& verb, const Rule& rule, const std::string& value) {
-  if (rule.applies != is_file) return "none";
+  if (rule.applies != is_read_from_file) return "none";
   const bool is_count =
       rule.option == "--boxes" && is_number(value) && verb.get_option_no_throw("-n") != nullptr;
   return is_count ? fmt::format("a file, or -n {} for the number of boxes", value) : "a file, or none";
@@ -106,7 +106,7 @@ std::vector<std::string> check_options(const CLI::App& verb, std::span<const lab
                                  is_flag(verb, rule.option) ? "" : fmt::format(" is '{}'", *value),
                                  names_of(scenes), scenes.size() == 1 ? rule.one : rule.several,
                                  expected_for(verb, rule, *value)));
-    if (rule.applies == is_file) continue;
+    if (rule.applies == is_read_from_file) continue;
     for (const lab::NamedScene& named : scenes) {
       if (!applies(named))
         remarks.push_back(

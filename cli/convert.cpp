@@ -10,9 +10,8 @@
 #include <fmt/format.h>
 
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/message.hpp"
-#include "cli/unusable.hpp"
+#include "cli/options.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 

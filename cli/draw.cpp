@@ -11,12 +11,10 @@
 #include <fmt/format.h>
 
 #include "cli/applicability.hpp"
-#include "cli/contender_options.hpp"
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/message.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
@@ -28,7 +26,7 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_boxes = 300;
+constexpr std::size_t drawn_boxes = 300;
 
 /// Of more boxes a picture is a black square, and too large a file.
 constexpr std::size_t most_boxes = 20'000;
@@ -116,7 +114,7 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
   if (!named.scene.warning.empty()) say(named.scene.warning);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
-  const std::size_t boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  const std::size_t boxes = arguments.boxes.empty() ? drawn_boxes : read_count("-n", arguments.boxes);
   if (boxes > most_boxes)
     throw Unusable(fmt::format("-n is {}; expected at most {}, which is more than an eye tells apart", boxes,
                                most_boxes));
@@ -149,7 +147,7 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
       "-n", arguments->boxes,
       fmt::format("Number of boxes (standard: {}); of a scene or file of more, so many are taken "
                   "and made larger, as dense as all",
-                  standard_boxes));
+                  drawn_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)")
       ->check(is_dimension);
   verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")

@@ -1,6 +1,8 @@
-// What the program says on stderr, and prints.
+// What the program says on standard error: messages, progress, and that it cannot use what was given.
 #pragma once
 
+#include <chrono>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -23,5 +25,28 @@ void print(std::string_view text);
 
 /// Throws Unusable if not all that was printed has been taken.
 void flush_output();
+
+/// One line on stderr; nothing where stderr is no terminal. It is gone when this object is.
+class ProgressLine {
+ public:
+  ProgressLine() = default;
+  ~ProgressLine() { clear(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Shows this from now on; at most ten times a second.
+  void show(std::string_view what);
+
+  void clear();
+
+ private:
+  bool is_shown_ = false;
+  std::chrono::steady_clock::time_point shown_{};
+};
+
+/// An argument or a file that cannot be used; its text names the thing, the value found and what is expected.
+class Unusable : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 }  // namespace broadside::cli

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 #include "cli/values.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/formats/csv/text.hpp"

@@ -6,7 +6,7 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "cli/input_options.hpp"
+#include "cli/options.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/formats/mesh/swept_mesh.hpp"
 

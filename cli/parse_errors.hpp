@@ -6,7 +6,7 @@
 
 #include <CLI/App.hpp>
 
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 
 namespace broadside::cli {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 #include "cli/values.hpp"
 #include "lab/formats/write_file.hpp"
 

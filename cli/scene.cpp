@@ -12,11 +12,9 @@
 
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
-#include "cli/input_options.hpp"
 #include "cli/message.hpp"
-#include "cli/motion_options.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/convert.hpp"
@@ -24,8 +22,6 @@
 
 namespace broadside::cli {
 namespace {
-
-constexpr std::size_t standard_boxes = 10'000;
 
 struct SceneArguments {
   std::vector<std::string> scenes;

@@ -9,14 +9,13 @@
 #include <fmt/format.h>
 
 #include "cli/applicability.hpp"
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 #include "cli/values.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_boxes = 10'000;
 constexpr std::size_t standard_frames = 20;  // of a scene that moves by itself
 
 template <int D>

@@ -1,6 +1,7 @@
 // The scenes and files that a verb works on: by their place on the command line, or by --scenes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,10 +9,13 @@
 
 #include <CLI/App.hpp>
 
-#include "cli/input_options.hpp"
+#include "cli/options.hpp"
 #include "lab/formats/format.hpp"
 
 namespace broadside::cli {
+
+/// How many boxes a scene has where -n is not given.
+inline constexpr std::size_t standard_boxes = 10'000;
 
 /// Adds them under the positional name `name`, and as --scenes.
 CLI::Option* add_scenes(CLI::App& verb, const std::string& name, std::vector<std::string>& scenes,

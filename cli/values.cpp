@@ -12,7 +12,7 @@
 
 #include "broadside/executor.hpp"
 
-#include "cli/unusable.hpp"
+#include "cli/message.hpp"
 #include "lab/formats/input.hpp"
 #include "lab/formats/write_file.hpp"
 

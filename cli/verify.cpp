@@ -6,13 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/contender_options.hpp"
 #include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/options.hpp"
 #include "cli/scene_arguments.hpp"
-#include "cli/unusable.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/verify/verify_file.hpp"

@@ -29,9 +29,9 @@ std::array<double, told_percentiles.size()> percentiles_of(std::vector<double>& 
 }
 
 template <int D, typename Real>
-class Collector {
+class InfoCollector {
  public:
-  explicit Collector(FileInfo& info) : info_(info) {
+  explicit InfoCollector(FileInfo& info) : info_(info) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     info_.axes.assign(D, {infinity, -infinity, {}});
   }
@@ -161,7 +161,7 @@ double timed(const Run& run) {
 
 template <int D, typename Real>
 void collect(FrameReader<D, Real>& frames, FileInfo& info) {
-  Collector<D, Real> collector(info);
+  InfoCollector<D, Real> collector(info);
   std::vector<Box<D, Real>> boxes;
   double milliseconds = timed([&] { boxes = frames.first(); });
   collector.first(std::move(boxes));

@@ -1,4 +1,4 @@
-// Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
+// Files of boxes joined: the pairs that overlap or lie within a distance, in one set or between two.
 #pragma once
 
 #include <cstddef>
@@ -52,5 +52,15 @@ void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs);
 
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.
 void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs);
+
+/// Writes every pair of boxes between which the gap on each axis, 0 where they overlap on it, is at most
+/// `distance`, which is finite and 0 or more. So it finds all pairs whose Euclidean distance is at most that,
+/// and a few more, past corners. Exact: the gap of two coordinates is compared with the distance as the real
+/// numbers that they are, unrounded. Otherwise as join.
+void join_within(const AnyBoxes& boxes, double distance, const Contender& contender, PairSink& pairs);
+
+/// Writes every such pair of a box of `left` and one of `right`, which match, likewise.
+void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Contender& contender,
+                 PairSink& pairs);
 
 }  // namespace broadside::lab

@@ -1,13 +1,14 @@
 // Pairs of boxes within a distance: those that overlap once each box is enlarged by half of it, rounded
 // outward, and that then pass a test without rounding.
-#include "lab/join_within.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <variant>
 #include <vector>
+
+#include "lab/join.hpp"
+#include "lab/pair_filter.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -62,18 +63,9 @@ class PairsWithin final : public PairSink {
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    // Not by add(), which orders the two: they may be of two sets.
-    while (!pairs.empty()) {
-      const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), PairSink::max_room));
-      pairs = pairs.subspan(chunk.size());
-      Pair* const room = pairs_.room(chunk.size());
-      std::size_t kept = 0;
-      for (const Pair pair : chunk) {
-        room[kept] = pair;
-        kept += are_within(left_[index(pair.first)], right_[index(pair.second)], distance_) ? 1 : 0;
-      }
-      pairs_.commit(kept);
-    }
+    write_if(pairs, pairs_, [this](Pair pair) {
+      return are_within(left_[index(pair.first)], right_[index(pair.second)], distance_);
+    });
   }
 
   const std::vector<Box<D, Real>>& left_;

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/guarded.hpp"
 #include "bench/motion/parts.hpp"
 
 namespace broadside::bench {
@@ -74,10 +75,6 @@ int run(int count, char** arguments) {
 }  // namespace broadside::bench
 
 int main(int count, char** arguments) {
-  try {
-    return broadside::bench::run(count, arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "motion: {}\n", error.what());
-    return 1;
-  }
+  using namespace broadside::bench;
+  return guarded("motion", 1, [&] { return run(count, arguments); });
 }

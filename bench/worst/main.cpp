@@ -12,12 +12,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "bench/guarded.hpp"
 #include "bench/worst/hunt.hpp"
 #include "bench/worst/report.hpp"
 #include "lab/measure/memory_state.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/worst/fixed_inputs.hpp"
+#include "lab/worst/input.hpp"
 
 namespace broadside::bench {
 namespace {
@@ -162,10 +163,6 @@ int run(int count, char** values) {
 }  // namespace broadside::bench
 
 int main(int count, char** arguments) {
-  try {
-    return broadside::bench::run(count, arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "worst: {}\n", error.what());
-    return 2;
-  }
+  using namespace broadside::bench;
+  return guarded("worst", 2, [&] { return run(count, arguments); });
 }

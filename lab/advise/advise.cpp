@@ -7,14 +7,13 @@
 #include <tuple>
 #include <utility>
 
+#include "lab/advise/choice.hpp"
 #include "lab/advise/snippet.hpp"
-#include "lab/advise/variants.hpp"
-#include "lab/measure/find_case.hpp"
+#include "lab/measure/cases.hpp"
 #include "lab/measure/pair_count.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/samples.hpp"
-#include "lab/measure/track_case.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,4 +1,4 @@
-// Which algorithm is to be advised, given what was measured: rules that ask for nothing else.
+// Which algorithm is advised, and which settings of it are worth a try.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "lab/advise/signals.hpp"
+#include "lab/catalogue.hpp"
 #include "lab/measure/measurement.hpp"
 
 namespace broadside::lab {
@@ -63,5 +65,10 @@ double part_of_rounds(const Measurement& a, const Measurement& b);
 /// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that
 /// is among them.
 std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time = true);
+
+/// The settings that are worth a try: cells of some multiples of the boxes' size, capacities, axes, and where
+/// boxes move each way to follow them. The contender's own values stay as they are, so that there are none
+/// where it has them all; none either for algorithms that have no such tunables.
+std::vector<Contender> variants_of(const Contender& contender, const Signals& signals);
 
 }  // namespace broadside::lab

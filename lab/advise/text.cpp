@@ -29,7 +29,7 @@ std::string motion_text(const MotionSignals& motion) {
   return text + ".";
 }
 
-std::string verdict(const Measurement& measurement) {
+std::string verdict_with_reason(const Measurement& measurement) {
   if (measurement.outcome == Outcome::verified) return "verified";
   if (measurement.outcome == Outcome::failed) return "FAILED: " + measurement.reason;
   return "skipped: " + measurement.reason;
@@ -71,7 +71,7 @@ std::string table(const Advice& advice) {
                                            : "-",
                                     memory(measurement.own_bytes),
                                     memory(measurement.peak_bytes),
-                                    verdict(measurement)};
+                                    verdict_with_reason(measurement)};
     if (moves)
       row.insert(row.begin() + 2, timed ? duration(percentile(measurement.samples_ms, 0.99) / 1e3) : "-");
     columns.add(row);

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -26,7 +26,7 @@ constexpr std::string_view ogr = "ogr2ogr -f GeoJSON out.geojson IN";
 constexpr std::string_view pdal = "pdal translate IN out.ply (then --boxes vertices)";
 constexpr std::string_view office = "libreoffice --headless --convert-to csv IN";
 
-constexpr auto table = std::to_array<UnreadFormat>({
+constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"a shapefile", ".shp .shx .dbf ", "\x00\x00\x27\x0a"sv, ogr},
     {"a GeoPackage or another database of SQLite", ".gpkg .sqlite ", "SQLite format 3\0"sv, ogr},
     {"FlatGeobuf", ".fgb ", "fgb\x03", ogr},
@@ -75,11 +75,11 @@ std::string command_for(const UnreadFormat& format, std::string_view file) {
 
 std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file) {
   const std::string wanted = std::string(extension) + ' ';
-  const auto found = std::ranges::find_if(table, [&](const UnreadFormat& format) {
+  const auto found = std::ranges::find_if(unread_formats, [&](const UnreadFormat& format) {
     return extension.empty() ? begins_with(beginning, format.magic)
                              : format.extensions.find(wanted) != std::string_view::npos;
   });
-  if (found == table.end()) return {};
+  if (found == unread_formats.end()) return {};
   return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}", found->name,
                      command_for(*found, file));
 }

@@ -9,7 +9,7 @@
 #include <zip.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {

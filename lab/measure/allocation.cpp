@@ -70,24 +70,27 @@ std::optional<Allocation> AllocationMeter::read() const noexcept {
 
 }  // namespace broadside::lab
 
+// Weak, so that a program may have operators of its own, as the tests of memory do.
 #if BROADSIDE_COUNTS_ALLOCATIONS
-void* operator new(std::size_t size) {
+[[gnu::weak]] void* operator new(std::size_t size) {
   return broadside::lab::take([size] { return std::malloc(std::max<std::size_t>(size, 1)); });
 }
 
-void* operator new(std::size_t size, std::align_val_t alignment) {
+[[gnu::weak]] void* operator new(std::size_t size, std::align_val_t alignment) {
   const auto align = static_cast<std::size_t>(alignment);
   // aligned_alloc wants a multiple of the alignment.
   const std::size_t whole = std::max((size + align - 1) / align * align, align);
   return broadside::lab::take([=] { return std::aligned_alloc(align, whole); });
 }
 
-void operator delete(void* block) noexcept {
+[[gnu::weak]] void operator delete(void* block) noexcept {
   broadside::lab::count_given_back(block);
   std::free(block);
 }
 
-void operator delete(void* block, std::size_t) noexcept { operator delete(block); }
-void operator delete(void* block, std::align_val_t) noexcept { operator delete(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { operator delete(block); }
+[[gnu::weak]] void operator delete(void* block, std::size_t) noexcept { operator delete(block); }
+[[gnu::weak]] void operator delete(void* block, std::align_val_t) noexcept { operator delete(block); }
+[[gnu::weak]] void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
+  operator delete(block);
+}
 #endif

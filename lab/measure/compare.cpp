@@ -8,11 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "lab/measure/find_case.hpp"
+#include "lab/measure/cases.hpp"
 #include "lab/measure/pair_count.hpp"
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/processor_share.hpp"
-#include "lab/measure/track_case.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
 

@@ -1,6 +1,4 @@
 // Measures finders: every algorithm on the same boxes, in rounds, each result checked.
-#include "lab/measure/find_case.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <type_traits>
@@ -11,6 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/allocation.hpp"
+#include "lab/measure/cases.hpp"
 #include "lab/measure/floor.hpp"
 #include "lab/measure/memory_state.hpp"
 #include "lab/measure/reference.hpp"
@@ -30,7 +29,7 @@ struct NoFloor {
 };
 
 /// What a search of one input must give.
-struct Expectation {
+struct ExpectedPairs {
   Reference reference;
   std::size_t input;
   std::size_t count;
@@ -41,7 +40,7 @@ struct Expectation {
 
 /// An algorithm that takes part.
 template <int D, typename Real>
-struct Entry {
+struct FindEntry {
   const Contender* contender;
   Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
@@ -65,7 +64,7 @@ class FindCase {
       if (is_eligible(benchmark_.contenders[i], measurements_[i]))
         entries_.push_back({&benchmark_.contenders[i], &measurements_[i]});
     }
-    for (Entry<D, Real>& entry : entries_) warm_up(entry);
+    for (FindEntry<D, Real>& entry : entries_) warm_up(entry);
     has_floor_ =
         std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
@@ -113,7 +112,7 @@ class FindCase {
   }
 
   /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
-  void warm_up(Entry<D, Real>& entry) {
+  void warm_up(FindEntry<D, Real>& entry) {
     Measurement& measurement = *entry.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
     measurement.verified_by = expectation(*entry.contender->algorithm, 0).reference.text();
@@ -135,13 +134,13 @@ class FindCase {
   /// does. The floor comes behind the last entry in the list of turns, and takes part in every round.
   bool play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
-    std::vector<Entry<D, Real>*> players;
-    for (Entry<D, Real>& entry : entries_) {
+    std::vector<FindEntry<D, Real>*> players;
+    for (FindEntry<D, Real>& entry : entries_) {
       if (has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds))
         players.push_back(&entry);
     }
     if (players.empty()) return false;
-    for (const Entry<D, Real>* const entry : players)
+    for (const FindEntry<D, Real>* const entry : players)
       touch(expectation(*entry->contender->algorithm, input).count);
     for (const std::size_t turn : turns(players.size() + (has_floor_ ? 1 : 0), round)) {
       if (turn < players.size()) {
@@ -152,14 +151,14 @@ class FindCase {
       }
     }
     if (round > 0) return true;
-    for (Entry<D, Real>& entry : entries_) {
+    for (FindEntry<D, Real>& entry : entries_) {
       entry.most_rounds =
           round_limit(*entry.measurement, measurements_, benchmark_.effort, benchmark_.effort.slow_seconds);
     }
     return true;
   }
 
-  void sample(Entry<D, Real>& entry, std::size_t input, std::size_t round) {
+  void sample(FindEntry<D, Real>& entry, std::size_t input, std::size_t round) {
     Measurement& measurement = *entry.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
     settle(entry, fault_of(measurement, [&] {
@@ -187,14 +186,14 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  void settle(Entry<D, Real>& entry, const std::string& fault) {
+  void settle(FindEntry<D, Real>& entry, const std::string& fault) {
     entry.measurement->outcome = Outcome::verified;
     if (!fault.empty()) fail(*entry.measurement, fault);
   }
 
   /// What is wrong with pairs_; empty if nothing is.
-  std::string check(Entry<D, Real>& entry, std::size_t input) {
-    const Expectation& expected = expectation(*entry.contender->algorithm, input);
+  std::string check(FindEntry<D, Real>& entry, std::size_t input) {
+    const ExpectedPairs& expected = expectation(*entry.contender->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;
     const bool equal = pairs_.size() == expected.count && hash_of(pairs_) == expected.hash;
     const bool kept = expected.pairs.size() == expected.count;
@@ -210,13 +209,13 @@ class FindCase {
   }
 
   /// What the contender must find in the input; computed when first asked for.
-  const Expectation& expectation(const Algorithm& contender, std::size_t input) {
+  const ExpectedPairs& expectation(const Algorithm& contender, std::size_t input) {
     const Reference reference(contender, benchmark_.known, boxes_of(0).size(), most_boxes_by_definition);
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
     std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input));
-    Expectation expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
+    ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
     if (!reference.is_definition()) {
       if (auto divergence = check_sample<D, Real>(boxes_of(input), pairs))
         expected.fault =
@@ -224,7 +223,7 @@ class FindCase {
                 .text;
     }
     if (pairs.size() <= most_pairs_kept) expected.pairs = std::move(pairs);
-    expectations_.push_back(std::make_unique<Expectation>(std::move(expected)));
+    expectations_.push_back(std::make_unique<ExpectedPairs>(std::move(expected)));
     return *expectations_.back();
   }
 
@@ -233,8 +232,8 @@ class FindCase {
   const Benchmark& benchmark_;
   Extremes extremes_;
   std::vector<Measurement> measurements_;  // of the contenders, in their order
-  std::vector<Entry<D, Real>> entries_;
-  std::vector<std::unique_ptr<Expectation>> expectations_;
+  std::vector<FindEntry<D, Real>> entries_;
+  std::vector<std::unique_ptr<ExpectedPairs>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
   std::size_t touched_ = 0;  // how many pairs of that memory were written to
   CacheState caches_;

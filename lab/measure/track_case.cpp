@@ -1,6 +1,4 @@
 // Measures trackers: every algorithm over the same histories, frame by frame in turns, all events checked.
-#include "lab/measure/track_case.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +8,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "lab/measure/cases.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/memory_state.hpp"
 #include "lab/measure/rounds.hpp"
@@ -19,7 +18,7 @@ namespace broadside::lab {
 namespace {
 
 /// The expected events of one input.
-struct Expectation {
+struct InputEvents {
   Reference reference;
   std::size_t input;
   ExpectedEvents events;
@@ -27,7 +26,7 @@ struct Expectation {
 
 /// An algorithm that takes part.
 template <int D, typename Real>
-struct Entry {
+struct TrackEntry {
   const Contender* contender;
   Measurement* measurement;
   std::unique_ptr<PairTracker<D, Real>> tracker{};  // of this pass
@@ -130,9 +129,9 @@ class TrackCase {
 
   /// Lets every entry follow the first input once, untimed: memory is taken, and how much that is shows.
   void warm_up() {
-    for (Entry<D, Real>& entry : entries_) entry.plays = true;
+    for (TrackEntry<D, Real>& entry : entries_) entry.plays = true;
     pass(0, 0, true);
-    for (Entry<D, Real>& entry : entries_) {
+    for (TrackEntry<D, Real>& entry : entries_) {
       if (!entry.plays) continue;
       Measurement& measurement = *entry.measurement;
       measurement.outcome = Outcome::verified;
@@ -145,11 +144,11 @@ class TrackCase {
 
   /// Lets every entry that takes part in this round follow the same input; false where none does.
   bool play(std::size_t round) {
-    for (Entry<D, Real>& entry : entries_)
+    for (TrackEntry<D, Real>& entry : entries_)
       entry.plays = has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds);
-    if (std::ranges::none_of(entries_, &Entry<D, Real>::plays)) return false;
+    if (std::ranges::none_of(entries_, &TrackEntry<D, Real>::plays)) return false;
     pass(round % inputs_.size(), round + 1, false);
-    for (Entry<D, Real>& entry : entries_) {
+    for (TrackEntry<D, Real>& entry : entries_) {
       if (!entry.plays) continue;
       Measurement& measurement = *entry.measurement;
       measurement.samples_ms.insert(measurement.samples_ms.end(), entry.frames_ms.begin(),
@@ -157,7 +156,7 @@ class TrackCase {
       measurement.build_ms = median(entry.builds_ms);
     }
     if (round > 0) return true;
-    for (Entry<D, Real>& entry : entries_) {
+    for (TrackEntry<D, Real>& entry : entries_) {
       entry.most_rounds = round_limit(*entry.measurement, measurements_, benchmark_.effort,
                                       benchmark_.effort.slow_history_seconds);
     }
@@ -169,7 +168,7 @@ class TrackCase {
   void pass(std::size_t input, std::size_t number, bool counts_memory) {
     const History<D, Real>& history = inputs_[input];
     std::vector<Box<D, Real>> boxes = history.boxes;
-    for (Entry<D, Real>& entry : entries_) {
+    for (TrackEntry<D, Real>& entry : entries_) {
       if (!entry.plays) continue;
       benchmark_.watch.at(entry.measurement->algorithm + ", checking");
       entry.expected = &expectation(entry, input);
@@ -181,7 +180,7 @@ class TrackCase {
       const Frame<D, Real> now{boxes,
                                frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
       for (const std::size_t turn : turns(entries_.size(), number * (history.steps.size() + 1) + frame)) {
-        Entry<D, Real>& entry = entries_[turn];
+        TrackEntry<D, Real>& entry = entries_[turn];
         if (!entry.plays) continue;
         benchmark_.watch.at(fmt::format("{}, frame {}", entry.measurement->algorithm, frame));
         const std::string fault =
@@ -194,7 +193,8 @@ class TrackCase {
   }
 
   /// One frame of one entry; what is wrong with its events.
-  std::string take(Entry<D, Real>& entry, const Frame<D, Real>& now, std::size_t frame, bool counts_memory) {
+  std::string take(TrackEntry<D, Real>& entry, const Frame<D, Real>& now, std::size_t frame,
+                   bool counts_memory) {
     const ExpectedEvents& expected = *entry.expected;
     if (!expected.fault.empty()) return expected.fault;
     touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
@@ -220,7 +220,7 @@ class TrackCase {
 
   /// Runs one frame and adds the memory it takes to the entry's.
   template <typename Run>
-  double counted(Entry<D, Real>& entry, const Run& run) {
+  double counted(TrackEntry<D, Real>& entry, const Run& run) {
     const AllocationMeter meter;
     const double milliseconds = run();
     if (const auto allocation = meter.read()) {
@@ -233,7 +233,7 @@ class TrackCase {
   }
 
   /// Notes what is counted while warming up.
-  void note(Entry<D, Real>& entry, std::size_t frame) {
+  void note(TrackEntry<D, Real>& entry, std::size_t frame) {
     entry.hasher.add(events_);
     entry.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
@@ -245,15 +245,15 @@ class TrackCase {
   }
 
   /// What the entry must report on the input; computed when first asked for.
-  const ExpectedEvents& expectation(Entry<D, Real>& entry, std::size_t input) {
+  const ExpectedEvents& expectation(TrackEntry<D, Real>& entry, std::size_t input) {
     const Reference reference(*entry.contender->algorithm, benchmark_.known, case_.boxes,
                               most_tracked_boxes_by_definition);
     entry.measurement->verified_by = reference.text();
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
-    expectations_.push_back(std::make_unique<Expectation>(
-        Expectation{reference, input, expected_events(reference, inputs_[input])}));
+    expectations_.push_back(std::make_unique<InputEvents>(
+        InputEvents{reference, input, expected_events(reference, inputs_[input])}));
     return expectations_.back()->events;
   }
 
@@ -262,8 +262,8 @@ class TrackCase {
   const Benchmark& benchmark_;
   Extremes extremes_;
   std::vector<Measurement> measurements_;  // of the contenders, in their order
-  std::vector<Entry<D, Real>> entries_;
-  std::vector<std::unique_ptr<Expectation>> expectations_;
+  std::vector<TrackEntry<D, Real>> entries_;
+  std::vector<std::unique_ptr<InputEvents>> expectations_;
   Events events_;            // of the last update; its memory serves all
   std::size_t touched_ = 0;  // how many events of that memory were written to
   CacheState caches_;

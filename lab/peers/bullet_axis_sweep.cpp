@@ -40,7 +40,7 @@ std::unique_ptr<PairFinder<D>> finder(const Settings&) {
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> tracker(const Settings&) {
+std::unique_ptr<PairTracker<D>> make_sweep_tracker(const Settings&) {
   return std::make_unique<ProxyTracker<D>>(proxies<D>());
 }
 
@@ -54,8 +54,8 @@ Algorithm bullet_axis_sweep() {
       .version = bullet_version(),
       .finder_2d = finder<2>,
       .finder_3d = finder<3>,
-      .tracker_2d = tracker<2>,
-      .tracker_3d = tracker<3>,
+      .tracker_2d = make_sweep_tracker<2>,
+      .tracker_3d = make_sweep_tracker<3>,
       .infinite_boxes = false,  // its world is bounded
       .largest_coordinate = 1e30,
       .own_allocator = true,

@@ -71,7 +71,7 @@ class OwnDbvt final : public btDbvtBroadphase {
 };
 
 template <int D>
-std::unique_ptr<PairTracker<D>> tracker(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_dbvt_tracker(const Settings& settings) {
   const auto make = [deferred = settings.text("collide") == "deferred"](std::span<const Box<D>> boxes,
                                                                         unsigned) {
     return std::make_unique<OwnDbvt>(margin_for(boxes), deferred);
@@ -99,8 +99,8 @@ Algorithm bullet_dbvt() {
                     .choices = {"at_once", "deferred"}}},
       .finder_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
       .finder_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
-      .tracker_2d = tracker<2>,
-      .tracker_3d = tracker<3>,
+      .tracker_2d = make_dbvt_tracker<2>,
+      .tracker_3d = make_dbvt_tracker<3>,
       .infinite_boxes = false,  // moving boxes are made larger, and their centres compared
       .largest_coordinate = 1e30,
       .own_allocator = true,

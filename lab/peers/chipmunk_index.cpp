@@ -1,4 +1,4 @@
-// Chipmunk's spatial indexes as finders and trackers: filled one by one, then asked for all pairs at once.
+// Chipmunk's two spatial indexes: a tree of bounding boxes and a spatial hash.
 #include "lab/peers/chipmunk_index.hpp"
 
 #include <algorithm>
@@ -10,8 +10,11 @@
 
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peers.hpp"
+#include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
+
 namespace {
 
 ChipmunkObject object_of(const Box2& box, BoxId id) {
@@ -21,12 +24,12 @@ ChipmunkObject object_of(const Box2& box, BoxId id) {
 cpHashValue hash_of(const ChipmunkObject& object) { return index(object.id); }
 
 /// What a search hands through to its callback: margins and cells tell more than the overlapping pairs.
-struct Search {
+struct PairQuery {
   std::span<const Box2> boxes;
   CallbackSink pairs;
 
   static cpCollisionID take(void* first, void* second, cpCollisionID id, void* data) {
-    auto& search = *static_cast<Search*>(data);
+    auto& search = *static_cast<PairQuery*>(data);
     const BoxId a = static_cast<ChipmunkObject*>(first)->id;
     const BoxId b = static_cast<ChipmunkObject*>(second)->id;
     if (overlap(search.boxes[index(a)], search.boxes[index(b)])) search.pairs.add(a, b);
@@ -41,8 +44,8 @@ struct Search {
 };
 
 void find_all(cpSpatialIndex* spatial_index, std::span<const Box2> boxes, PairSink& pairs) {
-  Search search{boxes, CallbackSink(pairs)};
-  cpSpatialIndexReindexQuery(spatial_index, Search::take, &search);
+  PairQuery search{boxes, CallbackSink(pairs)};
+  cpSpatialIndexReindexQuery(spatial_index, PairQuery::take, &search);
   search.pairs.finish();
 }
 
@@ -121,10 +124,10 @@ class ChipmunkTracker final : public PeerTracker<2> {
 
   /// The index of what rests knows no pairs within: each box is looked up.
   void find_resting(std::span<const Box2> boxes, PairSink& pairs) {
-    Search search{boxes, CallbackSink(pairs)};
+    PairQuery search{boxes, CallbackSink(pairs)};
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       if (is_present(boxes[i]))
-        cpSpatialIndexQuery(resting_.get(), &objects_[i], objects_[i].bounds, Search::take_once, &search);
+        cpSpatialIndexQuery(resting_.get(), &objects_[i], objects_[i].bounds, PairQuery::take_once, &search);
     }
     search.pairs.finish();
   }
@@ -195,6 +198,48 @@ Algorithm chipmunk_index(MakeIndex make) {
       .infinite_boxes = false,
       .own_allocator = true,
   };
+}
+
+namespace {
+
+ChipmunkIndex make_tree(std::span<const Box2>, bool moving, cpSpatialIndex* resting) {
+  ChipmunkIndex tree(cpBBTreeNew(bounds_of, resting));
+  // Margins are for what moves.
+  if (moving)
+    cpBBTreeSetVelocityFunc(tree.get(),
+                            [](void* object) { return static_cast<ChipmunkObject*>(object)->velocity; });
+  return tree;
+}
+
+}  // namespace
+
+Algorithm chipmunk_bb_tree() {
+  Algorithm algorithm = chipmunk_index(make_tree);
+  algorithm.name = "chipmunk_bb_tree";
+  algorithm.summary = "Chipmunk's bounding box tree, filled one by one, which keeps its leaves' pairs";
+  algorithm.source = "Chipmunk, cpBBTree in cpSpatialIndex.h";
+  return algorithm;
+}
+
+namespace {
+
+ChipmunkIndex make_hash(std::span<const Box2> boxes, bool, cpSpatialIndex* resting) {
+  // Its manual: cells about as large as the objects, and ten times as many cells as objects.
+  constexpr std::size_t cells_a_box = 10;
+  constexpr std::size_t most_cells = 100'000'000;
+  const std::size_t cells = std::min(cells_a_box * std::max<std::size_t>(boxes.size(), 1), most_cells);
+  return ChipmunkIndex(cpSpaceHashNew(cell_size(boxes, 1), static_cast<int>(cells), bounds_of, resting));
+}
+
+}  // namespace
+
+Algorithm chipmunk_space_hash() {
+  Algorithm algorithm = chipmunk_index(make_hash);
+  algorithm.name = "chipmunk_space_hash";
+  algorithm.summary =
+      "Chipmunk's spatial hash: boxes in every cell they touch, in a table by the cell's hash";
+  algorithm.source = "Chipmunk, cpSpaceHash in cpSpatialIndex.h";
+  return algorithm;
 }
 
 }  // namespace broadside::lab::peers

@@ -4,24 +4,14 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
-#include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
+#include "lab/peers/embree_handles.hpp"
 #include "lab/peers/peers.hpp"
 
 namespace broadside::lab::peers {
 namespace {
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-
-template <typename Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 class EmbreeCollide final : public PairFinder<3> {
  public:
@@ -97,9 +87,9 @@ class EmbreeCollide final : public PairFinder<3> {
   }
 
   tbb::task_arena arena_{1};
-  Owned<RTCDevice> device_;
-  Owned<RTCScene> scene_;
-  Owned<RTCGeometry> geometry_;
+  EmbreeOwned<RTCDevice> device_;
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
   std::span<const Box3> boxes_;  // of the search that is going on
   PairSink* pairs_ = nullptr;
   std::exception_ptr thrown_;

@@ -1,4 +1,5 @@
-// FCL's SaPCollisionManager: linked lists of end points on every axis, and a list of the pairs.
+// FCL's two sweep and prune managers.
+#include <fcl/broadphase/broadphase_SSaP.h>
 #include <fcl/broadphase/broadphase_SaP.h>
 
 #include "lab/peers/fcl_boxes.hpp"
@@ -17,6 +18,16 @@ Algorithm fcl_sap() {
   algorithm.name = "fcl_sap";
   algorithm.summary = "FCL's sweep and prune: sorted lists of end points, from which the pairs are kept";
   algorithm.source = "FCL, SaPCollisionManager, after I-COLLIDE";
+  return algorithm;
+}
+
+Algorithm fcl_ssap() {
+  Algorithm algorithm = fcl_manager(
+      [](std::span<const Box3>) -> FclManager { return std::make_unique<fcl::SSaPCollisionManagerd>(); });
+  algorithm.name = "fcl_ssap";
+  algorithm.summary =
+      "FCL's simple sweep and prune: lists of the boxes sorted on each axis, a sweep along one";
+  algorithm.source = "FCL, SSaPCollisionManager";
   return algorithm;
 }
 

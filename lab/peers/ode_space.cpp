@@ -56,12 +56,12 @@ struct DestroyGeom {
 using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
 
 /// What a search hands through to its callback. A space tells boxes that reach to infinity without a test.
-struct Search {
+struct SpaceQuery {
   std::span<const Box3> boxes;
   CallbackSink& pairs;
 
   static void take(void* data, dGeomID first, dGeomID second) {
-    auto& search = *static_cast<Search*>(data);
+    auto& search = *static_cast<SpaceQuery*>(data);
     const BoxId a = static_cast<const Item*>(dGeomGetData(first))->id;
     const BoxId b = static_cast<const Item*>(dGeomGetData(second))->id;
     if (overlap(search.boxes[index(a)], search.boxes[index(b)])) search.pairs.add(a, b);
@@ -69,8 +69,8 @@ struct Search {
 };
 
 void find_all(dSpaceID space, std::span<const Box3> boxes, CallbackSink& pairs) {
-  Search search{boxes, pairs};
-  dSpaceCollide(space, &search, Search::take);
+  SpaceQuery search{boxes, pairs};
+  dSpaceCollide(space, &search, SpaceQuery::take);
 }
 
 /// Items and their geoms, which are kept for the next search.

@@ -2,24 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <type_traits>
 
-#include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
+#include "lab/peers/embree_handles.hpp"
 #include "lab/peers/queries.hpp"
 
 namespace broadside::lab::peers {
 namespace {
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-
-template <typename Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 class EmbreeQueries final : public QueryPeer<3> {
  public:
@@ -133,9 +123,9 @@ class EmbreeQueries final : public QueryPeer<3> {
   }
 
   std::span<const Box3> boxes_;
-  Owned<RTCDevice> device_;
-  Owned<RTCScene> scene_;
-  Owned<RTCGeometry> geometry_;
+  EmbreeOwned<RTCDevice> device_;
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
 };
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include <box2d/box2d.h>
 
-#include "lab/recordings/record.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/random.hpp"
 
@@ -193,7 +192,7 @@ class Pyramid : public Box2dWorld {
 };
 
 template <typename World>
-Scene recording(const char* name, const char* summary) {
+Scene box2d_recording(const char* name, const char* summary) {
   return {
       .name = name,
       .summary = summary,
@@ -211,9 +210,9 @@ Scene recording(const char* name, const char* summary) {
 
 std::vector<Scene> box2d() {
   return {
-      recording<Rain>("box2d_rain", "boxes and balls falling through platforms, again and again"),
-      recording<Tumbler>("box2d_tumbler", "boxes tumbling in a turning drum"),
-      recording<Pyramid>("box2d_pyramid", "pyramids at rest, hit by balls one after the other"),
+      box2d_recording<Rain>("box2d_rain", "boxes and balls falling through platforms, again and again"),
+      box2d_recording<Tumbler>("box2d_tumbler", "boxes tumbling in a turning drum"),
+      box2d_recording<Pyramid>("box2d_pyramid", "pyramids at rest, hit by balls one after the other"),
   };
 }
 

@@ -9,7 +9,6 @@
 
 #include <btBulletDynamicsCommon.h>
 
-#include "lab/recordings/record.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/random.hpp"
 
@@ -187,7 +186,7 @@ class MovingGravity : public BulletWorld {
 };
 
 template <typename World>
-Scene recording(const char* name, const char* summary) {
+Scene bullet_recording(const char* name, const char* summary) {
   return {
       .name = name,
       .summary = summary,
@@ -205,9 +204,10 @@ Scene recording(const char* name, const char* summary) {
 
 std::vector<Scene> bullet() {
   return {
-      recording<FreeFall>("bullet_free_fall", "bodies falling from all heights onto a growing heap"),
-      recording<Brownian>("bullet_brownian", "weightless bodies kicked at random"),
-      recording<MovingGravity>("bullet_moving_gravity", "bodies in a closed container while gravity turns"),
+      bullet_recording<FreeFall>("bullet_free_fall", "bodies falling from all heights onto a growing heap"),
+      bullet_recording<Brownian>("bullet_brownian", "weightless bodies kicked at random"),
+      bullet_recording<MovingGravity>("bullet_moving_gravity",
+                                      "bodies in a closed container while gravity turns"),
   };
 }
 

@@ -1,7 +1,12 @@
-// Scenes of real motion, recorded by running physics engines headless. Engines' headers are seen only here.
+// Motion recorded by running physics engines.
 #pragma once
 
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "lab/scenes/scene.hpp"
 
@@ -12,5 +17,38 @@ std::vector<Scene> box2d();
 
 /// Broadmark's three scenes, in Bullet, in 3D; likewise.
 std::vector<Scene> bullet();
+
+/// The history of `world.boxes()` after `warm_up` calls of world.step() and over `frames` more. Throws
+/// std::runtime_error if the engine gives something that is no box.
+template <int D, typename World>
+History<D> record(World& world, std::size_t warm_up, std::size_t frames) {
+  const auto boxes_at = [&world](std::size_t step) {
+    std::vector<Box<D>> boxes = world.boxes();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (is_present(boxes[i])) continue;
+      throw std::runtime_error(fmt::format(
+          "recording: the engine's box {} after step {} has min ({}) and max ({}); expected min <= max", i,
+          step, fmt::join(boxes[i].min, ", "), fmt::join(boxes[i].max, ", ")));
+    }
+    return boxes;
+  };
+  for (std::size_t i = 0; i < warm_up; ++i) world.step();
+
+  History<D> history{boxes_at(warm_up), {}};
+  std::vector<Box<D>> before = history.boxes;
+  for (std::size_t frame = 1; frame <= frames; ++frame) {
+    world.step();
+    std::vector<Box<D>> now = boxes_at(warm_up + frame);
+    Step<D> step{now.size(), {}, {}};
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (now[i] == before[i]) continue;
+      step.changed.push_back(BoxId(i));
+      step.boxes.push_back(now[i]);
+    }
+    history.steps.push_back(std::move(step));
+    before = std::move(now);
+  }
+  return history;
+}
 
 }  // namespace broadside::lab::recordings

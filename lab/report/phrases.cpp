@@ -1,4 +1,4 @@
-// What tables and lines say alike: ratios with their intervals, and how results were verified.
+// What a result says in words.
 #include "lab/report/phrases.hpp"
 
 #include <algorithm>
@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "lab/measure/paired_ratio.hpp"
+#include "lab/measure/ranking.hpp"
 #include "lab/numbers.hpp"
 
 namespace broadside::lab {
@@ -40,6 +42,39 @@ std::string verdict_of(const CaseResult& result) {
   if (failed > 0) return fmt::format("{} FAILED", failed);
   const std::string references = references_of(result);
   return references.empty() ? "nothing verified" : references;
+}
+
+namespace {
+
+/// Lines are printed one by one, as cases end: their columns have widths of their own.
+std::string line(std::string_view name, std::string_view own, std::string_view chosen, std::string_view peer,
+                 std::string_view lead, std::string_view verified) {
+  return fmt::format("{:<48}  {:<25}  {:<19}  {:<30}  {:<19}  {}\n", name, own, chosen, peer, lead, verified);
+}
+
+std::string name_and_time(const Measurement* measurement) {
+  if (measurement == nullptr) return "-";
+  return measurement->algorithm + " " + duration(time_of(*measurement) / 1e3);
+}
+
+}  // namespace
+
+std::string case_line_heading() {
+  return line("case", "best of ours", "auto over it", "fastest peer", "over the best", "checked against");
+}
+
+std::string case_line(const CaseResult& result) {
+  const Case& measured = result.of;
+  const Measurement* const own = best_own_of(result);
+  const Measurement* const chosen = auto_of(result);
+  const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
+  std::string name = name_of(measured);
+  if (measured.mode == Mode::track) name += fmt::format(", {:.3g} % moving", measured.moving * 100);
+  const auto ratio = [&](const Measurement* measurement) -> std::string {
+    if (measurement == nullptr || measurement == own || !measurement->to_best_own) return "-";
+    return ratio_text(measurement->to_best_own->median, measurement->to_best_own->interval);
+  };
+  return line(name, name_and_time(own), ratio(chosen), name_and_time(peer), ratio(peer), verdict_of(result));
 }
 
 }  // namespace broadside::lab

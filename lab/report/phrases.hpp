@@ -1,9 +1,10 @@
-// What tables and lines say alike: ratios with their intervals, and how results were verified.
+// What a result says in words: phrases, and the line of a case.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "lab/measure/compare.hpp"
 #include "lab/measure/measurement.hpp"
 
 namespace broadside::lab {
@@ -21,5 +22,12 @@ std::string references_of(const CaseResult& result);
 
 /// That, or how many FAILED; "nothing verified" where everything was skipped.
 std::string verdict_of(const CaseResult& result);
+
+/// The names of the columns of case_line().
+std::string case_line_heading();
+
+/// One case: the best of our own, auto's ratio to it, the fastest peer, how many times as fast our best is,
+/// and how the pairs were verified. "-" stands for what was not in the comparison. Ends with a line's end.
+std::string case_line(const CaseResult& result);
 
 }  // namespace broadside::lab

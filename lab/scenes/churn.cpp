@@ -21,7 +21,7 @@ class ChurnMaker {
   explicit ChurnMaker(const Churn& churn)
       : churn_(churn), side_(integer_side<D>(churn.boxes, longest)), random_(churn.seed) {}
 
-  History<D> make() {
+  History<D> make_churn() {
     for (std::size_t i = 0; i < churn_.boxes; ++i)
       boxes_.push_back(random_.chance(0.9) ? draw() : absent_box<D>());
     History<D> history{boxes_, {}};
@@ -114,7 +114,7 @@ class ChurnMaker {
 
 template <int D>
 History<D> random_history(const Churn& churn) {
-  return ChurnMaker<D>(churn).make();
+  return ChurnMaker<D>(churn).make_churn();
 }
 
 template History<2> random_history(const Churn&);
@@ -124,7 +124,7 @@ namespace generated {
 namespace {
 
 template <int D>
-History<D> make(const Settings&, const SceneRequest& request) {
+History<D> make_churn(const Settings&, const SceneRequest& request) {
   return random_history<D>(
       {.boxes = request.boxes, .frames = request.frames, .seed = request.seed, .infinite_boxes = false});
 }
@@ -136,8 +136,8 @@ Scene churn() {
       .name = "churn",
       .summary = "boxes that come, move, jump and go, in places that are used again",
       .source = "Broadside",
-      .history_2d = make<2>,
-      .history_3d = make<3>,
+      .history_2d = make_churn<2>,
+      .history_3d = make_churn<3>,
       .integers = true,
   };
 }

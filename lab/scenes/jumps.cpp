@@ -20,7 +20,7 @@ std::vector<Box<D>> uniform_boxes(const SceneRequest& request, std::uint64_t see
 }
 
 template <int D>
-History<D> make(const Settings& settings, const SceneRequest& request) {
+History<D> make_jumps(const Settings& settings, const SceneRequest& request) {
   const auto every = static_cast<std::size_t>(settings.integer("every"));
   History<D> history{uniform_boxes<D>(request, request.seed), {}};
   std::vector<Box<D>> boxes = history.boxes;
@@ -58,8 +58,8 @@ Scene jumps() {
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1e9}},
-      .history_2d = make<2>,
-      .history_3d = make<3>,
+      .history_2d = make_jumps<2>,
+      .history_3d = make_jumps<3>,
   };
 }
 

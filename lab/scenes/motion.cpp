@@ -13,6 +13,44 @@
 #include "lab/scenes/random.hpp"
 
 namespace broadside::lab {
+
+/// How far a box has gone on one axis from where it was in the first frame, and how far it may go.
+struct AxisMotion {
+  double offset = 0;
+  double speed = 0;  // a frame
+  double least;      // <= 0
+  double most;       // >= 0
+
+  void advance() {
+    if (least == most) return;
+    offset += speed;
+    if (offset >= least && offset <= most) return;
+    speed = -speed;
+    offset = std::clamp(2 * (offset < least ? least : most) - offset, least, most);
+  }
+
+  void jump(Random& random, bool whole) {
+    offset = whole ? least + std::floor((most - least + 1) * random.fraction()) : random.between(least, most);
+  }
+};
+
+/// A box that moves, from its place in the first frame.
+template <int D, typename Real>
+struct MovingBox {
+  BoxId id;
+  Box<D, Real> first;
+  std::array<AxisMotion, D> ways;
+
+  Box<D, Real> box() const {
+    Box<D, Real> moved;
+    for (int axis = 0; axis < D; ++axis) {
+      moved.min[axis] = static_cast<Real>(first.min[axis] + ways[axis].offset);
+      moved.max[axis] = static_cast<Real>(first.max[axis] + ways[axis].offset);
+    }
+    return moved;
+  }
+};
+
 namespace {
 
 void check_range(const char* name, double value, double most) {
@@ -35,42 +73,6 @@ double mean_extent(const Box<D, Real>& box) {
   return sum / D;
 }
 
-/// How far a box has gone on one axis from where it was in the first frame, and how far it may go.
-struct Way {
-  double offset = 0;
-  double speed = 0;  // a frame
-  double least;      // <= 0
-  double most;       // >= 0
-
-  void advance() {
-    if (least == most) return;
-    offset += speed;
-    if (offset >= least && offset <= most) return;
-    speed = -speed;
-    offset = std::clamp(2 * (offset < least ? least : most) - offset, least, most);
-  }
-
-  void jump(Random& random, bool whole) {
-    offset = whole ? least + std::floor((most - least + 1) * random.fraction()) : random.between(least, most);
-  }
-};
-
-template <int D, typename Real>
-struct Mover {
-  BoxId id;
-  Box<D, Real> first;
-  std::array<Way, D> ways;
-
-  Box<D, Real> box() const {
-    Box<D, Real> moved;
-    for (int axis = 0; axis < D; ++axis) {
-      moved.min[axis] = static_cast<Real>(first.min[axis] + ways[axis].offset);
-      moved.max[axis] = static_cast<Real>(first.max[axis] + ways[axis].offset);
-    }
-    return moved;
-  }
-};
-
 /// A direction times a length, in whole numbers of which at least one is not 0.
 template <int D>
 void make_whole(std::array<double, D>& velocity) {
@@ -82,8 +84,8 @@ void make_whole(std::array<double, D>& velocity) {
 }
 
 template <int D, typename Real>
-std::vector<Mover<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes, const SceneRequest& request,
-                                        bool whole_steps, Random& random) {
+std::vector<MovingBox<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes, const SceneRequest& request,
+                                            bool whole_steps, Random& random) {
   Box<D, Real> bounds = absent_box<D, Real>();
   double mean = 0;
   std::vector<BoxId> finite;
@@ -104,7 +106,7 @@ std::vector<Mover<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes, con
   finite.resize(count);
   std::ranges::sort(finite);
 
-  std::vector<Mover<D, Real>> movers;
+  std::vector<MovingBox<D, Real>> movers;
   movers.reserve(count);
   for (const BoxId id : finite) {
     const Box<D, Real>& box = boxes[index(id)];
@@ -112,7 +114,7 @@ std::vector<Mover<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes, con
     std::array<double, D> velocity = random.direction<D>();
     for (double& component : velocity) component *= request.drift * (extent > 0 ? extent : mean);
     if (whole_steps && request.drift > 0) make_whole<D>(velocity);
-    Mover<D, Real> mover{id, box, {}};
+    MovingBox<D, Real> mover{id, box, {}};
     for (int axis = 0; axis < D; ++axis) {
       mover.ways[axis] = {.speed = velocity[axis],
                           .least = static_cast<double>(bounds.min[axis]) - box.min[axis],
@@ -131,7 +133,7 @@ struct MovingBoxes<D, Real>::State {
   bool whole_steps;
   std::size_t boxes;
   Random random;
-  std::vector<Mover<D, Real>> movers;
+  std::vector<MovingBox<D, Real>> movers;
   std::vector<Box<D, Real>> last;
 };
 
@@ -146,7 +148,7 @@ MovingBoxes<D, Real>::MovingBoxes(std::span<const Box<D, Real>> boxes, const Sce
       State{request, whole_steps, boxes.size(), Random(request.seed ^ 0x6d6f74696f6e0000U), {}, {}});
   state_->movers = draw_movers<D, Real>(boxes, request, whole_steps, state_->random);
   state_->last.reserve(state_->movers.size());
-  for (const Mover<D, Real>& mover : state_->movers) state_->last.push_back(mover.first);
+  for (const MovingBox<D, Real>& mover : state_->movers) state_->last.push_back(mover.first);
 }
 
 template <int D, typename Real>
@@ -160,7 +162,7 @@ Step<D, Real> MovingBoxes<D, Real>::next() {
   step.boxes.reserve(state.movers.size());
   for (std::size_t i = 0; i < state.movers.size(); ++i) {
     const bool jumps = state.random.chance(state.request.teleport);
-    for (Way& way : state.movers[i].ways) {
+    for (AxisMotion& way : state.movers[i].ways) {
       if (jumps)
         way.jump(state.random, state.whole_steps);
       else

@@ -11,7 +11,6 @@
 #include "broadside/suggestion.hpp"
 
 #include "lab/scenes/scatter.hpp"
-#include "lab/worst/families.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,4 +1,4 @@
-// Families of inputs on which a broad phase may be slow: what the worst-case hunt draws from.
+// Families of inputs for the worst-case hunt, and the list of them.
 #pragma once
 
 #include <cstddef>
@@ -54,3 +54,22 @@ template <int D>
 DoubleBoxes<D> make_family(const Spec& spec, std::size_t boxes, Random& random);
 
 }  // namespace broadside::lab
+
+namespace broadside::lab::worst {
+
+InputFamily even();
+InputFamily plates();
+InputFamily shelves();
+InputFamily lines();
+InputFamily row();
+InputFamily dolls();
+InputFamily clusters();
+InputFamily dust();
+InputFamily magnitudes();
+InputFamily heaps();
+InputFamily giants();
+InputFamily crowds();
+InputFamily fooled();
+InputFamily mixture();
+
+}  // namespace broadside::lab::worst

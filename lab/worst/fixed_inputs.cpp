@@ -1,8 +1,8 @@
 // The inputs that the worst-case hunt takes unless others are asked for.
-#include "lab/worst/fixed_inputs.hpp"
-
 #include <array>
 #include <utility>
+
+#include "lab/worst/input.hpp"
 
 namespace broadside::lab {
 namespace {

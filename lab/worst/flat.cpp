@@ -1,6 +1,6 @@
 // Families of boxes that are long or flat: plates, shelves, lines and rows.
 #include "lab/worst/boxes.hpp"
-#include "lab/worst/families.hpp"
+#include "lab/worst/family.hpp"
 
 namespace broadside::lab::worst {
 namespace {

@@ -1,4 +1,4 @@
-// One input of the worst-case hunt: a family with values, and how it is asked about.
+// Inputs of the worst-case hunt, by name.
 #pragma once
 
 #include <cstddef>
@@ -56,5 +56,9 @@ std::size_t left_count(const HardInput& input, std::size_t boxes);
 
 /// Even boxes, otherwise asked about in the same way: what the input is compared with.
 HardInput uniform_for(const HardInput& input);
+
+/// Every family with its standard values, in both dimensions and precisions and with every call, and inputs
+/// that were slow once.
+std::vector<HardInput> fixed_inputs();
 
 }  // namespace broadside::lab

@@ -1,6 +1,6 @@
 // Families made of other families: samples that are fooled, mixtures, and crowds of two sets.
 #include "lab/worst/boxes.hpp"
-#include "lab/worst/families.hpp"
+#include "lab/worst/family.hpp"
 
 namespace broadside::lab::worst {
 namespace {

@@ -1,6 +1,6 @@
 // Families of boxes within boxes, and clusters within clusters.
 #include "lab/worst/boxes.hpp"
-#include "lab/worst/families.hpp"
+#include "lab/worst/family.hpp"
 
 namespace broadside::lab::worst {
 namespace {

@@ -1,6 +1,6 @@
 // Families of even boxes, and of boxes whose sizes or places differ by orders of magnitude.
 #include "lab/worst/boxes.hpp"
-#include "lab/worst/families.hpp"
+#include "lab/worst/family.hpp"
 
 namespace broadside::lab::worst {
 namespace {

@@ -50,9 +50,11 @@ const std::vector<Rule>& rules() {
       {"lab/formats/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/motion/", lab + R"(|"bench/motion/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/worst/", lab + R"(|"bench/worst/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/", lab + R"(|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
+      {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/",
+       lab +
+           R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},

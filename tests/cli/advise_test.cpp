@@ -14,9 +14,9 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using Json = nlohmann::json;
 using testing::IsEmpty;
 using testing::Not;
-using Json = nlohmann::json;
 
 std::vector<std::string> quickly(const std::string& input, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {"advise", input, "--budget", "0.05"};

@@ -17,6 +17,7 @@
 #include "lab/formats/format.hpp"
 #include "lab/scenes/scene.hpp"
 #include "process.hpp"
+#include "refusal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -63,11 +64,6 @@ TEST(List, NamesEveryAlgorithmSceneAndFormat) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
-struct Refusal {
-  std::vector<std::string> arguments;
-  std::vector<std::string> message;  // parts of it: the thing, the value found, what is expected
-};
-
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
       {{}, {"no verb", "expected one of: compare, advise, experiment, pairs"}},
@@ -107,12 +103,7 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{"scene", "uniform", "-o", "/nowhere/boxes.csv"}, {"-o", "'/nowhere'"}},
       {{"scene", "uniform", "--dimension", "5", "-o", "boxes.csv"}, {"--dimension is 5"}},
   };
-  for (const Refusal& refusal : refusals) {
-    const Ended ended = run(refusal.arguments);
-    EXPECT_EQ(ended.status, 2) << ended.errors;
-    EXPECT_EQ(ended.output, "");
-    for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, HasSubstr(part));
-  }
+  expect_refused(refusals);
 }
 
 TEST(Output, ThatCannotBeWrittenIsAnError) {

@@ -22,31 +22,32 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Results of experiment 1, small and made by hand, in the schema's fewest words.
-Json results() {
-  const Json columns = {{{"name", "boxes"}, {"unit", ""}},
-                        {{"name", "all pairs"}, {"unit", ""}},
-                        {{"name", "unique pairs"}, {"unit", ""}},
-                        {{"name", "tests"}, {"unit", ""}},
-                        {{"name", "time"}, {"unit", "ms"}}};
-  const Json table = {
+OrderedJson results() {
+  const OrderedJson columns = {{{"name", "boxes"}, {"unit", ""}},
+                               {{"name", "all pairs"}, {"unit", ""}},
+                               {{"name", "unique pairs"}, {"unit", ""}},
+                               {{"name", "tests"}, {"unit", ""}},
+                               {{"name", "time"}, {"unit", "ms"}}};
+  const OrderedJson table = {
       {"name", "tests"},
       {"title", "Tests"},
       {"columns", columns},
-      {"charts", Json::array()},
+      {"charts", OrderedJson::array()},
       {"rows", {{1'000, 1'000'000, 499'500, 499'500, 1}, {2'000, 4'000'000, 1'999'000, 1'999'000, 4}}}};
-  const Json experiment = {{"name", "brute_force_tests"}, {"seconds", 1}, {"tables", Json::array({table})}};
+  const OrderedJson experiment = {
+      {"name", "brute_force_tests"}, {"seconds", 1}, {"tables", OrderedJson::array({table})}};
   return {{"schema", "broadside.experiments/1"},
-          {"machine", Json::object()},
-          {"build", Json::object()},
+          {"machine", OrderedJson::object()},
+          {"build", OrderedJson::object()},
           {"target", "AVX2"},
           {"date", "2026-11-21"},
           {"command", {"broadside", "experiment"}},
           {"quick", false},
           {"stopped", false},
-          {"experiments", Json::array({experiment})}};
+          {"experiments", OrderedJson::array({experiment})}};
 }
 
 TEST(ExperimentVerb, ListsEveryExperimentWithoutMeasuring) {
@@ -70,7 +71,7 @@ TEST(ExperimentVerb, MeasuresWhatIsNamedAndWritesWhatCanBeJudgedAgain) {
   EXPECT_THAT(ended.output, AllOf(HasSubstr("Claim: To test all pairs"), HasSubstr("Verdict: holds. "),
                                   HasSubstr("1 experiment in "), Not(HasSubstr("\x1b"))));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
-  const Json json = Json::parse(text_of(folder.file("out.json")));
+  const OrderedJson json = OrderedJson::parse(text_of(folder.file("out.json")));
   EXPECT_EQ(json["schema"], "broadside.experiments/1");
   EXPECT_EQ(json["command"][1], "experiment");
   EXPECT_EQ(json["quick"], true);
@@ -89,7 +90,7 @@ TEST(ExperimentVerb, MeasuresWhatIsNamedAndWritesWhatCanBeJudgedAgain) {
 
 TEST(ExperimentVerb, JudgesAFileByItsTables) {
   const TemporaryFolder folder;
-  Json json = results();
+  OrderedJson json = results();
   const std::string whole = folder.put("whole.json", json.dump());
   const Ended holds = run({"experiment", "--from", whole});
   EXPECT_EQ(holds.status, 0) << holds.errors;
@@ -102,7 +103,7 @@ TEST(ExperimentVerb, JudgesAFileByItsTables) {
 
 TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
   const TemporaryFolder folder;
-  Json json = results();
+  OrderedJson json = results();
   // More than a pipe holds at once.
   json["build"]["flags"] = std::string(1 << 20, 'x');
   const std::string whole = folder.put("whole.json", json.dump());
@@ -130,18 +131,20 @@ TEST(ExperimentVerb, RefusesNamesAndFilesThatItCannotUse) {
   const TemporaryFolder folder;
   const std::string whole = folder.put("whole.json", results().dump());
   const auto put = [&](const std::string& name, auto change) {
-    Json json = results();
+    OrderedJson json = results();
     change(json);
     return folder.put(name, json.dump());
   };
   const std::string empty = folder.put("empty.json", "");
   const std::string half = folder.put("half.json", results().dump().substr(0, 300));
-  const std::string none = put("none.json", [](Json& json) { json["experiments"] = Json::array(); });
-  const std::string other = put("other.json", [](Json& json) { json["schema"] = "broadside.results/1"; });
+  const std::string none =
+      put("none.json", [](OrderedJson& json) { json["experiments"] = OrderedJson::array(); });
+  const std::string other =
+      put("other.json", [](OrderedJson& json) { json["schema"] = "broadside.results/1"; });
   const std::string unknown =
-      put("unknown.json", [](Json& json) { json["experiments"][0]["name"] = "phlogiston"; });
-  const std::string no_number =
-      put("null.json", [](Json& json) { json["experiments"][0]["tables"][0]["rows"][0][4] = nullptr; });
+      put("unknown.json", [](OrderedJson& json) { json["experiments"][0]["name"] = "phlogiston"; });
+  const std::string no_number = put(
+      "null.json", [](OrderedJson& json) { json["experiments"][0]["tables"][0]["rows"][0][4] = nullptr; });
   std::string text = results().dump();
   text.replace(text.find("499500"), 6, "NaN");
   const std::string nan = folder.put("nan.json", text);
@@ -187,7 +190,7 @@ TEST(ExperimentVerb, WritesWhatHadEndedWhereItIsInterrupted) {
   EXPECT_EQ(ended.status, 130) << ended.errors;
   EXPECT_THAT(ended.errors, HasSubstr("wrote the 1 experiment that had ended to"));
   EXPECT_THAT(ended.output, HasSubstr("stopped before the end"));
-  const Json json = Json::parse(text_of(file));
+  const OrderedJson json = OrderedJson::parse(text_of(file));
   EXPECT_EQ(json["stopped"], true);
   EXPECT_EQ(json["experiments"].size(), 1u);
   EXPECT_EQ(run({"experiment", "--from", file}).status, 0);

@@ -37,17 +37,6 @@ TEST(Help, IsPrintedByTheVerbHelpToo) {
   EXPECT_THAT(run({"help", "pars"}).errors, HasSubstr("unknown verb 'pars' (did you mean 'pairs'?)"));
 }
 
-TEST(Help, EndsWithTwoExamplesAVerb) {
-  for (const std::string& verb : verbs) {
-    const std::string help = run({verb, "--help"}).output;
-    std::size_t examples = 0;
-    for (std::size_t at = help.find("\n  broadside " + verb); at != std::string::npos;
-         at = help.find("\n  broadside " + verb, at + 1))
-      ++examples;
-    EXPECT_EQ(examples, 2u) << help;
-  }
-}
-
 TEST(Help, IsAsWideAsTheTerminalAndAtMostAHundredColumns) {
   for (const std::string& verb : verbs) {
     EXPECT_LE(longest_line(shell("COLUMNS=80 $BROADSIDE help " + verb).output), 80u) << verb;

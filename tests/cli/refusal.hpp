@@ -12,7 +12,7 @@
 
 namespace broadside::cli {
 
-/// Arguments behind a verb, and parts of what must be said of them: the thing, the value found, what is
+/// Arguments, and parts of what must be said of them: the thing, the value found, what is
 /// expected.
 struct Refusal {
   std::vector<std::string> arguments;
@@ -20,15 +20,19 @@ struct Refusal {
 };
 
 /// Expects each call to end with status 2, its message and no output.
-inline void expect_refused(const std::string& verb, const std::vector<Refusal>& refusals) {
+inline void expect_refused(const std::vector<Refusal>& refusals) {
   for (const Refusal& refusal : refusals) {
-    std::vector<std::string> arguments = {verb};
-    arguments.insert(arguments.end(), refusal.arguments.begin(), refusal.arguments.end());
-    const Ended ended = run(arguments);
+    const Ended ended = run(refusal.arguments);
     EXPECT_EQ(ended.status, 2) << ended.errors;
     EXPECT_THAT(ended.output, testing::IsEmpty());
     for (const std::string& part : refusal.message) EXPECT_THAT(ended.errors, testing::HasSubstr(part));
   }
+}
+
+/// Likewise, with `verb` before each call's arguments.
+inline void expect_refused(const std::string& verb, std::vector<Refusal> refusals) {
+  for (Refusal& refusal : refusals) refusal.arguments.insert(refusal.arguments.begin(), verb);
+  expect_refused(refusals);
 }
 
 }  // namespace broadside::cli

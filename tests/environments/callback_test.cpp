@@ -15,6 +15,7 @@
 #include "broadside/world.hpp"
 
 #include "environment.hpp"
+#include "tests/laws/law_sinks.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -70,14 +71,6 @@ class ClonedSink final : public WitnessSink {
     return std::make_unique<ClonedSink>(witness_);
   }
   void merge(PairSink&) override { witness_.look(); }
-};
-
-struct SinkIsFull final : std::runtime_error {
-  SinkIsFull() : std::runtime_error("the sink is full") {}
-};
-
-class FullSink final : public PairSink {
-  void consume(std::span<const Pair>) override { throw SinkIsFull(); }
 };
 
 /// Runs tasks in the calling thread, which has another environment meanwhile.
@@ -170,7 +163,7 @@ TEST_P(CallBack, LeavesTheCallersEnvironmentWhereItThrows) {
   std::vector<Box2> boxes = stair(3000);
   const InEnvironment in(GetParam());
   Witness witness;
-  FullSink full;
+  LimitedCollector full(0);
   EXPECT_THROW(find_pairs(boxes, full), SinkIsFull);
   witness.look();
   const auto tracker = make_tracker<2>("quadtree");

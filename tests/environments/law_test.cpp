@@ -171,8 +171,9 @@ class ForeignThreads final : public Executor {
   }
 };
 
-TEST_P(EnvironmentLaw, FindsTheSamePairsByThreadsOfOtherEnvironments) {
-  if (!has_threads(algorithm())) GTEST_SKIP() << algorithm().name << " uses one thread";
+class ThreadedEnvironmentLaw : public EnvironmentLaw {};
+
+TEST_P(ThreadedEnvironmentLaw, FindsTheSamePairsByThreadsOfOtherEnvironments) {
   ForeignThreads executor;
   std::size_t turn = 0;
   in_dimension([&]<int D>() {
@@ -223,6 +224,7 @@ TEST(SpecInEnvironments, NamesTheSameNumber) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, EnvironmentLaw, testing::ValuesIn(cases_of(algorithms())), case_name);
+INSTANTIATE_TEST_SUITE_P(Library, ThreadedEnvironmentLaw, testing::ValuesIn(threaded_cases()), case_name);
 
 }  // namespace
 }  // namespace broadside::laws

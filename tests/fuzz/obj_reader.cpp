@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/mesh/obj.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
 #include "tests/fuzz/mesh_body.hpp"
 
 namespace broadside::lab {

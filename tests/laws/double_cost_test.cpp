@@ -15,20 +15,18 @@
 
 #include "core/sample.hpp"
 #include "dice.hpp"
+#include "law_case.hpp"
 
 namespace broadside::laws {
 namespace {
 
-constexpr std::size_t count = 20'000;
-
-template <int D>
-using Boxes = std::vector<Box<D, double>>;
+constexpr std::size_t box_count = 20'000;
 
 /// Boxes of up to `extent` anywhere in a cube of `side`, both in units by axis.
 template <int D>
-Boxes<D> uniform(double side, double extent, const std::array<double, 3>& units) {
+DoubleBoxes<D> uniform(double side, double extent, const std::array<double, 3>& units) {
   Dice dice(1);
-  Boxes<D> boxes(count);
+  DoubleBoxes<D> boxes(box_count);
   for (Box<D, double>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] = side * dice.unit() * units[axis];
@@ -39,22 +37,22 @@ Boxes<D> uniform(double side, double extent, const std::array<double, 3>& units)
 }
 
 template <int D>
-Boxes<D> uniform(const std::array<double, 3>& units) {
-  return uniform<D>(std::pow(static_cast<double>(count), 1.0 / D), 0.7, units);
+DoubleBoxes<D> uniform(const std::array<double, 3>& units) {
+  return uniform<D>(std::pow(static_cast<double>(box_count), 1.0 / D), 0.7, units);
 }
 
 /// Lines along all axes in turn, half as long as all is, that do not meet.
-Boxes<3> lines() {
-  Boxes<3> boxes = uniform<3>(1, 1e-12, {1, 1, 1});
-  for (std::size_t i = 0; i < count; ++i) boxes[i].max[i % 3] += 0.5;
+DoubleBoxes<3> lines() {
+  DoubleBoxes<3> boxes = uniform<3>(1, 1e-12, {1, 1, 1});
+  for (std::size_t i = 0; i < box_count; ++i) boxes[i].max[i % 3] += 0.5;
   return boxes;
 }
 
 /// Some 200 clusters of clusters of clusters: floats about one origin tell only the greatest apart.
 template <int D>
-Boxes<D> nested() {
+DoubleBoxes<D> nested() {
   Dice dice(2);
-  Boxes<D> boxes = uniform<D>(1e-12, 1e-14, {1, 1, 1});
+  DoubleBoxes<D> boxes = uniform<D>(1e-12, 1e-14, {1, 1, 1});
   constexpr int last = D == 2 ? 3 : 1;
   for (Box<D, double>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
@@ -75,7 +73,7 @@ std::uint64_t tests(const std::string& algorithm, std::span<const Box<D, Real>> 
 }
 
 template <int D>
-std::uint64_t tests(const std::string& algorithm, const Boxes<D>& boxes) {
+std::uint64_t tests(const std::string& algorithm, const DoubleBoxes<D>& boxes) {
   return tests<D, double>(algorithm, boxes);
 }
 
@@ -102,7 +100,7 @@ TEST(DoubleCost, IsTheSameAtEveryScale) {
 }
 
 TEST(DoubleCost, OfLinesIsThatOfFloats) {
-  const Boxes<3> boxes = lines();
+  const DoubleBoxes<3> boxes = lines();
   std::vector<Box3> floats;
   for (const DoubleBox3& box : boxes) {
     Box3& rounded = floats.emplace_back();
@@ -117,13 +115,13 @@ TEST(DoubleCost, OfLinesIsThatOfFloats) {
 
 TEST(DoubleCost, IsLowWhereFloatsAboutOneOriginCoincide) {
   for (const std::string& algorithm : algorithms_that_count) {
-    EXPECT_LE(tests<2>(algorithm, nested<2>()), 40 * count) << algorithm;
-    EXPECT_LE(tests<3>(algorithm, nested<3>()), 100 * count) << algorithm;
+    EXPECT_LE(tests<2>(algorithm, nested<2>()), 40 * box_count) << algorithm;
+    EXPECT_LE(tests<3>(algorithm, nested<3>()), 100 * box_count) << algorithm;
   }
 }
 
 TEST(Quantiles, LeaveTheOrderOfPairsToTheBoxesAlone) {
-  Boxes<2> boxes = nested<2>();
+  DoubleBoxes<2> boxes = nested<2>();
   for (DoubleBox2& box : boxes) box.max[0] += 1e-12;
   std::vector<Pair> of_one;
   std::vector<Pair> of_three;
@@ -135,24 +133,25 @@ TEST(Quantiles, LeaveTheOrderOfPairsToTheBoxesAlone) {
   EXPECT_EQ(of_one, of_three);
 }
 
-/// Boxes are ordinary at the places that a sample of a fixed choice would look at, the others lie in a heap.
+/// Boxes are ordinary at the places that a sample of a fixed choice would look at, the others lie in a
+/// heap.
 TEST(DoubleCost, IsLowWhereASampleAtKnownPlacesIsFooled) {
-  std::vector<bool> is_known(count);
-  for (std::uint32_t i = 0; i < 512; ++i) is_known[core::sampled_place(i, count)] = true;
-  Boxes<2> boxes = uniform<2>({1, 1, 1});
+  std::vector<bool> is_known(box_count);
+  for (std::uint32_t i = 0; i < 512; ++i) is_known[core::sampled_place(i, box_count)] = true;
+  DoubleBoxes<2> boxes = uniform<2>({1, 1, 1});
   Dice dice(3);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < box_count; ++i) {
     for (int axis = 0; axis < 2 && !is_known[i]; ++axis) {
       boxes[i].min[axis] = 1e6 + 1e-6 * dice.unit();
       boxes[i].max[axis] = boxes[i].min[axis] + 1e-9 * dice.unit();
     }
   }
-  EXPECT_LE(tests<2>("bvh", boxes), 100 * count);
+  EXPECT_LE(tests<2>("bvh", boxes), 100 * box_count);
 }
 
 template <int D>
 std::uint64_t tests_of_frames(double unit) {
-  Boxes<D> boxes = uniform<D>({unit, unit, unit});
+  DoubleBoxes<D> boxes = uniform<D>({unit, unit, unit});
   const auto tracker = make_tracker<D, double>("auto");
   PairCounter begun;
   PairCounter ended;
@@ -161,7 +160,7 @@ std::uint64_t tests_of_frames(double unit) {
   Dice dice(4);
   for (int frame = 0; frame < 4; ++frame) {
     std::vector<BoxId> changed;
-    for (std::size_t i = frame; i < count; i += count / 100) {
+    for (std::size_t i = frame; i < box_count; i += box_count / 100) {
       changed.push_back(BoxId(i));
       for (int axis = 0; axis < D; ++axis) {
         const double step = unit * dice.unit();
@@ -184,10 +183,11 @@ TEST(DoubleCost, OfAFrameIsTheSameAtEveryScale) {
   }
 }
 
-/// Boxes that come where floats about the first ones' origin are one and the same: they are rounded anew.
+/// Boxes that come where floats about the first ones' origin are one and the same: they are rounded
+/// anew.
 TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
-  Boxes<2> boxes = uniform<2>({1, 1, 1});
-  const Boxes<2> others = uniform<2>({1e80, 1e80, 1e80});
+  DoubleBoxes<2> boxes = uniform<2>({1, 1, 1});
+  const DoubleBoxes<2> others = uniform<2>({1e80, 1e80, 1e80});
   const auto tracker = make_tracker<2, double>("auto:way=incremental");
   PairCounter begun;
   PairCounter ended;
@@ -195,14 +195,14 @@ TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
   std::uint64_t candidates = 0;
   for (std::size_t frame = 0; frame < 200; ++frame) {
     std::vector<BoxId> changed;
-    for (std::size_t i = frame; i < count; i += 200) {
+    for (std::size_t i = frame; i < box_count; i += 200) {
       changed.push_back(BoxId(i));
       boxes[i] = others[i];
     }
     tracker->update({boxes, changed}, begun, ended);
     candidates += tracker->statistics()->hits;
   }
-  EXPECT_LE(candidates, 60 * count);
+  EXPECT_LE(candidates, 60 * box_count);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "histories.hpp"
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
+#include "law_sinks.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -62,16 +63,10 @@ std::ptrdiff_t refused_index(Action action) {
   return -1;
 }
 
-constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
-
-struct SinkIsFull final : std::runtime_error {
-  SinkIsFull() : std::runtime_error("the sink is full") {}
-};
-
 /// Collects the pairs of so many chunks and throws at the next.
-class LimitedCollector final : public PairSink {
+class ChunkCollector final : public PairSink {
  public:
-  explicit LimitedCollector(std::size_t chunks) : chunks_(chunks) {}
+  explicit ChunkCollector(std::size_t chunks) : chunks_(chunks) {}
 
   const std::vector<Pair>& pairs() const { return pairs_; }
 
@@ -113,7 +108,7 @@ TEST_P(FailureLaw, AFinderCanBeUsedAfterItsSinkThrew) {
     const auto finder = make_finder<D>(algorithm(), spec());
     const std::vector<Box<D>> crowd(200, some_boxes<D>(1)[0]);  // 19,900 pairs: some twenty chunks
     for (const std::size_t chunks : {0, 1, 5, 15}) {
-      LimitedCollector sink(chunks);
+      ChunkCollector sink(chunks);
       EXPECT_THROW(finder->find(crowd, sink), SinkIsFull);
       for (const std::size_t count : {0, 30, 200}) {
         const auto divergence = lab::check_finder<D>(*finder, some_boxes<D>(count), algorithm().name);
@@ -136,8 +131,8 @@ class Tracked {
   /// throws.
   std::string divergence(const std::vector<Box<D>>& boxes, std::span<const BoxId> changed,
                          std::size_t begun_chunks = no_limit, std::size_t ended_chunks = no_limit) {
-    LimitedCollector begun(begun_chunks);
-    LimitedCollector ended(ended_chunks);
+    ChunkCollector begun(begun_chunks);
+    ChunkCollector ended(ended_chunks);
     tracker_->update({boxes, changed}, begun, ended);
     std::vector<Pair> now = lab::reference_pairs<D>(boxes);
     std::vector<Pair> expected_begun;

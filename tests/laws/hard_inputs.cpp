@@ -12,9 +12,9 @@
 namespace broadside::laws {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float largest = std::numeric_limits<float>::max();
-constexpr float smallest = std::numeric_limits<float>::denorm_min();
+constexpr float float_infinity = std::numeric_limits<float>::infinity();
+constexpr float largest_float = std::numeric_limits<float>::max();
+constexpr float smallest_float = std::numeric_limits<float>::denorm_min();
 
 /// The box whose axis a spans `span(a)` = {min, max}.
 template <int D, typename Span>
@@ -172,10 +172,11 @@ void add_scales(std::vector<Input<D>>& inputs) {
     }
   }
   inputs.push_back({"two clusters far apart", clusters});
+  inputs.push_back({"denormals", drawn_from<D>({-3 * smallest_float, -smallest_float, -0.0f, 0,
+                                                smallest_float, 2 * smallest_float, 3 * smallest_float},
+                                               150)});
   inputs.push_back(
-      {"denormals",
-       drawn_from<D>({-3 * smallest, -smallest, -0.0f, 0, smallest, 2 * smallest, 3 * smallest}, 150)});
-  inputs.push_back({"denormals beside ones", drawn_from<D>({-1, -smallest, 0, smallest, 1}, 150)});
+      {"denormals beside ones", drawn_from<D>({-1, -smallest_float, 0, smallest_float, 1}, 150)});
   inputs.push_back({"all magnitudes", boxes_of<D>(300, [&](std::size_t, int) {
                       const auto value = [&] {
                         return std::ldexp(dice.between(-1, 1), dice.whole(-126, 127));
@@ -186,32 +187,35 @@ void add_scales(std::vector<Input<D>>& inputs) {
 
 template <int D>
 void add_extremes(std::vector<Input<D>>& inputs) {
-  inputs.push_back({"the largest floats", drawn_from<D>({-largest, largest}, 60)});
-  inputs.push_back({"the largest floats among ones", drawn_from<D>({-largest, -1, 0, 1, largest}, 150)});
+  inputs.push_back({"the largest floats", drawn_from<D>({-largest_float, largest_float}, 60)});
+  inputs.push_back(
+      {"the largest floats among ones", drawn_from<D>({-largest_float, -1, 0, 1, largest_float}, 150)});
   std::vector<Box<D>> ends = uniform<D>(60, 10, 1);
   for (std::size_t i = 0; i < 20; ++i) {
-    const float where = i % 2 == 0 ? largest : -largest;
+    const float where = i % 2 == 0 ? largest_float : -largest_float;
     ends.push_back(box_of<D>([&](int) { return Span{where, where}; }));
     ends.push_back(box_of<D>([&](int axis) { return axis == 0 ? Span{where, where} : Span{0, 5}; }));
   }
   inputs.push_back({"points at both ends of the floats", ends});
 
   inputs.push_back({"all infinite", boxes_of<D>(50, [](std::size_t, int) {
-                      return Span{-infinity, infinity};
+                      return Span{-float_infinity, float_infinity};
                     })});
-  inputs.push_back({"infinities", drawn_from<D>({-infinity, infinity}, 60)});
+  inputs.push_back({"infinities", drawn_from<D>({-float_infinity, float_infinity}, 60)});
   inputs.push_back(
-      {"every special value",
-       drawn_from<D>({-infinity, -largest, -1, -smallest, -0.0f, 0, smallest, 1, largest, infinity}, 300)});
+      {"every special value", drawn_from<D>({-float_infinity, -largest_float, -1, -smallest_float, -0.0f, 0,
+                                             smallest_float, 1, largest_float, float_infinity},
+                                            300)});
   Dice dice(9);
   std::vector<Box<D>> half_spaces = uniform<D>(200, 10, 1);
   for (std::size_t i = 0; i < half_spaces.size(); i += 10) {
     const int axis = static_cast<int>(i / 10) % D;
-    (i % 20 == 0 ? half_spaces[i].min : half_spaces[i].max)[axis] = i % 20 == 0 ? -infinity : infinity;
+    (i % 20 == 0 ? half_spaces[i].min : half_spaces[i].max)[axis] =
+        i % 20 == 0 ? -float_infinity : float_infinity;
   }
   inputs.push_back({"half-infinite among small", half_spaces});
   std::vector<Box<D>> with_absent = half_spaces;
-  with_absent[7] = box_of<D>([](int) { return Span{-infinity, infinity}; });
+  with_absent[7] = box_of<D>([](int) { return Span{-float_infinity, float_infinity}; });
   for (Box<D>& box : with_absent) {
     if (dice.one_in(2)) box = absent_box<D>();
   }
@@ -233,7 +237,7 @@ bool is_beyond(const Algorithm& algorithm, const Box<D, Real>& box) {
 }
 
 bool takes_any_floats(const Algorithm& algorithm) {
-  return algorithm.infinite_boxes && algorithm.largest_coordinate >= largest;
+  return algorithm.infinite_boxes && algorithm.largest_coordinate >= largest_float;
 }
 
 template <int D>

@@ -7,6 +7,8 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 
+#include "law_case.hpp"
+
 namespace broadside::laws {
 
 /// Boxes and what is hard about them.
@@ -27,5 +29,6 @@ bool is_beyond(const Algorithm& algorithm, const Box<D, Real>& box);
 
 /// Whether boxes of any floats but NaN are within its limits.
 bool takes_any_floats(const Algorithm& algorithm);
+inline bool takes_any_boxes(const LawCase& law_case) { return takes_any_floats(*law_case.algorithm); }
 
 }  // namespace broadside::laws

@@ -14,9 +14,6 @@
 namespace broadside::laws {
 namespace {
 
-template <int D>
-using Boxes = std::vector<Box<D>>;
-
 /// A box of extents up to `size` whose minima lie in [0, world).
 template <int D>
 Box<D> box_in(Dice& dice, float world, float size) {

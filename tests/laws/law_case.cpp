@@ -15,6 +15,12 @@ std::vector<LawCase> cases_of(std::span<const Algorithm> algorithms) {
   return cases;
 }
 
+std::vector<LawCase> threaded_cases() {
+  std::vector<LawCase> cases = cases_of(algorithms());
+  std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
+  return cases;
+}
+
 std::string name(const LawCase& law_case) {
   return law_case.algorithm->name + "_" + std::to_string(law_case.dimension) + "d";
 }

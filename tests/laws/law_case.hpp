@@ -22,6 +22,12 @@ constexpr std::size_t reduced(std::size_t size, int cost = 2) {
   return sanitized ? size / (cost == 1 ? 10 : 4) : size;
 }
 
+template <int D, typename Real = float>
+using Boxes = std::vector<Box<D, Real>>;
+
+template <int D>
+using DoubleBoxes = Boxes<D, double>;
+
 /// One algorithm in one dimension.
 struct LawCase {
   const Algorithm* algorithm;
@@ -31,11 +37,28 @@ struct LawCase {
 /// Each of these algorithms, in every dimension that it does.
 std::vector<LawCase> cases_of(std::span<const Algorithm> algorithms);
 
-/// Every algorithm of the catalogue, in every dimension that it does.
+/// The library's algorithms that can use several threads.
+std::vector<LawCase> threaded_cases();
+
+/// Every algorithm of the catalogue, in every dimension that it does. Of the library's own alone where the
+/// tests run on a chosen instruction set: no other uses the kernels.
 const std::vector<LawCase>& law_cases();
 
-/// Those of them in one dimension.
-std::vector<LawCase> law_cases_in(int dimension);
+/// Those of the law cases that `takes` accepts, a predicate over LawCase.
+template <typename Takes>
+std::vector<LawCase> law_cases_if(Takes takes) {
+  std::vector<LawCase> cases = law_cases();
+  std::erase_if(cases, [&](const LawCase& other) { return !takes(other); });
+  return cases;
+}
+
+inline bool is_own(const LawCase& law_case) { return law_case.algorithm->kind == AlgorithmKind::own; }
+inline bool is_peer(const LawCase& law_case) { return law_case.algorithm->kind == AlgorithmKind::peer; }
+
+/// The law cases of what is built on our interface, and not those of the peers: they share its checks.
+inline std::vector<LawCase> law_cases_without_peers() {
+  return law_cases_if([](const LawCase& law_case) { return !is_peer(law_case); });
+}
 
 /// Such as "grid_2d".
 std::string name(const LawCase& law_case);
@@ -47,11 +70,6 @@ bool is_instruction_set_chosen();
 /// The base of the tests of every law.
 class Law : public testing::TestWithParam<LawCase> {
  protected:
-  void SetUp() override {
-    if (is_instruction_set_chosen() && algorithm().kind != AlgorithmKind::own)
-      GTEST_SKIP() << algorithm().name << " does not use the kernels";
-  }
-
   const Algorithm& algorithm() const { return *GetParam().algorithm; }
 
   /// The algorithm's spec with no value given.

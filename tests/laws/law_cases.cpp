@@ -6,13 +6,11 @@ namespace broadside::laws {
 
 const std::vector<LawCase>& law_cases() {
   static const lab::Catalogue catalogue;
-  static const std::vector<LawCase> cases = cases_of(catalogue.algorithms());
-  return cases;
-}
-
-std::vector<LawCase> law_cases_in(int dimension) {
-  std::vector<LawCase> cases = law_cases();
-  std::erase_if(cases, [dimension](const LawCase& other) { return other.dimension != dimension; });
+  static const std::vector<LawCase> cases = [] {
+    std::vector<LawCase> all = cases_of(catalogue.algorithms());
+    if (is_instruction_set_chosen()) std::erase_if(all, [](const LawCase& other) { return !is_own(other); });
+    return all;
+  }();
   return cases;
 }
 

@@ -118,12 +118,15 @@ TEST_P(Property, TracksBoxesOnALattice) {
   in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>(lattice_box<D>())); });
 }
 
-TEST_P(Property, TracksAnyBoxes) {
-  if (!takes_any_floats(algorithm())) GTEST_SKIP() << algorithm().name << " does not take any boxes";
+class AnyBoxProperty : public Property {};
+
+TEST_P(AnyBoxProperty, TracksAnyBoxes) {
   in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>(any_box<D>())); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, Property, testing::ValuesIn(law_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Catalogue, AnyBoxProperty, testing::ValuesIn(law_cases_if(takes_any_boxes)),
+                         case_name);
 
 }  // namespace
 }  // namespace broadside::laws

@@ -13,29 +13,6 @@
 namespace broadside::laws {
 namespace {
 
-struct SinkIsFull final : std::runtime_error {
-  SinkIsFull() : std::runtime_error("the sink is full") {}
-};
-
-/// Collects so many pairs and throws at the next.
-class LimitedCollector final : public PairSink {
- public:
-  explicit LimitedCollector(std::size_t room) : room_(room) {}
-
-  const std::vector<Pair>& pairs() const { return pairs_; }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    for (const Pair pair : pairs) {
-      if (pairs_.size() == room_) throw SinkIsFull();
-      pairs_.push_back(pair);
-    }
-  }
-
-  std::size_t room_;
-  std::vector<Pair> pairs_;
-};
-
 /// The places that changed from one frame to the next, as a caller would list them: those of boxes that are
 /// new need not be, and no filters where the frame before had none or this one has none.
 template <int D, typename Real>

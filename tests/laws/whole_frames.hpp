@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,9 +12,9 @@
 #include "broadside/filter.hpp"
 #include "broadside/pair_tracker.hpp"
 
-namespace broadside::laws {
+#include "law_sinks.hpp"
 
-inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+namespace broadside::laws {
 
 /// A frame whole, not what changed in it: so any frame can be left out and the rest still is a history.
 template <int D, typename Real = float>

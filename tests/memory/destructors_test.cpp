@@ -28,7 +28,7 @@ class LastExecutor final : public Executor {
   }
 };
 
-struct SinkIsFull {};
+struct SinkFailed {};
 
 TEST(Search, PutsAwayPairsThatWaitWithoutMemory) {
   const std::vector<Box2> boxes(2000, Box2{{0, 0}, {1, 1}});
@@ -38,12 +38,12 @@ TEST(Search, PutsAwayPairsThatWaitWithoutMemory) {
   std::optional<FailingAllocation> no_memory;
   PairFunction full([&no_memory](std::span<const Pair>) {
     no_memory.emplace(0, FailureKind::from_then_on);
-    throw SinkIsFull();
+    throw SinkFailed();
   });
   bool threw = false;
   try {
     finder->find(boxes, full);
-  } catch (const SinkIsFull&) {
+  } catch (const SinkFailed&) {
     threw = true;
   }
   no_memory.reset();

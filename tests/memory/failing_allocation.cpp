@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
 std::atomic<std::uint64_t> allocations = 0;
-std::atomic<std::int64_t> blocks = 0;
+std::atomic<std::int64_t> block_count = 0;
 std::atomic<std::uint64_t> first_failing = never;  // by the count of all allocations
 std::atomic<std::uint64_t> last_failing = 0;
 std::atomic<std::uint64_t> failed = 0;
@@ -38,7 +38,7 @@ void* take(std::size_t size, std::size_t alignment) noexcept {
           ? std::malloc(std::max<std::size_t>(size, 1))
           : std::aligned_alloc(alignment,
                                std::max((size + alignment - 1) / alignment, std::size_t{1}) * alignment);
-  if (block != nullptr) blocks.fetch_add(1);
+  if (block != nullptr) block_count.fetch_add(1);
   return block;
 }
 
@@ -50,7 +50,7 @@ void* take_or_throw(std::size_t size, std::size_t alignment) {
 
 void give_back(void* block) noexcept {
   if (block == nullptr) return;
-  blocks.fetch_sub(1);
+  block_count.fetch_sub(1);
   std::free(block);
 }
 
@@ -72,7 +72,7 @@ std::uint64_t FailingAllocation::failures() noexcept { return failed; }
 
 std::uint64_t allocation_count() noexcept { return allocations; }
 
-std::int64_t blocks_held() noexcept { return blocks; }
+std::int64_t blocks_held() noexcept { return block_count; }
 
 }  // namespace broadside::laws
 

@@ -130,8 +130,9 @@ TEST_P(FinderFailure, LosesNothingButItsSearch) {
   in_case([&]<int D, typename Real>() { check<D, Real>(specs_of(GetParam()), {Workers{}}); });
 }
 
-TEST_P(FinderFailure, LosesNothingInAnyThread) {
-  if (!has_threads(algorithm())) GTEST_SKIP() << algorithm().name << " uses one thread";
+class ThreadedFinderFailure : public FinderFailure {};
+
+TEST_P(ThreadedFinderFailure, LosesNothingInAnyThread) {
   TeamExecutor team;
   ReverseExecutor reverse;
   in_case([&]<int D, typename Real>() {
@@ -143,6 +144,8 @@ TEST_P(FinderFailure, LosesNothingInAnyThread) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, FinderFailure, testing::ValuesIn(memory_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Library, ThreadedFinderFailure, testing::ValuesIn(threaded_memory_cases()),
+                         case_name);
 
 }  // namespace
 }  // namespace broadside::laws

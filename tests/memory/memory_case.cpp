@@ -34,6 +34,13 @@ std::vector<MemoryCase> memory_cases() {
   return cases;
 }
 
+std::vector<MemoryCase> threaded_memory_cases() {
+  std::vector<MemoryCase> cases = memory_cases();
+  std::erase_if(cases,
+                [](const MemoryCase& other) { return other.is_double || !has_threads(*other.algorithm); });
+  return cases;
+}
+
 std::string name(const MemoryCase& memory_case) {
   return memory_case.algorithm->name + "_" + std::to_string(memory_case.dimension) + "d" +
          (memory_case.is_double ? "_double" : "");

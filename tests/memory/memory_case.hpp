@@ -26,6 +26,9 @@ struct MemoryCase {
 /// Each algorithm of the library in each dimension that it does and with each type of coordinates.
 std::vector<MemoryCase> memory_cases();
 
+/// Those of them that can use several threads, on floats: doubles are searched as floats are.
+std::vector<MemoryCase> threaded_memory_cases();
+
 /// Such as "grid_2d_double".
 std::string name(const MemoryCase& memory_case);
 void PrintTo(const MemoryCase& memory_case, std::ostream* out);

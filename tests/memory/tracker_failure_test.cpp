@@ -138,8 +138,9 @@ TEST_P(TrackerFailure, NeitherLosesNorDoublesEvents) {
   in_case([&]<int D, typename Real>() { check<D, Real>(specs_of(GetParam()), {Workers{}}); });
 }
 
-TEST_P(TrackerFailure, NeitherLosesNorDoublesEventsInAnyThread) {
-  if (!has_threads(algorithm())) GTEST_SKIP() << algorithm().name << " uses one thread";
+class ThreadedTrackerFailure : public TrackerFailure {};
+
+TEST_P(ThreadedTrackerFailure, NeitherLosesNorDoublesEventsInAnyThread) {
   ReverseExecutor reverse;
   in_case([&]<int D, typename Real>() {
     check<D, Real>(threaded_specs_of(GetParam()),
@@ -149,6 +150,8 @@ TEST_P(TrackerFailure, NeitherLosesNorDoublesEventsInAnyThread) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, TrackerFailure, testing::ValuesIn(memory_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Library, ThreadedTrackerFailure, testing::ValuesIn(threaded_memory_cases()),
+                         case_name);
 
 }  // namespace
 }  // namespace broadside::laws

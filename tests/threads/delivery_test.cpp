@@ -18,6 +18,8 @@
 namespace broadside::core {
 namespace {
 
+using laws::with;
+
 constexpr std::uint32_t mebibyte_of_pairs = (1U << 20) / sizeof(Pair);
 
 /// Runs one task after the other: the first, which is the last in turn, in the calling thread, all others in
@@ -32,10 +34,6 @@ class OneByOne final : public Executor {
   }
   int runs = 0;
 };
-
-Workers with(Executor& executor, std::size_t threads) {
-  return {.threads = threads, .executor = &executor, .boxes_per_thread = 1};
-}
 
 /// So many pairs are written at once. The first of them is numbered: a thread sanitizer takes long over each
 /// write.

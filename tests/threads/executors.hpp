@@ -140,4 +140,9 @@ class NestingExecutor final : public Executor {
   Job* job_ = nullptr;
 };
 
+/// `threads` workers of this executor, which share even one box.
+inline Workers with(Executor& executor, std::size_t threads) {
+  return {.threads = threads, .executor = &executor, .boxes_per_thread = 1};
+}
+
 }  // namespace broadside::laws

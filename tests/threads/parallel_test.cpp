@@ -14,10 +14,13 @@
 #include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
+#include "executors.hpp"
 #include "tests/message.hpp"
 
 namespace broadside::core {
 namespace {
+
+using laws::with;
 
 /// A thread for each task but the first, which stays in the calling thread.
 class Team final : public Executor {
@@ -42,10 +45,6 @@ class Sloth final : public Executor {
     for (std::size_t i = 0; i + 1 < count; ++i) task(i);
   }
 };
-
-Workers with(Executor& executor, std::size_t threads) {
-  return {.threads = threads, .executor = &executor, .boxes_per_thread = 1};
-}
 
 TEST(Parallel, HasALaneForEachThreadThatIsWorthIt) {
   Team team;

@@ -33,11 +33,4 @@ inline Workers workers(std::size_t threads, Executor* executor = nullptr) {
   return {.threads = threads, .executor = executor, .boxes_per_thread = 1};
 }
 
-/// The algorithms that can use several threads: all of our own.
-inline std::vector<LawCase> threaded_cases() {
-  std::vector<LawCase> cases = cases_of(algorithms());
-  std::erase_if(cases, [](const LawCase& other) { return !has_threads(*other.algorithm); });
-  return cases;
-}
-
 }  // namespace broadside::laws

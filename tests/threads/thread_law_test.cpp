@@ -16,6 +16,7 @@
 #include "executors.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "law_sinks.hpp"
 #include "searches.hpp"
 #include "whole_frames.hpp"
 
@@ -168,10 +169,6 @@ TEST_P(ThreadLaw, NamesTheFirstWrongBox) {
     }
   });
 }
-
-struct SinkIsFull final : std::runtime_error {
-  SinkIsFull() : std::runtime_error("the sink is full") {}
-};
 
 TEST_P(ThreadLaw, LetsThroughWhatASinkThrowsAndCanBeUsedAfter) {
   in_dimension([&]<int D>() {

@@ -21,6 +21,11 @@ inline std::string corpus(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Names the case of an extension, such as ".csv".
+inline std::string without_dot(const testing::TestParamInfo<std::string>& info) {
+  return info.param.substr(1);
+}
+
 /// Tests with a folder of their own.
 class Files : public testing::Test {
  protected:

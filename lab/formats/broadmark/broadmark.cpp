@@ -135,7 +135,7 @@ class BroadmarkFrames final : public FrameReader<3, float> {
   std::vector<Box3> boxes_;  // of that frame
 };
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_broadmark(std::unique_ptr<Input> input, const ReadOptions& options) {
   const Counts counts = read_counts(*input);
   const bool flat = options.dimension != 3 && is_flat(input->bytes());
   AnyFrameReader frames = std::make_unique<BroadmarkFrames>(std::move(input), counts);
@@ -207,7 +207,7 @@ class BroadmarkWriter final : public FrameWriter<D, float> {
   Box<D> world_ = absent_box<D>();
 };
 
-AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+AnyFrameWriter create_broadmark(std::ostream& stream, int dimension, Precision precision) {
   if (precision != Precision::float32)
     throw FileError("boxes of doubles; expected floats, which is what an .aabbs file holds");
   if (dimension == 2) return std::make_unique<BroadmarkWriter<2>>(stream);
@@ -215,7 +215,7 @@ AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) 
 }
 
 /// A header has no magic bytes: but two names that end in zeros, two counts, two zeros, and bounds.
-bool recognises(std::string_view bytes, std::string_view extension) {
+bool is_broadmark(std::string_view bytes, std::string_view extension) {
   if (extension == ".aabbs") return true;
   if (bytes.size() < header_bytes) return false;
   for (const std::string_view name : {bytes.substr(0, name_bytes), bytes.substr(name_bytes, name_bytes)}) {
@@ -236,9 +236,9 @@ Format broadmark() {
       .name = "broadmark",
       .summary = "Broadmark's frames of boxes",
       .extensions = {".aabbs"},
-      .recognises = recognises,
-      .open = open,
-      .create = create,
+      .recognises = is_broadmark,
+      .open = open_broadmark,
+      .create = create_broadmark,
       .has_doubles = false,
   };
 }

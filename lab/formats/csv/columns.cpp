@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "lab/formats/csv/names.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {
 
-constexpr std::string_view axes = "xyz";
+constexpr std::string_view axis_letters = "xyz";
 
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
   return std::ranges::find(list, plain(name)) != list.end();
@@ -142,8 +142,8 @@ std::string problem_of(const Found& found, std::size_t axis, std::span<const std
   });
   if (known != found.end())
     return fmt::format("column {} alone does not give bounds on the {} axis",
-                       shown(names[static_cast<std::size_t>(*known)]), axes[axis]);
-  return axis < 2 ? fmt::format("no columns that give bounds on the {} axis", axes[axis]) : "";
+                       shown(names[static_cast<std::size_t>(*known)]), axis_letters[axis]);
+  return axis < 2 ? fmt::format("no columns that give bounds on the {} axis", axis_letters[axis]) : "";
 }
 
 /// The columns of boxes without extent, where there are no others; false if there are no such columns.

@@ -11,7 +11,7 @@
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/map/geometry_text.hpp"
 #include "lab/formats/number_fault.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -111,7 +111,7 @@ std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLine
   return labels;
 }
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options) {
   CsvLines lines(*input);
   CsvLines rows = lines;
   std::string_view comment;
@@ -167,7 +167,7 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
 }
 
 /// Whether the first line that says something is that of a table.
-bool recognises(std::string_view bytes, std::string_view extension) {
+bool is_csv(std::string_view bytes, std::string_view extension) {
   if (extension == ".csv") return true;
   Input input("", bytes);
   CsvLines lines(input);
@@ -195,8 +195,8 @@ Format csv() {
       .has_columns = true,
       .can_skip = true,
       .has_ids = true,
-      .recognises = recognises,
-      .open = open,
+      .recognises = is_csv,
+      .open = open_csv,
       .create = write_csv,
       .keeps_ids = true,
   };

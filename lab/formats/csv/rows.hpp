@@ -19,7 +19,7 @@
 #include "lab/formats/format.hpp"
 #include "lab/formats/map/geometry_text.hpp"
 #include "lab/formats/number_fault.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 

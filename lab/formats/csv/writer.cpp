@@ -10,7 +10,7 @@
 
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/format.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {

@@ -26,7 +26,7 @@ bool says_map(std::string_view bytes) {
       types, [&](std::string_view type) { return bytes.find(type) != std::string_view::npos; });
 }
 
-bool recognises(std::string_view bytes, std::string_view extension) {
+bool is_map(std::string_view bytes, std::string_view extension) {
   const std::vector<std::string> own = extensions();
   return std::ranges::find(own, extension) != own.end() || says_map(bytes);
 }
@@ -44,7 +44,7 @@ Format map_description() {
       .has_layers = true,
       .can_skip = true,
       .has_ids = true,
-      .recognises = recognises,
+      .recognises = is_map,
   };
 }
 

@@ -11,7 +11,7 @@
 
 #include "lab/formats/csv/text.hpp"
 #include "lab/formats/number_fault.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {

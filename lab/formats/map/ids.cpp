@@ -1,12 +1,11 @@
 // The ids of a map's features.
-#include "lab/formats/map/ids.hpp"
-
 #include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "lab/formats/shown.hpp"
+#include "lab/formats/map/texts.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 

@@ -19,7 +19,7 @@ MapPart part_of(const ReadOptions& options) {
   return options.boxes == "pieces" ? MapPart::pieces : MapPart::features;
 }
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_map(std::unique_ptr<Input> input, const ReadOptions& options) {
   MapText text(*input);
   const MapIds ids(options.ids);
   Quarantine quarantine(options);
@@ -47,7 +47,7 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
 
 Format map() {
   Format format = map_description();
-  format.open = open;
+  format.open = open_map;
   return format;
 }
 

@@ -17,10 +17,8 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/mesh/content.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
-#include "lab/formats/shown.hpp"
-#include "lab/formats/text_words.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -76,9 +74,9 @@ void check_corners(const Input& input, const aiScene& scene) {
 }
 
 /// Puts the meshes of a scene into one, each where its node is.
-class Collector {
+class SceneCollector {
  public:
-  Collector(const Input& input, const aiScene& scene) : input_(input), scene_(scene) {}
+  SceneCollector(const Input& input, const aiScene& scene) : input_(input), scene_(scene) {}
 
   IndexedMesh collect() {
     // Not by recursion: a file decides how deep its nodes lie.
@@ -149,7 +147,7 @@ IndexedMesh import_mesh(Input& input) {
     refuse_import(input, error.what());
   }
   if (scene->mRootNode == nullptr) refuse_import(input, importer.GetErrorString());
-  IndexedMesh mesh = Collector(input, *scene).collect();
+  IndexedMesh mesh = SceneCollector(input, *scene).collect();
   mesh.has_own_vertices = content == "off";
   mesh.precision = Precision::float32;
   mesh.importer = "assimp";

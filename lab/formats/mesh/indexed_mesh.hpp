@@ -1,4 +1,4 @@
-// Meshes whose faces name their vertices: what meshes are read into, before anybody asks for boxes.
+// Meshes as vertices and faces by index, and the readers of the formats that hold them.
 #pragma once
 
 #include <array>
@@ -60,5 +60,19 @@ void triangulate(IndexedMesh& mesh);
 
 /// The sides of all faces, each once whichever way around it is named: the lower vertex first, in order.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh);
+
+/// "ply", "obj", "stl" (as text), "glb", "gltf" or "off"; empty if the first bytes of a file do not say.
+/// STL in binary begins with anything.
+std::string_view mesh_content(std::string_view beginning);
+
+/// Reads an OBJ file: its lines "v" as vertices, as doubles, and its lines "f" as faces; all else is passed
+/// over. Vertices are numbered from 0. Throws FileError, naming the line.
+IndexedMesh read_obj(Input& input);
+
+/// Reads a PLY file, as text or in binary of either byte order: x, y and z of the element "vertex", exactly,
+/// and the list "vertex_indices" (or "vertex_index") of the element "face"; all else is passed over. The mesh
+/// is of floats if the header says so of x, y and z, and of doubles otherwise. Throws FileError, naming the
+/// line of the header, or the byte.
+IndexedMesh read_ply(Input& input);
 
 }  // namespace broadside::lab

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/mesh/content.hpp"
 #include "lab/formats/mesh/elements.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 
@@ -30,7 +29,7 @@ class MeshFrames final : public FrameReader<3, double> {
   std::string_view importer_;
 };
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& options) {
   const std::string part = options.boxes.empty() ? "triangles" : options.boxes;
   const bool are_triangles = part == "triangles";
   IndexedMesh mesh = read_mesh(*input);
@@ -66,7 +65,7 @@ Format mesh() {
           [](std::string_view bytes, std::string_view extension) {
             return !mesh_content(bytes).empty() || is_mesh_extension(extension);
           },
-      .open = open,
+      .open = open_mesh,
   };
 }
 

@@ -1,7 +1,5 @@
 // OBJ, the format of Wavefront: a line a vertex, "v x y z", or a face, "f 1/7 2/8 3/9", whose first numbers
 // are those of its vertices, counted from 1, or, if negative, back from the last one.
-#include "lab/formats/mesh/obj.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -15,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/shown.hpp"
-#include "lab/formats/text_words.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,7 +1,5 @@
 // PLY, the Stanford triangle format (Greg Turk, 1994): elements one after the other, each a row of numbers
 // and lists of numbers.
-#include "lab/formats/mesh/ply.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,8 +13,9 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
 #include "lab/formats/mesh/ply_header.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,8 +8,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/shown.hpp"
-#include "lab/formats/text_words.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {

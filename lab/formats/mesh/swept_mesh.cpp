@@ -8,6 +8,7 @@
 
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/format.hpp"
+#include "lab/pair_filter.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -79,18 +80,9 @@ SweptMesh read_swept_mesh(const std::filesystem::path& before, const std::filesy
 }
 
 void ApartPairs::consume(std::span<const Pair> pairs) {
-  // Not by add(), which orders the two: they are of two sets.
-  while (!pairs.empty()) {
-    const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), PairSink::max_room));
-    pairs = pairs.subspan(chunk.size());
-    Pair* const room = pairs_.room(chunk.size());
-    std::size_t kept = 0;
-    for (const Pair pair : chunk) {
-      room[kept] = pair;
-      kept += share_vertex(left_.vertices(index(pair.first)), right_.vertices(index(pair.second))) ? 0 : 1;
-    }
-    pairs_.commit(kept);
-  }
+  write_if(pairs, pairs_, [this](Pair pair) {
+    return !share_vertex(left_.vertices(index(pair.first)), right_.vertices(index(pair.second)));
+  });
 }
 
 }  // namespace broadside::lab

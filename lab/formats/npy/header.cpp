@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
 namespace {

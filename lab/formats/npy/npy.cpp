@@ -73,7 +73,7 @@ class NpyFrame final : public FrameReader<D, Real> {
   NpyLayout layout_;
 };
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions&) {
+AnyFrameReader open_npy(std::unique_ptr<Input> input, const ReadOptions&) {
   const std::string_view bytes = input->bytes();
   const NpyHeader header = read_npy_header(bytes, input->name());
   const NpyLayout layout = npy_layout(header, bytes.size() - header.bytes, input->name());
@@ -106,7 +106,7 @@ class NpyWriter final : public FrameWriter<D, Real> {
   NpyArrayWriter<Real> array_;
 };
 
-AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+AnyFrameWriter create_npy(std::ostream& stream, int dimension, Precision precision) {
   return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
     return std::make_unique<NpyWriter<D, Real>>(stream);
   });
@@ -123,8 +123,8 @@ Format npy() {
           [](std::string_view bytes, std::string_view extension) {
             return extension == ".npy" || bytes.starts_with(npy_magic);
           },
-      .open = open,
-      .create = create,
+      .open = open_npy,
+      .create = create_npy,
   };
 }
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/shown.hpp"
+#include "lab/formats/text.hpp"
 #include "lab/formats/zip_archive.hpp"
 
 namespace broadside::lab::readers {
@@ -47,7 +47,7 @@ const Array& choose(const std::vector<Array>& arrays, const std::string& wanted,
   throw FileError(fmt::format("{}: holds no array {}; expected one of: {}", file, shown(wanted), names));
 }
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
+AnyFrameReader open_npz(std::unique_ptr<Input> input, const ReadOptions& options) {
   if (input->bytes().empty())
     throw FileError(fmt::format("{}: is empty; expected an .npz file", input->name()));
   const ZipArchive archive(input->bytes(), input->name());
@@ -59,7 +59,7 @@ AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions& options) {
 }
 
 /// Whether these are the first bytes of an archive whose first member is an array.
-bool recognises(std::string_view bytes, std::string_view extension) {
+bool is_npz(std::string_view bytes, std::string_view extension) {
   if (extension == ".npz") return true;
   constexpr std::size_t name_size_at = 26;
   constexpr std::size_t name_at = 30;
@@ -77,8 +77,8 @@ Format npz() {
       .summary = "boxes as one of the arrays of a NumPy .npz file",
       .extensions = {".npz"},
       .has_layers = true,
-      .recognises = recognises,
-      .open = open,
+      .recognises = is_npz,
+      .open = open_npz,
       .missing = zip_missing(),
   };
 }

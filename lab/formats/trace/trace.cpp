@@ -48,7 +48,7 @@ class TraceFrames final : public FrameReader<D, Real> {
   std::unique_ptr<TraceReader> reader_;
 };
 
-AnyFrameReader open(std::unique_ptr<Input> input, const ReadOptions&) {
+AnyFrameReader open_trace(std::unique_ptr<Input> input, const ReadOptions&) {
   auto reader = std::make_unique<TraceReader>(input->stream(), input->name());
   const Precision precision =
       reader->coordinate_bytes() == sizeof(float) ? Precision::float32 : Precision::float64;
@@ -94,7 +94,7 @@ class TraceWriter final : public FrameWriter<D, Real> {
   Recorder<D, Real> recorder_;
 };
 
-AnyFrameWriter create(std::ostream& stream, int dimension, Precision precision) {
+AnyFrameWriter create_trace(std::ostream& stream, int dimension, Precision precision) {
   return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
     return std::make_unique<TraceWriter<D, Real>>(stream);
   });
@@ -113,8 +113,8 @@ Format trace() {
                                          trace::magic.size());
             return extension == ".btrace" || bytes.starts_with(magic);
           },
-      .open = open,
-      .create = create,
+      .open = open_trace,
+      .create = create_trace,
   };
 }
 

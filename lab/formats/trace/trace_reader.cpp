@@ -14,7 +14,6 @@
 namespace broadside::lab {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t word_bytes = 4;
 
 }  // namespace
@@ -107,8 +106,8 @@ void TraceReader::take(const FrameHeader& header) {
     added += slot >= slots_ ? 1 : 0;
     changed_.push_back(BoxId(slot));
     if (removes) {
-      bounds_.insert(bounds_.end(), axes, infinity);
-      bounds_.insert(bounds_.end(), axes, -infinity);
+      bounds_.insert(bounds_.end(), axes, std::numeric_limits<double>::infinity());
+      bounds_.insert(bounds_.end(), axes, -std::numeric_limits<double>::infinity());
       removed += word_bytes;
     } else {
       take_box(slot, at + word_bytes);

@@ -12,7 +12,7 @@ namespace {
 
 Box2 point(float x) { return {{x, 0}, {x, 0}}; }
 
-std::vector<Box2> row(std::size_t count) {
+std::vector<Box2> points(std::size_t count) {
   std::vector<Box2> boxes;
   for (std::size_t i = 0; i < count; ++i) boxes.push_back(point(static_cast<float>(i)));
   return boxes;
@@ -21,7 +21,7 @@ std::vector<Box2> row(std::size_t count) {
 bool holds(std::span<const Box2> boxes, float x) { return std::ranges::find(boxes, point(x)) != boxes.end(); }
 
 TEST(Minimise, KeepsOnlyTheBoxesThatTheFailureNeeds) {
-  std::vector<Box2> boxes = row(1000);
+  std::vector<Box2> boxes = points(1000);
   std::size_t calls = 0;
   minimise(boxes, [&](std::span<const Box2> some) {
     ++calls;
@@ -32,7 +32,7 @@ TEST(Minimise, KeepsOnlyTheBoxesThatTheFailureNeeds) {
 }
 
 TEST(Minimise, StopsWhereItIsToldTo) {
-  std::vector<Box2> boxes = row(1000);
+  std::vector<Box2> boxes = points(1000);
   std::size_t calls = 0;
   minimise(
       boxes, [&](std::span<const Box2> some) { return ++calls, holds(some, 17); },
@@ -43,7 +43,7 @@ TEST(Minimise, StopsWhereItIsToldTo) {
 }
 
 TEST(Minimise, KeepsTheFramesPlacesAndChangesOfAHistoryThatTheFailureNeeds) {
-  History<2> history{row(20), {}};
+  History<2> history{points(20), {}};
   for (std::size_t frame = 1; frame <= 30; ++frame) {
     Step<2> step{20 + frame, {}, {}};
     for (const std::size_t place : {frame % 20, 19 + frame}) {

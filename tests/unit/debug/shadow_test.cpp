@@ -17,31 +17,13 @@
 
 #include "lab/scenes/motion.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/trackers.hpp"
 #include "tests/unit/wrong_algorithm.hpp"
 
 namespace broadside {
 namespace {
 
 using testing::HasSubstr;
-using Pairs = std::vector<Pair>;
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
-
-struct Got {
-  Pairs begun;
-  Pairs ended;
-};
-
-Got update(PairTracker<2>& tracker, const Frame<2>& frame) {
-  Got events;
-  PairCollector begun(events.begun);
-  PairCollector ended(events.ended);
-  tracker.update(frame, begun, ended);
-  return events;
-}
-
 /// Brute force that forgets what changes places beyond the third, from some frame on.
 class Forgetful final : public PairTracker<2> {
  public:
@@ -81,7 +63,7 @@ void play(PairTracker<2>& tracker, const History<2>& history) {
 TEST(ShadowTracker, GivesTheEventsOfTheTrackerThatItRuns) {
   ShadowTracker<2> shadow("grid");
   const std::vector<Box2> first = {at(0), at(0.5F), at(5)};
-  Got events = update(shadow, {first, {}});
+  PairEvents events = update(shadow, {first, {}});
   EXPECT_EQ(events.begun, (Pairs{pair(0, 1)}));
   const std::vector<Box2> second = {at(5), at(0.5F), at(5)};
   const std::vector<BoxId> changed = {BoxId{0}};

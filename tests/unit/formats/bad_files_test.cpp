@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -28,6 +27,7 @@
 #include "lab/formats/format.hpp"
 #include "lab/measure/allocation.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"
 
 namespace broadside::lab {
@@ -91,7 +91,6 @@ std::string npy_bytes(const std::string& type, const std::string& shape, std::ve
 
 std::vector<BadFile> bad_arrays() {
   const std::string type = std::endian::native == std::endian::little ? "<f4" : ">f4";
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   return {
       {"npy",
        "truncated",
@@ -304,8 +303,6 @@ std::vector<std::string> extensions(bool written) {
   }
   return list;
 }
-
-std::string without_dot(const testing::TestParamInfo<std::string>& info) { return info.param.substr(1); }
 
 INSTANTIATE_TEST_SUITE_P(All, BadPlace, testing::ValuesIn(extensions(false)), without_dot);
 

@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
+#include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"
 
 namespace broadside::lab {
@@ -56,17 +56,17 @@ std::string open_format(const std::string& text) {
   return "none";
 }
 
-const std::vector<DoubleBox2> expected = {{{1, 2}, {5, 8}}, {{-1, -2}, {0, 1e10}}};
+const std::vector<DoubleBox2> both_boxes = {{{1, 2}, {5, 8}}, {{-1, -2}, {0, 1e10}}};
 
 TEST_F(CsvTable, TakesColumnsInAnyOrderAndSpellingAndLeavesOutOthers) {
-  EXPECT_EQ(boxes_of("max_y,name,min_x,max_x,min_y\n8,a,1,5,2\n1e10,,-1,0,-2\n"), expected);
+  EXPECT_EQ(boxes_of("max_y,name,min_x,max_x,min_y\n8,a,1,5,2\n1e10,,-1,0,-2\n"), both_boxes);
   for (const std::string header :
        {"min_x,min_y,max_x,max_y", "xmin,ymin,xmax,ymax", "minX,minY,maxX,maxY", "X_MIN,Y_MIN,X_MAX,Y_MAX",
         "Min X,Min Y,Max X,Max Y", "min.x,min.y,max.x,max.y", "lower_x,lower_y,upper_x,upper_y",
         "lo_x,lo_y,hi_x,hi_y", "x0,y0,x1,y1", "x1,y1,x2,y2", "left,bottom,right,top", "west,south,east,north",
         " min_x , min_y,max_x\t,max_y ", "\"min_x\",\"min_y\",\"max_x\",\"max_y\"",
         "minimum_x,minimum_y,maximum_x,maximum_y"})
-    EXPECT_EQ(boxes_of(header + "\n1,2,5,8\n-1,-2,0,1e10\n"), expected) << header;
+    EXPECT_EQ(boxes_of(header + "\n1,2,5,8\n-1,-2,0,1e10\n"), both_boxes) << header;
 }
 
 TEST_F(CsvTable, MakesBoundsOfCentresMinimaAndSizes) {
@@ -96,7 +96,7 @@ TEST_F(CsvTable, IsIn3DWhereAllOfZIsThere) {
 }
 
 TEST_F(CsvTable, WithoutNamesHasMinimaAndThenMaxima) {
-  EXPECT_EQ(boxes_of("1,2,5,8\n-1,-2,0,1e10\n"), expected);
+  EXPECT_EQ(boxes_of("1,2,5,8\n-1,-2,0,1e10\n"), both_boxes);
   EXPECT_EQ(solid_boxes_of("1,2,3,4,5,6\n"), (std::vector<DoubleBox3>{{{1, 2, 3}, {4, 5, 6}}}));
   EXPECT_THAT(refusal_of("1,2,3,4,5\n"),
               AllOf(HasSubstr("bad.csv:1: 5 columns of numbers and no names"), HasSubstr("--columns")));
@@ -104,24 +104,24 @@ TEST_F(CsvTable, WithoutNamesHasMinimaAndThenMaxima) {
 }
 
 TEST_F(CsvTable, TellsItsSeparatorFromTheFirstLine) {
-  EXPECT_EQ(boxes_of("min_x;min_y;max_x;max_y\n1;2;5;8\n-1;-2;0;1e10\n"), expected);
-  EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n1\t2\t5\t8\n-1\t-2\t 0\t1e10\n"), expected);
-  EXPECT_EQ(boxes_of("min_x min_y  max_x max_y\n  1 2 5 8\n-1 -2\t 0 1e10  \n"), expected);
-  EXPECT_EQ(boxes_of("1 2 5 8\n-1 -2 0 1e10\n"), expected);
-  EXPECT_EQ(boxes_of("name;min_x;min_y;max_x;max_y\na,b;1;2;5;8\n;-1;-2;0;1e10\n"), expected);
+  EXPECT_EQ(boxes_of("min_x;min_y;max_x;max_y\n1;2;5;8\n-1;-2;0;1e10\n"), both_boxes);
+  EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n1\t2\t5\t8\n-1\t-2\t 0\t1e10\n"), both_boxes);
+  EXPECT_EQ(boxes_of("min_x min_y  max_x max_y\n  1 2 5 8\n-1 -2\t 0 1e10  \n"), both_boxes);
+  EXPECT_EQ(boxes_of("1 2 5 8\n-1 -2 0 1e10\n"), both_boxes);
+  EXPECT_EQ(boxes_of("name;min_x;min_y;max_x;max_y\na,b;1;2;5;8\n;-1;-2;0;1e10\n"), both_boxes);
 }
 
 TEST_F(CsvTable, TakesQuotesAndBlanksAroundValuesAndAPlus) {
   EXPECT_EQ(boxes_of("name,min_x,min_y,max_x,max_y\n"
                      "\"a, \"\"b\"\"\",\"1\", 2 ,+5,8\n"
                      "5\" pipe,-1,\"-2\" , \"0\",1e10\n"),
-            expected);
+            both_boxes);
 }
 
 TEST_F(CsvTable, SkipsCommentsBeforeItAndTakesNamesFromTheLast) {
   EXPECT_EQ(boxes_of("# made by hand\n\n  # twice\nmin_x,min_y,max_x,max_y\n1,2,5,8\n-1,-2,0,1e10\n"),
-            expected);
-  EXPECT_EQ(boxes_of("# four numbers\n1,2,5,8\n-1,-2,0,1e10\n"), expected);
+            both_boxes);
+  EXPECT_EQ(boxes_of("# four numbers\n1,2,5,8\n-1,-2,0,1e10\n"), both_boxes);
   EXPECT_EQ(boxes_of("# cx cy w h\n3 5 4 6\n"), (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
   EXPECT_THAT(refusal_of("# nothing\n"), HasSubstr("bad.csv: has no line but comments"));
 }
@@ -129,17 +129,17 @@ TEST_F(CsvTable, SkipsCommentsBeforeItAndTakesNamesFromTheLast) {
 TEST_F(CsvTable, TakesTheColumnsThatTheUserNames) {
   ReadOptions options;
   options.columns = "-,xmin,ymin,-,xmax,ymax";
-  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected);
-  EXPECT_EQ(boxes_of("id,p,q,r,s,t,more\na,1,2,b,5,8,0\nc,-1,-2,d,0,1e10,0\n", options), expected)
+  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), both_boxes);
+  EXPECT_EQ(boxes_of("id,p,q,r,s,t,more\na,1,2,b,5,8,0\nc,-1,-2,d,0,1e10,0\n", options), both_boxes)
       << "with names of its own, and a column behind those named";
   options.columns = "id,min_x,min_y,colour,max_x,max_y";
-  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), expected) << "as in a header";
+  EXPECT_EQ(boxes_of("a,1,2,b,5,8\nc,-1,-2,d,0,1e10\n", options), both_boxes) << "as in a header";
   options.columns = "min_y,min_x,max_y,max_x";
-  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n2,1,8,5\n-2,-1,1e10,0\n", options), expected)
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n2,1,8,5\n-2,-1,1e10,0\n", options), both_boxes)
       << "whatever the table says";
 
   EXPECT_EQ((history_of<2, double>(put("a.txt", "p q r s\n2 1 8 5\n-2 -1 1e10 0\n"), options).boxes),
-            expected)
+            both_boxes)
       << "whatever the file is called";
 
   EXPECT_THAT(refusal_of("1,2,3,4\n", "min_x,min_y,max_x,maxy,-"),
@@ -221,7 +221,6 @@ TEST_F(CsvTable, SaysWhatCannotBeALineOrABound) {
 }
 
 TEST_F(CsvTable, TakesNumbersTooSmallForTheNearestAndRefusesThoseTooLarge) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(boxes_of("1e-400,-1e-400,INF,Infinity\n"),
             (std::vector<DoubleBox2>{{{0, 0}, {infinity, infinity}}}));
   EXPECT_THAT(refusal_of("0,0,1,1e400\n"),
@@ -270,9 +269,9 @@ TEST_F(CsvTable, SaysWhyATextIsNoNumber) {
 }
 
 TEST_F(CsvTable, SkipsBlankLines) {
-  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n\n1,2,5,8\n\n \t\n-1,-2,0,1e10\n\n"), expected);
+  EXPECT_EQ(boxes_of("min_x,min_y,max_x,max_y\n\n1,2,5,8\n\n \t\n-1,-2,0,1e10\n\n"), both_boxes);
   EXPECT_EQ(boxes_of("min_x\tmin_y\tmax_x\tmax_y\n  \n1\t2\t5\t8\n\t\t\t\n"),
-            (std::vector<DoubleBox2>{expected[0], absent_box<2, double>()}))
+            (std::vector<DoubleBox2>{both_boxes[0], absent_box<2, double>()}))
       << "tabs alone are empty fields";
 }
 
@@ -332,7 +331,7 @@ TEST_F(CsvTable, RefusesAQuotedFieldThatGoesOnInTheNextLine) {
   options.say_invalid = [](std::string_view) {};
   EXPECT_THROW(boxes_of(table, options), FileError);
   EXPECT_EQ(boxes_of("name,min_x,min_y,max_x,max_y\n\"a \"\"b, c\"\"\",1,2,5,8\n\"a\" b,-1,-2,0,1e10\n"),
-            expected)
+            both_boxes)
       << "quotes that do not go on";
 }
 

@@ -1,12 +1,13 @@
 // Frames seen in another precision or flat: each box converted, and nothing else.
 #include "lab/formats/frames.hpp"
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -29,7 +30,6 @@ TEST(Frames, AreRoundedToTheNearestFloat) {
   EXPECT_EQ(dimension_of(frames), 3);
   EXPECT_EQ(precision_of_frames(frames), Precision::float32);
   FrameReader<3, float>& floats = as<3, float>(frames);
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const Box3 rounded{{0.1F, 16777216, -infinity}, {0.2F, 16777220, infinity}};
   EXPECT_EQ(floats.first(), std::vector<Box3>(2, rounded));
   Step<3> step;

@@ -148,8 +148,6 @@ TEST_P(CompressedInput, IsRefusedAsAStreamLikewise) {
   EXPECT_TRUE(is_missing(text) || text.find("is cut off") != std::string::npos) << text;
 }
 
-std::string without_dot(const testing::TestParamInfo<std::string>& info) { return info.param.substr(1); }
-
 INSTANTIATE_TEST_SUITE_P(All, CompressedInput, testing::Values(".gz", ".zst"), without_dot);
 
 TEST_F(InputTest, KnowsItsExtensionInLowerCase) {

@@ -15,7 +15,7 @@ namespace broadside::lab {
 namespace {
 
 /// Takes bytes and cannot go back, like a pipe.
-class Pipe final : public std::streambuf {
+class PipeBuffer final : public std::streambuf {
  public:
   std::string bytes;
 
@@ -26,7 +26,7 @@ class Pipe final : public std::streambuf {
   }
 };
 
-std::string header_of(const std::string& descr, const std::string& shape) {
+std::string written_header(const std::string& descr, const std::string& shape) {
   std::string header("\x93NUMPY\x01\0\x76\0", 10);
   header += "{'descr': '" + descr + "', 'fortran_order': False, 'shape': (" + shape + "), }";
   header.resize(127, ' ');
@@ -47,18 +47,18 @@ TEST(NpyArrayWriter, CountsItsRowsAndSaysThemInTheHeader) {
   array.write(std::array<std::uint32_t, 4>{3, 4, 5, 4000000000});
   array.finish();
   stream << "after";
-  EXPECT_EQ(stream.str(),
-            "before" + header_of(native + "u4", "3, 2") + bytes_of({1, 2, 3, 4, 5, 4000000000}) + "after");
+  EXPECT_EQ(stream.str(), "before" + written_header(native + "u4", "3, 2") +
+                              bytes_of({1, 2, 3, 4, 5, 4000000000}) + "after");
 }
 
 TEST(NpyArrayWriter, WritesTheSameIntoAPipe) {
-  Pipe pipe;
+  PipeBuffer pipe;
   std::ostream stream(&pipe);
   NpyArrayWriter<std::uint32_t> array(stream, 2);
   array.write(std::array<std::uint32_t, 2>{1, 2});
   array.finish();
   EXPECT_TRUE(stream);
-  EXPECT_EQ(pipe.bytes, header_of(native + "u4", "1, 2") + bytes_of({1, 2}));
+  EXPECT_EQ(pipe.bytes, written_header(native + "u4", "1, 2") + bytes_of({1, 2}));
 }
 
 TEST(NpyArrayWriter, WritesMoreThanItsBufferHoldsInOrder) {
@@ -72,18 +72,19 @@ TEST(NpyArrayWriter, WritesMoreThanItsBufferHoldsInOrder) {
     all.insert(all.end(), values.begin(), values.end());
   }
   array.finish();
-  EXPECT_EQ(stream.str(), header_of(native + "u4", std::to_string(all.size() / 2) + ", 2") + bytes_of(all));
+  EXPECT_EQ(stream.str(),
+            written_header(native + "u4", std::to_string(all.size() / 2) + ", 2") + bytes_of(all));
 }
 
 TEST(NpyArrayWriter, WritesAnArrayWithoutRowsAndOthersOfFloatsAndDoubles) {
   std::ostringstream floats;
   NpyArrayWriter<float>(floats, 4).finish();
-  EXPECT_EQ(floats.str(), header_of(native + "f4", "0, 4"));
+  EXPECT_EQ(floats.str(), written_header(native + "f4", "0, 4"));
   std::ostringstream doubles;
   NpyArrayWriter<double> array(doubles, 6);
   array.write(std::array<double, 6>{1, 2, 3, 4, 5, 6});
   array.finish();
-  EXPECT_EQ(doubles.str().substr(0, 128), header_of(native + "f8", "1, 6"));
+  EXPECT_EQ(doubles.str().substr(0, 128), written_header(native + "f8", "1, 6"));
   EXPECT_EQ(doubles.str().size(), 128u + 48);
 }
 

@@ -14,6 +14,7 @@
 
 #include "lab/formats/format.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"
 
 namespace broadside::lab {
@@ -25,7 +26,7 @@ using testing::HasSubstr;
 constexpr bool is_little = std::endian::native == std::endian::little;
 
 /// A header of a version whose first number is `version`.
-std::string header(const std::string& dictionary, char version = 1) {
+std::string npy_header(const std::string& dictionary, char version = 1) {
   std::string bytes = "\x93NUMPY";
   bytes += version;
   bytes += '\0';
@@ -35,9 +36,9 @@ std::string header(const std::string& dictionary, char version = 1) {
   return bytes + text;
 }
 
-std::string header_of(const std::string& type, const std::string& shape, bool is_column_major = false) {
-  return header("{'descr': '" + type + "', 'fortran_order': " + (is_column_major ? "True" : "False") +
-                ", 'shape': (" + shape + "), }");
+std::string array_header(const std::string& type, const std::string& shape, bool is_column_major = false) {
+  return npy_header("{'descr': '" + type + "', 'fortran_order': " + (is_column_major ? "True" : "False") +
+                    ", 'shape': (" + shape + "), }");
 }
 
 template <typename Number>
@@ -63,39 +64,41 @@ class Npy : public Files {
   std::string refusal_of(const std::string& bytes) const { return refusal(put("bad.npy", bytes)); }
 };
 
-const std::vector<DoubleBox2> expected = {{{1, 2}, {5, 8}}, {{3, 4}, {7, 9}}};
+const std::vector<DoubleBox2> two_boxes = {{{1, 2}, {5, 8}}, {{3, 4}, {7, 9}}};
 
 TEST_F(Npy, IsReadInTheTypeItHas) {
   const std::vector<Box2> floats = {{{0.1F, 2}, {5, 8}}};
-  EXPECT_EQ((boxes_of<2, float>(header_of("<f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}))), floats);
-  EXPECT_EQ((boxes_of<2, float>(header_of(">f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}, false))), floats);
-  EXPECT_EQ((boxes_of<2, float>(header_of("=f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}, is_little))),
+  EXPECT_EQ((boxes_of<2, float>(array_header("<f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}))), floats);
+  EXPECT_EQ((boxes_of<2, float>(array_header(">f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}, false))),
+            floats);
+  EXPECT_EQ((boxes_of<2, float>(array_header("=f4", "1, 4") + numbers<float>({0.1F, 2, 5, 8}, is_little))),
             floats);
   const std::vector<DoubleBox3> solid = {{{0.1, 2, 3}, {4, 5, 6}}};
-  EXPECT_EQ((boxes_of<3, double>(header_of("<f8", "1, 6") + numbers<double>({0.1, 2, 3, 4, 5, 6}))), solid);
-  EXPECT_EQ((boxes_of<3, double>(header_of(">f8", "1,6") + numbers<double>({0.1, 2, 3, 4, 5, 6}, false))),
+  EXPECT_EQ((boxes_of<3, double>(array_header("<f8", "1, 6") + numbers<double>({0.1, 2, 3, 4, 5, 6}))),
             solid);
-  EXPECT_TRUE((boxes_of<2, float>(header_of("<f4", "0, 4")).empty()));
+  EXPECT_EQ((boxes_of<3, double>(array_header(">f8", "1,6") + numbers<double>({0.1, 2, 3, 4, 5, 6}, false))),
+            solid);
+  EXPECT_TRUE((boxes_of<2, float>(array_header("<f4", "0, 4")).empty()));
 }
 
 TEST_F(Npy, OfHalfPrecisionIsReadAsFloats) {
   EXPECT_EQ((boxes_of<2, float>(corpus("npy/half_precision.npy"))),
             (std::vector<Box2>{{{0.5F, -2}, {65504, 5.9604645e-8F}}}));
   const std::string infinite = numbers<std::uint16_t>({0xfc00, 0x8000, 0x7c00, 0x0001});
-  EXPECT_EQ((boxes_of<2, float>(header_of("<f2", "1, 4") + infinite)),
+  EXPECT_EQ((boxes_of<2, float>(array_header("<f2", "1, 4") + infinite)),
             (std::vector<Box2>{{{-std::numeric_limits<float>::infinity(), 0},
                                 {std::numeric_limits<float>::infinity(), 5.9604645e-8F}}}));
-  EXPECT_THAT(refusal_of(header_of("<f2", "1, 4") + numbers<std::uint16_t>({0x7e00, 0, 0, 0})),
+  EXPECT_THAT(refusal_of(array_header("<f2", "1, 4") + numbers<std::uint16_t>({0x7e00, 0, 0, 0})),
               HasSubstr("row 0 has min (nan, 0)"));
 }
 
 TEST_F(Npy, OfTwoCornersIsReadByRowsOrByColumns) {
   EXPECT_EQ((boxes_of<3, float>(corpus("npy/corners.npy"))), (std::vector<Box3>{{{0, 1, 2}, {3, 4, 5}}}));
-  EXPECT_EQ((boxes_of<2, double>(header_of("<f8", "2, 2, 2") + numbers<double>({1, 2, 5, 8, 3, 4, 7, 9}))),
-            expected);
+  EXPECT_EQ((boxes_of<2, double>(array_header("<f8", "2, 2, 2") + numbers<double>({1, 2, 5, 8, 3, 4, 7, 9}))),
+            two_boxes);
   EXPECT_EQ(
-      (boxes_of<2, double>(header_of("<f8", "2, 2, 2", true) + numbers<double>({1, 3, 5, 7, 2, 4, 8, 9}))),
-      expected);
+      (boxes_of<2, double>(array_header("<f8", "2, 2, 2", true) + numbers<double>({1, 3, 5, 7, 2, 4, 8, 9}))),
+      two_boxes);
 }
 
 TEST_F(Npy, WithNamedFieldsIsReadAsATable) {
@@ -110,7 +113,7 @@ TEST_F(Npy, WithNamedFieldsIsReadAsATable) {
               HasSubstr("field 'min_x' has the shape"));
   const auto refusal_of_fields = [&](const std::string& fields, const std::string& shape) {
     return refusal_of(
-        header("{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }"));
+        npy_header("{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }"));
   };
   const std::string rest = ", ('min_y', '<f4'), ('max_x', '<f4'), ('max_y', '<f4')";
   EXPECT_THAT(refusal_of_fields("('a', '<f4')", "0,"),
@@ -169,10 +172,10 @@ TEST_F(Npy, OfIntegersIsReadAsDoubles) {
     using Number = decltype(number);
     const std::vector<Number> values = {1, 2, 5, 8, 3, 4, 7, 9};
     const std::string order = sizeof(Number) == 1 ? "|" : "<";
-    EXPECT_EQ((boxes_of<2, double>(header_of(order + type_name<Number>(), "2, 4") + numbers(values))),
-              expected);
-    EXPECT_EQ((boxes_of<2, double>(header_of(">" + type_name<Number>(), "2, 4") + numbers(values, false))),
-              expected);
+    EXPECT_EQ((boxes_of<2, double>(array_header(order + type_name<Number>(), "2, 4") + numbers(values))),
+              two_boxes);
+    EXPECT_EQ((boxes_of<2, double>(array_header(">" + type_name<Number>(), "2, 4") + numbers(values, false))),
+              two_boxes);
   };
   check(std::int8_t{});
   check(std::int16_t{});
@@ -184,32 +187,33 @@ TEST_F(Npy, OfIntegersIsReadAsDoubles) {
   check(std::uint64_t{});
 
   constexpr std::int64_t most = std::int64_t{1} << 53;
-  EXPECT_EQ((boxes_of<2, double>(header_of("<i8", "1, 4") + numbers<std::int64_t>({-most, 0, most, 1}))),
+  EXPECT_EQ((boxes_of<2, double>(array_header("<i8", "1, 4") + numbers<std::int64_t>({-most, 0, most, 1}))),
             (std::vector<DoubleBox2>{{{-9007199254740992, 0}, {9007199254740992, 1}}}));
-  EXPECT_THAT(refusal_of(header_of("<i8", "2, 4") + numbers<std::int64_t>({0, 0, 1, 1, 0, 0, 1, most + 1})),
-              AllOf(HasSubstr("bad.npy: row 1 holds 9007199254740993"), HasSubstr("2^53")));
-  EXPECT_THAT(refusal_of(header_of("<i8", "1, 4") + numbers<std::int64_t>({-most - 1, 0, 1, 1})),
+  EXPECT_THAT(
+      refusal_of(array_header("<i8", "2, 4") + numbers<std::int64_t>({0, 0, 1, 1, 0, 0, 1, most + 1})),
+      AllOf(HasSubstr("bad.npy: row 1 holds 9007199254740993"), HasSubstr("2^53")));
+  EXPECT_THAT(refusal_of(array_header("<i8", "1, 4") + numbers<std::int64_t>({-most - 1, 0, 1, 1})),
               HasSubstr("row 0 holds -9007199254740993"));
-  EXPECT_THAT(refusal_of(header_of("<u8", "1, 4") + numbers<std::uint64_t>({0, 0, 1, UINT64_MAX})),
+  EXPECT_THAT(refusal_of(array_header("<u8", "1, 4") + numbers<std::uint64_t>({0, 0, 1, UINT64_MAX})),
               HasSubstr("row 0 holds 18446744073709551615"));
 }
 
 TEST_F(Npy, IsReadByRowsOrByColumns) {
-  EXPECT_EQ((boxes_of<2, double>(header_of("<f8", "2, 4") + numbers<double>({1, 2, 5, 8, 3, 4, 7, 9}))),
-            expected);
-  EXPECT_EQ((boxes_of<2, double>(header_of("<f8", "2, 4", true) + numbers<double>({1, 3, 2, 4, 5, 7, 8, 9}))),
-            expected);
+  EXPECT_EQ((boxes_of<2, double>(array_header("<f8", "2, 4") + numbers<double>({1, 2, 5, 8, 3, 4, 7, 9}))),
+            two_boxes);
+  EXPECT_EQ(
+      (boxes_of<2, double>(array_header("<f8", "2, 4", true) + numbers<double>({1, 3, 2, 4, 5, 7, 8, 9}))),
+      two_boxes);
 }
 
 TEST_F(Npy, IsReadInEveryVersionAndWithItsKeysInAnyOrder) {
   const std::string rest = numbers<double>({1, 2, 5, 8, 3, 4, 7, 9});
   const std::string dictionary = "{\"shape\":(2,4),\"fortran_order\":False,\"descr\":\"<f8\"}";
   for (const char version : {1, 2, 3})
-    EXPECT_EQ((boxes_of<2, double>(header(dictionary, version) + rest)), expected);
+    EXPECT_EQ((boxes_of<2, double>(npy_header(dictionary, version) + rest)), two_boxes);
 }
 
 TEST_F(Npy, GivesBackWhatWasWritten) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const History<3> floats{{{{-infinity, 0.1F, 3}, {4, 5, infinity}}, absent_box<3>()}, {}};
   write_scene(floats, path("a.npy"));
   EXPECT_EQ((boxes_of<3, float>(text_of("a.npy"))), floats.boxes);
@@ -230,11 +234,11 @@ TEST_F(Npy, HoldsOneFrame) {
 }
 
 TEST_F(Npy, IsRecognisedByItsMagic) {
-  EXPECT_EQ(open_file(put("boxes.dat", header_of("<f4", "0, 4"))).format->name, "npy");
+  EXPECT_EQ(open_file(put("boxes.dat", array_header("<f4", "0, 4"))).format->name, "npy");
 }
 
 TEST_F(Npy, RefusesAHeaderThatIsNotRight) {
-  const std::string good = header_of("<f8", "0, 4");
+  const std::string good = array_header("<f8", "0, 4");
   for (std::size_t size = 0; size < good.size(); ++size)
     EXPECT_THAT(refusal_of(good.substr(0, size)), HasSubstr("expected")) << size << " bytes";
   EXPECT_THAT(refusal_of("\x93NUMPX" + good.substr(6)),
@@ -244,7 +248,7 @@ TEST_F(Npy, RefusesAHeaderThatIsNotRight) {
   EXPECT_THAT(refusal_of(good.substr(0, 9) + "\xff" + good.substr(10)),
               HasSubstr("expected a NumPy header of 65"));
 
-  const auto refusal_of_dictionary = [&](const std::string& text) { return refusal_of(header(text)); };
+  const auto refusal_of_dictionary = [&](const std::string& text) { return refusal_of(npy_header(text)); };
   EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': False}"), HasSubstr("'shape'"));
   EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'descr': '<f8'}"), HasSubstr("each once"));
   EXPECT_THAT(refusal_of_dictionary("{'colour': 'red'}"), HasSubstr("key 'colour'"));
@@ -257,25 +261,25 @@ TEST_F(Npy, RefusesAHeaderThatIsNotRight) {
   EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4)} x"),
               HasSubstr("expected the end of the header"));
   for (const std::string type : {"|f2", "<c8", "|b1", "f8", "|f8", "<f9", "", "<U4", "|O"})
-    EXPECT_THAT(refusal_of(header_of(type, "0, 4")), HasSubstr("numbers of type '" + type + "'"));
+    EXPECT_THAT(refusal_of(array_header(type, "0, 4")), HasSubstr("numbers of type '" + type + "'"));
   for (const std::string shape : {"", "4,", "0, 5", "0, 4, 1"})
-    EXPECT_THAT(refusal_of(header_of("<f8", shape)), HasSubstr("expected (n, 4)")) << shape;
+    EXPECT_THAT(refusal_of(array_header("<f8", shape)), HasSubstr("expected (n, 4)")) << shape;
 }
 
 TEST_F(Npy, RefusesNumbersThatAreMissingTooManyOrNoBox) {
   const std::string rows = numbers<double>({1, 2, 5, 8, 3, 4, 7, 9});
-  EXPECT_THAT(refusal_of(header_of("<f8", "2, 4") + rows.substr(1)),
+  EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + rows.substr(1)),
               AllOf(HasSubstr("bad.npy: has 63 bytes behind its header and claims 2 rows of 4"),
                     HasSubstr("32 bytes a row")));
-  EXPECT_THAT(refusal_of(header_of("<f8", "2, 4") + rows + "x"), HasSubstr("has 65 bytes"));
+  EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + rows + "x"), HasSubstr("has 65 bytes"));
   for (const std::string count : {"2147483648", "576460752303423489", "18446744073709551615"})
-    EXPECT_THAT(refusal_of(header_of("<f8", count + ", 4") + rows), HasSubstr("claims " + count + " rows"));
-  EXPECT_THAT(refusal_of(header_of("<f8", "18446744073709551616, 4") + rows), HasSubstr("a whole number"));
+    EXPECT_THAT(refusal_of(array_header("<f8", count + ", 4") + rows),
+                HasSubstr("claims " + count + " rows"));
+  EXPECT_THAT(refusal_of(array_header("<f8", "18446744073709551616, 4") + rows), HasSubstr("a whole number"));
 
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal_of(header_of("<f8", "2, 4") + numbers<double>({1, 2, 5, 8, 3, 4, nan, 9})),
+  EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + numbers<double>({1, 2, 5, 8, 3, 4, nan, 9})),
               AllOf(HasSubstr("bad.npy: row 1 has min (3, 4) and max (nan, 9)"), HasSubstr("min <= max")));
-  EXPECT_THAT(refusal_of(header_of("<f8", "1, 4") + numbers<double>({1, 2, 0, 8})),
+  EXPECT_THAT(refusal_of(array_header("<f8", "1, 4") + numbers<double>({1, 2, 0, 8})),
               HasSubstr("row 0 has min (1, 2) and max (0, 8)"));
 }
 

@@ -1,6 +1,4 @@
 // OBJ: vertices and faces as people write them, and what is wrong with those that are refused.
-#include "lab/formats/mesh/obj.hpp"
-
 #include <array>
 #include <string>
 
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
 #include "tests/message.hpp"
 
 namespace broadside::lab {
@@ -17,13 +16,13 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-IndexedMesh read(const std::string& bytes) {
+IndexedMesh parse_obj(const std::string& bytes) {
   Input input("a.obj", bytes);
   return read_obj(input);
 }
 
 TEST(Obj, HasTheVerticesAndFacesOfTheFile) {
-  const IndexedMesh mesh = read(
+  const IndexedMesh mesh = parse_obj(
       "# made by hand\r\nmtllib a.mtl\no thing\nv 0 0 0\r\n  v\t1 +0.1 -1e1 1.0\nvn 0 0 1\nvt 0 0\nv 0 0 "
       "0\nv 2 2 2\n"
       "f 1 2 3\nusemtl red\ns off\nf 1/1 2/1/1 3//1 5 # one to come\nl 1 2\nv 3 3 \\\n3\nf -1 -2 \\\r\n "
@@ -41,7 +40,7 @@ TEST(Obj, HasTheVerticesAndFacesOfTheFile) {
 
 TEST(Obj, IsRefusedNamingTheLine) {
   const auto refusal_of = [](const std::string& line) {
-    return message_of<FileError>([&] { read("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + "\n"); });
+    return message_of<FileError>([&] { parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + "\n"); });
   };
   EXPECT_THAT(refusal_of("v 1 2"), AllOf(HasSubstr("a.obj:4: 'v 1 2'"), HasSubstr("expected three numbers")));
   EXPECT_THAT(refusal_of("v 1 two 3"), HasSubstr("a.obj:4: 'v 1 two 3'"));

@@ -1,6 +1,4 @@
 // PLY: the same mesh in every encoding, and what is wrong with those that are refused.
-#include "lab/formats/mesh/ply.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
 #include "tests/message.hpp"
 
 namespace broadside::lab {
@@ -22,13 +21,13 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-IndexedMesh read(const std::string& bytes) {
+IndexedMesh parse_ply(const std::string& bytes) {
   Input input("a.ply", bytes);
   return read_ply(input);
 }
 
-std::string refusal_of(const std::string& bytes) {
-  return message_of<FileError>([&] { read(bytes); });
+std::string ply_refusal(const std::string& bytes) {
+  return message_of<FileError>([&] { parse_ply(bytes); });
 }
 
 /// Numbers as a binary file has them.
@@ -53,7 +52,7 @@ class Binary {
 };
 
 /// Faces before vertices, and numbers of every type around what counts.
-std::string header(const std::string& encoding) {
+std::string ply_header(const std::string& encoding) {
   return "ply\r\nformat " + encoding +
          " 1.0\r\ncomment by hand\r\nelement face 2\r\nproperty list uint16 uchar weights\r\n"
          "property list uint uint32 vertex_index\r\nproperty int8 quality\r\nelement nothing 99\r\n"
@@ -74,15 +73,16 @@ std::string binary(bool is_big) {
         .add(tenths[static_cast<std::size_t>(i)])
         .add(1.5F * static_cast<float>(i))
         .add(-i);
-  return header(is_big ? "binary_big_endian" : "binary_little_endian") + file.add(std::int32_t{5}).bytes();
+  return ply_header(is_big ? "binary_big_endian" : "binary_little_endian") +
+         file.add(std::int32_t{5}).bytes();
 }
 
 const std::string text_body =
     "2 97 98 3 0 1 2 1\n0 4 3 2 1 0 1\n7 0 0 0\n7 0.1 1.5 -1\n7 0.2 +3 -2\n7 3e-1 4.5 -3\n5\n";
 
 TEST(Ply, IsTheSameInEveryEncoding) {
-  for (const std::string& file : {header("ascii") + text_body, binary(false), binary(true)}) {
-    const IndexedMesh mesh = read(file);
+  for (const std::string& file : {ply_header("ascii") + text_body, binary(false), binary(true)}) {
+    const IndexedMesh mesh = parse_ply(file);
     EXPECT_THAT(mesh.vertices, ElementsAre(std::array{0.0, 0.0, 0.0}, std::array{1.5, -1.0, 0.1},
                                            std::array{3.0, -2.0, 0.2}, std::array{4.5, -3.0, 0.3}));
     ASSERT_EQ(mesh.face_count(), 2u);
@@ -95,8 +95,8 @@ TEST(Ply, IsTheSameInEveryEncoding) {
 
 TEST(Ply, HasThePrecisionThatItsHeaderDeclares) {
   const auto with = [](const std::string& type) {
-    return read("ply\nformat ascii 1.0\nelement vertex 1\nproperty " + type + " x\nproperty " + type +
-                " y\nproperty " + type + " z\nend_header\n1 2 16777217\n");
+    return parse_ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty " + type + " x\nproperty " + type +
+                     " y\nproperty " + type + " z\nend_header\n1 2 16777217\n");
   };
   EXPECT_EQ(with("float").precision, Precision::float32);
   EXPECT_THAT(with("float").vertices, ElementsAre(std::array{1.0, 2.0, 16777216.0}));
@@ -107,18 +107,18 @@ TEST(Ply, HasThePrecisionThatItsHeaderDeclares) {
 }
 
 TEST(Ply, IsRefusedWhereItIsCutOff) {
-  for (const std::string& file : {header("ascii") + text_body, binary(false), binary(true)}) {
+  for (const std::string& file : {ply_header("ascii") + text_body, binary(false), binary(true)}) {
     // Without its last digit and line end, a text is whole.
     const std::size_t whole = file.ends_with("5\n") ? file.size() - 1 : file.size();
     for (std::size_t length = 0; length < whole; ++length)
-      EXPECT_THAT(refusal_of(file.substr(0, length)), HasSubstr("a.ply")) << "cut off at " << length;
+      EXPECT_THAT(ply_refusal(file.substr(0, length)), HasSubstr("a.ply")) << "cut off at " << length;
   }
 }
 
 TEST(Ply, IsRefusedNamingTheLineOfItsHeader) {
   const auto with = [](const std::string& old, const std::string& now) {
-    std::string text = header("ascii") + text_body;
-    return refusal_of(text.replace(text.find(old), old.size(), now));
+    std::string text = ply_header("ascii") + text_body;
+    return ply_refusal(text.replace(text.find(old), old.size(), now));
   };
   EXPECT_THAT(with("ascii", "utf8"),
               AllOf(HasSubstr("a.ply:2: 'format utf8 1.0'"), HasSubstr("expected format ascii")));
@@ -139,9 +139,9 @@ TEST(Ply, IsRefusedNamingTheLineOfItsHeader) {
 TEST(Ply, IsRefusedNamingTheByteOfItsNumbers) {
   const auto with = [](const std::string& old, const std::string& now) {
     std::string text = text_body;
-    return refusal_of(header("ascii") + text.replace(text.find(old), old.size(), now));
+    return ply_refusal(ply_header("ascii") + text.replace(text.find(old), old.size(), now));
   };
-  const std::string first = std::to_string(header("ascii").size());
+  const std::string first = std::to_string(ply_header("ascii").size());
   EXPECT_THAT(with("2 97", "x 97"), HasSubstr("byte " + first + ": 'x'; expected a whole number"));
   EXPECT_THAT(with("2 97", "-2 97"), HasSubstr("a list of -2 numbers"));
   EXPECT_THAT(with("3 0 1 2 1", "2 0 1 1"), HasSubstr("face 0 has 2 corners; expected at least 3"));

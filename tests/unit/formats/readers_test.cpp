@@ -21,6 +21,7 @@
 #include "lab/formats/write_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
+#include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"
 #include "tests/unit/pipe.hpp"
 
@@ -29,8 +30,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 using Csv = Files;
 using Broadmark = Files;

@@ -23,6 +23,7 @@
 #include "lab/scenes/motion.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"
 
 namespace broadside::lab {
@@ -36,14 +37,12 @@ using testing::Not;
 
 using TraceFiles = Files;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A box as its bits: == takes -0.0 for 0.0.
 template <int D>
 using Bits = std::array<std::uint32_t, 2 * D>;
 
 template <int D>
-std::vector<std::vector<Bits<D>>> frames_of(const History<D>& history) {
+std::vector<std::vector<Bits<D>>> frame_bits(const History<D>& history) {
   std::vector<std::vector<Bits<D>>> frames;
   std::vector<Box<D>> boxes = history.boxes;
   const auto add = [&] {
@@ -112,7 +111,7 @@ std::pair<std::size_t, std::string> read_all(const std::string& bytes) {
   return {reader.frames(), reader.warning()};
 }
 
-std::string refusal_of(const std::string& bytes) {
+std::string trace_refusal(const std::string& bytes) {
   return message_of<FileError>([&] { read_all(bytes); });
 }
 
@@ -129,7 +128,7 @@ void check_that_histories_come_back(const std::filesystem::path& path) {
     FileContent content = read_file(path);
     EXPECT_EQ(content.warning, "");
     EXPECT_FALSE(history_in<5 - D>(content));
-    EXPECT_EQ(frames_of(history_in<D>(content).value()), frames_of(history)) << "seed " << seed;
+    EXPECT_EQ(frame_bits(history_in<D>(content).value()), frame_bits(history)) << "seed " << seed;
   }
 }
 
@@ -142,7 +141,7 @@ TEST_F(TraceFiles, GiveBackHistoriesWithoutBoxesOrSteps) {
   for (const History<2>& history :
        {History<2>{}, History<2>{{absent_box<2>()}, {}}, History<2>{{}, {{0, {}, {}}, {1, {}, {}}}}}) {
     write_scene(history, path("a.btrace"));
-    EXPECT_EQ(frames_of(read_file(path("a.btrace")).in_2d.value()), frames_of(history));
+    EXPECT_EQ(frame_bits(read_file(path("a.btrace")).in_2d.value()), frame_bits(history));
   }
 }
 
@@ -203,7 +202,7 @@ TEST(TraceReader, ReadsUpToTheLastWholeFrameWhereverATraceIsCutOff) {
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     const std::string bytes = whole.substr(0, size);
     if (size < ends[0]) {
-      EXPECT_THAT(refusal_of(bytes), HasSubstr(size == 0 ? "empty" : "ends")) << "cut at byte " << size;
+      EXPECT_THAT(trace_refusal(bytes), HasSubstr(size == 0 ? "empty" : "ends")) << "cut at byte " << size;
       continue;
     }
     const auto [frames, warning] = read_all(bytes);
@@ -230,7 +229,7 @@ TEST(TraceReader, FindsEveryWrongBit) {
     for (int bit = 0; bit < 8; ++bit) {
       std::string bytes = whole;
       bytes[byte] = static_cast<char>(bytes[byte] ^ 1 << bit);
-      EXPECT_NE(refusal_of(bytes), "") << "bit " << bit << " of byte " << byte;
+      EXPECT_NE(trace_refusal(bytes), "") << "bit " << bit << " of byte " << byte;
     }
   }
 }
@@ -246,9 +245,9 @@ TEST(TraceReader, FindsFramesThatAreMissingRepeatedOrSwapped) {
   const std::string second = tape.bytes.substr(tape.ends[0], size);
   const std::string third = tape.bytes.substr(tape.ends[1], size);
   EXPECT_EQ(read_all(before + second + third).first, 3u);
-  EXPECT_THAT(refusal_of(before + third), HasSubstr("t: frame 1, byte 80: checksum"));
-  EXPECT_THAT(refusal_of(before + second + second), HasSubstr("t: frame 2, byte"));
-  EXPECT_THAT(refusal_of(before + third + second), HasSubstr("t: frame 1, byte"));
+  EXPECT_THAT(trace_refusal(before + third), HasSubstr("t: frame 1, byte 80: checksum"));
+  EXPECT_THAT(trace_refusal(before + second + second), HasSubstr("t: frame 2, byte"));
+  EXPECT_THAT(trace_refusal(before + third + second), HasSubstr("t: frame 1, byte"));
 }
 
 TEST(TraceReader, GivesTheFramesBeforeTheOneThatIsWrong) {
@@ -261,25 +260,25 @@ TEST(TraceReader, GivesTheFramesBeforeTheOneThatIsWrong) {
 }
 
 TEST(TraceReader, RefusesWrongHeaders) {
-  EXPECT_EQ(refusal_of(""), "t: is empty; expected a trace, which has 20 bytes or more");
-  EXPECT_EQ(refusal_of("\x89"
-                       "BTx"),
+  EXPECT_EQ(trace_refusal(""), "t: is empty; expected a trace, which has 20 bytes or more");
+  EXPECT_EQ(trace_refusal("\x89"
+                          "BTx"),
             "t: byte 0: the first bytes are 89 42 54 78; expected 89 42 54 52 0d 0a 1a 0a, with which a "
             "trace begins");
-  EXPECT_EQ(refusal_of(small_trace().substr(0, 9)),
+  EXPECT_EQ(trace_refusal(small_trace().substr(0, 9)),
             "t: byte 9: the file ends; expected a header of 20 bytes");
-  EXPECT_EQ(refusal_of(small_trace_with(8, "\x02")), "t: byte 8: version 2; expected 1");
-  EXPECT_EQ(refusal_of(small_trace_with(12, "\x04")), "t: byte 12: dimension 4; expected 2 or 3");
-  EXPECT_EQ(refusal_of(small_trace_with(13, "\x02")), "t: byte 13: 2 bytes a coordinate; expected 4 or 8");
-  EXPECT_EQ(refusal_of(small_trace_with(15, "\x01")), "t: byte 14: 00 01; expected 00 00");
-  EXPECT_EQ(refusal_of(small_trace().replace(16, 1, "\x02")),
+  EXPECT_EQ(trace_refusal(small_trace_with(8, "\x02")), "t: byte 8: version 2; expected 1");
+  EXPECT_EQ(trace_refusal(small_trace_with(12, "\x04")), "t: byte 12: dimension 4; expected 2 or 3");
+  EXPECT_EQ(trace_refusal(small_trace_with(13, "\x02")), "t: byte 13: 2 bytes a coordinate; expected 4 or 8");
+  EXPECT_EQ(trace_refusal(small_trace_with(15, "\x01")), "t: byte 14: 00 01; expected 00 00");
+  EXPECT_EQ(trace_refusal(small_trace().replace(16, 1, "\x02")),
             "t: byte 16: checksum 6c967902; expected 6c9679a1, that of the bytes before it");
 }
 
 TEST(TraceReader, RefusesWrongFrames) {
   using namespace std::string_literals;
   const auto refusal_with = [](std::size_t at, const std::string& bytes) {
-    return refusal_of(small_trace_with(at, bytes));
+    return trace_refusal(small_trace_with(at, bytes));
   };
   const std::string nan = "\0\0\xc0\x7f"s;
   const std::string infinite = "\0\0\x80\x7f"s;
@@ -287,12 +286,14 @@ TEST(TraceReader, RefusesWrongFrames) {
   EXPECT_EQ(refusal_with(88, "fram"),
             "t: frame 1, byte 88: 66 72 61 6d; expected 46 52 41 4d, with which a frame "
             "begins, or the end of the file");
-  EXPECT_THAT(refusal_of(small_trace() + "x"), HasSubstr("t: frame 2, byte 136: 78; expected 46 52 41 4d"));
-  EXPECT_THAT(refusal_of(small_trace() + std::string(512, '\0')),
+  EXPECT_THAT(trace_refusal(small_trace() + "x"),
+              HasSubstr("t: frame 2, byte 136: 78; expected 46 52 41 4d"));
+  EXPECT_THAT(trace_refusal(small_trace() + std::string(512, '\0')),
               HasSubstr("byte 136: 00 00 00 00; expected"));
-  EXPECT_THAT(refusal_of(small_trace().replace(104, 1, "\x01")),
+  EXPECT_THAT(trace_refusal(small_trace().replace(104, 1, "\x01")),
               HasSubstr("t: frame 1, byte 104: checksum 5b076101; expected 5b07619f"));
-  EXPECT_THAT(refusal_of(small_trace().replace(134, 1, "\x01")), HasSubstr("t: frame 1, byte 132: checksum"));
+  EXPECT_THAT(trace_refusal(small_trace().replace(134, 1, "\x01")),
+              HasSubstr("t: frame 1, byte 132: checksum"));
 
   EXPECT_EQ(refusal_with(108, "\x03"), "t: frame 1, byte 108: slot 3; expected one below 3");
   EXPECT_EQ(refusal_with(112, "\xff\xff\xff\xff"),
@@ -362,7 +363,6 @@ TEST_F(TraceFiles, ThatCannotBeReadAreNamedWithTheReason) {
 }
 
 TEST_F(TraceFiles, AreWrittenWholeOrNotAtAll) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   put("a.btrace", "old");
   EXPECT_THAT(message_of<FileError>([&] {
                 write_scene(History<2>{{{{nan, 0}, {1, 1}}}, {}}, path("a.btrace"));

@@ -15,46 +15,10 @@
 #include "broadside/sinks.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/trackers.hpp"
 
 namespace broadside {
 namespace {
-
-using Ids = std::vector<BoxId>;
-using Pairs = std::vector<Pair>;
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
-
-struct Events {
-  Pairs begun;
-  Pairs ended;
-
-  friend bool operator==(const Events&, const Events&) = default;
-};
-
-Events update(PairTracker<2>& tracker, const Frame<2>& frame) {
-  Events events;
-  PairCollector begun(events.begun);
-  PairCollector ended(events.ended);
-  tracker.update(frame, begun, ended);
-  return events;
-}
-
-/// Calls a function with the change that an algorithm gets to see.
-class StubTracker final : public PairTracker<2> {
- public:
-  using Update = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
-
-  explicit StubTracker(Update update) : update_(std::move(update)) {}
-
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
-    update_(change, begun, ended);
-  }
-
-  Update update_;
-};
 
 /// Compares all boxes, and checks that what it is shown holds together: places that changed have a flag and
 /// others have none, and whatever did not change is the same in both frames.
@@ -96,11 +60,6 @@ class CheckingTracker final : public PairTracker<2> {
 };
 
 /// Takes nothing.
-class FailingSink final : public PairSink {
- private:
-  void consume(std::span<const Pair>) override { throw std::runtime_error("full"); }
-};
-
 TEST(Filters, AcceptByBitsUnlessGroupsDecide) {
   const Filter standard;
   EXPECT_TRUE(accepts(standard, standard));
@@ -161,29 +120,29 @@ TEST(Change, ReportsAPairToTheSinkItBelongsTo) {
   for (std::uint32_t i = 0; i < 12; ++i) all.push_back(BoxId{i});
   update(tracker, {before, {}, filters_before});
   EXPECT_EQ(update(tracker, {now, all, filters_now}),
-            (Events{.begun = {pair(0, 1), pair(8, 9)}, .ended = {pair(2, 3), pair(10, 11)}}));
+            (PairEvents{.begun = {pair(0, 1), pair(8, 9)}, .ended = {pair(2, 3), pair(10, 11)}}));
 }
 
 TEST(Change, ShowsWhatItsListsSayInEveryFrame) {
   CheckingTracker tracker;
   std::vector<Box2> boxes = {at(0), at(0.5f), at(1), at(9)};
   const Pairs all_three = {pair(0, 1), pair(0, 2), pair(1, 2)};
-  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{all_three, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{all_three, {}}));
   EXPECT_EQ(tracker.changed(), 4u);
   EXPECT_TRUE(tracker.rebuilt());
 
-  EXPECT_EQ(update(tracker, {boxes, {}}), Events());
+  EXPECT_EQ(update(tracker, {boxes, {}}), PairEvents());
   EXPECT_EQ(tracker.changed(), 0u) << "a frame in which nothing changed shows nothing";
   EXPECT_FALSE(tracker.rebuilt());
 
   boxes[1] = at(20);
   boxes.push_back(at(9));
   const Ids second = {BoxId{1}, BoxId{1}};
-  EXPECT_EQ(update(tracker, {boxes, second}), (Events{{pair(3, 4)}, {pair(0, 1), pair(1, 2)}}));
+  EXPECT_EQ(update(tracker, {boxes, second}), (PairEvents{{pair(3, 4)}, {pair(0, 1), pair(1, 2)}}));
   EXPECT_EQ(tracker.changed(), 2u);
 
   boxes.resize(2);
-  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{{}, {pair(0, 2), pair(3, 4)}}));
+  EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{{}, {pair(0, 2), pair(3, 4)}}));
   EXPECT_EQ(tracker.changed(), 3u);
 
   boxes.resize(5, at(20));
@@ -193,7 +152,7 @@ TEST(Change, ShowsWhatItsListsSayInEveryFrame) {
   boxes.pop_back();
   EXPECT_EQ(update(tracker, {boxes, {}}).begun, (Pairs{pair(1, 2), pair(1, 3), pair(2, 3)}));
   EXPECT_TRUE(tracker.rebuilt());
-  EXPECT_EQ(update(tracker, {boxes, {}}), Events());
+  EXPECT_EQ(update(tracker, {boxes, {}}), PairEvents());
   EXPECT_EQ(tracker.changed(), 0u) << "the flags of a failed frame are gone";
 }
 
@@ -204,13 +163,13 @@ TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
   filters[1].mask = 0;
   const Pairs all = {pair(0, 1), pair(0, 2), pair(1, 2)};
   const Pairs without_one = {pair(0, 1), pair(1, 2)};
-  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{all, {}}));
-  EXPECT_EQ(update(tracker, {boxes, {}, filters}), (Events{{}, without_one}));
+  EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{all, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, filters}), (PairEvents{{}, without_one}));
   EXPECT_EQ(tracker.changed(), 3u);
   EXPECT_FALSE(tracker.rebuilt());
-  EXPECT_EQ(update(tracker, {boxes, {}, filters}), Events());
+  EXPECT_EQ(update(tracker, {boxes, {}, filters}), PairEvents());
   EXPECT_EQ(tracker.changed(), 0u);
-  EXPECT_EQ(update(tracker, {boxes, {}}), (Events{without_one, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{without_one, {}}));
   EXPECT_EQ(tracker.changed(), 3u);
   filters.pop_back();
   EXPECT_EQ(message_of<InvalidFrame>([&] {
@@ -227,7 +186,7 @@ TEST(Change, TakesAFilterOfABoxThatIsListedAndOfNoOther) {
   filters[1].mask = 0;
   filters[2].mask = 0;
   const Ids changed = {BoxId{2}};
-  EXPECT_EQ(update(tracker, {boxes, changed, filters}), (Events{{}, {pair(0, 2), pair(1, 2)}}));
+  EXPECT_EQ(update(tracker, {boxes, changed, filters}), (PairEvents{{}, {pair(0, 2), pair(1, 2)}}));
   EXPECT_EQ(tracker.changed(), 1u);
 }
 
@@ -237,26 +196,27 @@ TEST(Change, EndsPairsThatAreIgnoredAndBeginsThemAgain) {
   IgnoredPairs ignored;
   ignored.insert(pair(0, 1));
   const Pairs first = {pair(0, 1)};
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (Events{{pair(0, 2), pair(1, 2)}, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (PairEvents{{pair(0, 2), pair(1, 2)}, {}}));
   ignored.clear();
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), Events())
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), PairEvents())
       << "a change that is not listed is not seen";
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, first}), (Events{first, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, first}), (PairEvents{first, {}}));
   ignored.insert(pair(0, 1));
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), Events());
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (Events{{}, first})) << "a set that is new is whole";
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), PairEvents());
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (PairEvents{{}, first}))
+      << "a set that is new is whole";
   EXPECT_EQ(tracker.changed(), 0u);
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), (Events{first, {}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), (PairEvents{first, {}}));
 
   // Ignored in the frame in which they would have begun, or end; and of boxes that are not there yet.
   boxes[1] = at(5);
   const Ids changed = {BoxId{1}};
-  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (Events{{}, {pair(0, 1), pair(1, 2)}}));
+  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (PairEvents{{}, {pair(0, 1), pair(1, 2)}}));
   boxes[1] = at(0);
-  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (Events{{pair(1, 2)}, {}}));
+  EXPECT_EQ(update(tracker, {boxes, changed, {}, &ignored}), (PairEvents{{pair(1, 2)}, {}}));
   ignored.insert(pair(7, 3));
   const Pairs later = {pair(7, 3), pair(3, 7)};
-  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, later}), Events());
+  EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored, later}), PairEvents());
   boxes.resize(8, at(50));
   EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}).begun.size(), 9u);
 }
@@ -273,8 +233,8 @@ TEST(Change, DeliversWhatFailedFramesChangedInFiltersAndIgnoredPairs) {
   const Ids changed = {BoxId{3}};
   EXPECT_THROW(tracker.update({boxes, changed, filters, &ignored}, failing, failing), std::runtime_error);
   EXPECT_EQ(update(tracker, {boxes, {}, filters, &ignored}),
-            (Events{{}, {pair(0, 1), pair(0, 3), pair(1, 3), pair(2, 3)}}));
-  EXPECT_EQ(update(tracker, {boxes, {}, filters, &ignored}), Events());
+            (PairEvents{{}, {pair(0, 1), pair(0, 3), pair(1, 3), pair(2, 3)}}));
+  EXPECT_EQ(update(tracker, {boxes, {}, filters, &ignored}), PairEvents());
 }
 
 }  // namespace

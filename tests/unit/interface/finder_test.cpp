@@ -1,6 +1,5 @@
 // PairFinder: what it does around its algorithm. Absent boxes, wrong boxes, sinks that throw.
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -10,10 +9,10 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "tests/unit/boxes.hpp"
+
 namespace broadside {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Calls a function with what an algorithm gets to see.
 class StubFinder final : public PairFinder<2> {
@@ -43,8 +42,6 @@ std::vector<Pair> find(PairFinder<2>& finder, std::span<const Box2> boxes) {
   finder.find(boxes, collector);
   return pairs;
 }
-
-Box2 at(float x) { return {{x, x}, {x + 1, x + 1}}; }
 
 TEST(PairFinder, FlushesTheSink) {
   StubFinder finder(report_all);

@@ -48,8 +48,8 @@ std::vector<BoxId> every_place(std::size_t count, std::size_t step) {
   return ids;
 }
 
-std::uint64_t update(PairTracker<2>& tracker, const std::vector<Box2>& boxes,
-                     const std::vector<BoxId>& changed) {
+std::uint64_t count_events(PairTracker<2>& tracker, const std::vector<Box2>& boxes,
+                           const std::vector<BoxId>& changed) {
   PairCounter events;
   tracker.update({boxes, changed}, events, events);
   return events.count();
@@ -60,10 +60,10 @@ TEST(IncrementalTracker, ComparesAMoverWithItsNeighbourhoodOnly) {
                                  "sweep_and_prune:update=binary", "sweep_and_prune"}) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(20'000);
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     for (int frame = 0; frame < 4; ++frame) {
       shift(boxes[77], 0.25F);
-      update(*tracker, boxes, {BoxId(77)});
+      count_events(*tracker, boxes, {BoxId(77)});
     }
     ASSERT_TRUE(tracker->statistics()) << spec;
     // Of a sweep, those that touch it on one axis: a window of the square's root.
@@ -77,7 +77,7 @@ TEST(IncrementalTracker, TakesItsFirstBoxesWithoutComparingAllOfThem) {
        {"quadtree:update=root", "quadtree:update=relative", "quadtree:update=siblings"}) {
     const auto tracker = make_tracker<2>(spec);
     const std::vector<Box2> boxes = scattered(20'000);
-    EXPECT_GT(update(*tracker, boxes, {}), 1'000U) << spec;
+    EXPECT_GT(count_events(*tracker, boxes, {}), 1'000U) << spec;
     ASSERT_TRUE(tracker->statistics()) << spec;
     EXPECT_LE(tracker->statistics()->tests, 500 * boxes.size()) << spec;
   }
@@ -95,10 +95,10 @@ TEST(IncrementalTracker, AllocatesNothingInASteadyState) {
       for (int frame = 0; frame < frames; ++frame) {
         const float by = frame % 8 < 4 ? 0.25F : -0.25F;
         for (const BoxId id : changed) shift(boxes[index(id)], by);
-        update(*tracker, boxes, changed);
+        count_events(*tracker, boxes, changed);
       }
     };
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     follow(16);
     const lab::AllocationMeter meter;
     follow(16);
@@ -110,10 +110,10 @@ TEST(IncrementalTracker, GivesMemoryBackWhenBoxesHaveGone) {
   for (const std::string spec : {"grid:update=reinsert", "grid:update=translate"}) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(20'000);
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     const std::uint64_t cells = tracker->statistics()->cells;
     boxes.resize(100);
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     EXPECT_LT(tracker->statistics()->cells, cells / 10) << spec;
   }
 }
@@ -123,12 +123,12 @@ TEST(IncrementalTracker, DoesNotGrowWhileEverythingDriftsFarAway) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(500);
     const std::vector<BoxId> changed = every_place(boxes.size(), 1);
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     std::uint64_t tests = 0;
     std::size_t bytes = 0;
     for (int frame = 0; frame < 200; ++frame) {
       for (Box2& box : boxes) shift(box, 16);
-      update(*tracker, boxes, changed);
+      count_events(*tracker, boxes, changed);
       if (frame == 10) {
         tests = tracker->statistics()->tests;
         bytes = tracker->bytes();
@@ -145,7 +145,7 @@ TEST(IncrementalTracker, CarriesReferencesAcrossToTheTreeThatADescentMakes) {
   std::vector<Box2> boxes = scattered(500);
   const std::vector<BoxId> changed = every_place(boxes.size(), 3);
   for (int frame = 0; frame < 100; ++frame) {
-    ASSERT_EQ(update(*across, boxes, changed), update(*down, boxes, changed)) << frame;
+    ASSERT_EQ(count_events(*across, boxes, changed), count_events(*down, boxes, changed)) << frame;
     ASSERT_EQ(across->statistics()->references, down->statistics()->references) << frame;
     ASSERT_EQ(across->statistics()->cells, down->statistics()->cells) << frame;
     // Up, down, and in jumps over several leaves.
@@ -160,13 +160,13 @@ TEST(IncrementalTracker, FollowsFewChangesAndFindsAllPairsAnewWhereMostChange) {
   for (const std::string spec : {"brute_force", "grid", "sweep_and_prune"}) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(2000);
-    update(*tracker, boxes, {});
+    count_events(*tracker, boxes, {});
     EXPECT_THAT(tracker->explanation(), StartsWith("all pairs anew: 2000 of 2000 boxes")) << spec;
     shift(boxes[3], 1);
-    update(*tracker, boxes, {BoxId(3)});
+    count_events(*tracker, boxes, {BoxId(3)});
     EXPECT_THAT(tracker->explanation(), StartsWith("followed: 1 of 2000 boxes")) << spec;
     for (Box2& box : boxes) shift(box, 1);
-    update(*tracker, boxes, every_place(boxes.size(), 1));
+    count_events(*tracker, boxes, every_place(boxes.size(), 1));
     EXPECT_THAT(tracker->explanation(), StartsWith("all pairs anew")) << spec;
   }
 }

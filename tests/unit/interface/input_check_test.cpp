@@ -11,12 +11,10 @@
 #include "broadside/error.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(InputCheck, TakesPresentInfiniteAndAbsentBoxes) {
   const std::vector<Box2> boxes = {

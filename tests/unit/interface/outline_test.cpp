@@ -15,10 +15,10 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
+#include "tests/unit/boxes.hpp"
+
 namespace broadside {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Boxes of up to some cells' size, a few large ones among them, at whole places of a world of 1000.
 template <int D, typename Real = float>

@@ -2,7 +2,6 @@
 #include "broadside/queries.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "broadside/error.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside {
 namespace {
@@ -23,9 +23,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 /// `count` boxes in a row along axis 0, one apart: box i spans 2i to 2i + 1, and 0 to 1 on axis 1.
 std::vector<Box2> row(std::size_t count) {
@@ -132,7 +129,7 @@ TEST(BoxIndex, FollowsTheFrames) {
 TEST(BoxIndex, KeepsItsAnswersWhenAFrameIsRefused) {
   std::vector<Box2> boxes = row(50);
   const auto index = index_of(boxes);
-  boxes[7].min[0] = not_a_number;
+  boxes[7].min[0] = nan;
   boxes[2] = {{500, 0}, {501, 1}};
   const std::vector changed = {BoxId(2), BoxId(7)};
   EXPECT_THROW(index->update({.boxes = boxes, .changed = changed}), InvalidInput);
@@ -209,15 +206,15 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   bad.origin[1] = infinity;
   EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("0, inf; expected finite"));
   bad = good;
-  bad.direction[0] = not_a_number;
+  bad.direction[0] = nan;
   EXPECT_THAT(message_of<InvalidQuery>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
   bad = good;
   bad.furthest = -1;
   EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
   EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidQuery);
   EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
-  EXPECT_THROW(index->holding({0, not_a_number}, ignore), InvalidQuery);
-  EXPECT_THROW(index->nearest({0, not_a_number}, 1, found), InvalidQuery);
+  EXPECT_THROW(index->holding({0, nan}, ignore), InvalidQuery);
+  EXPECT_THROW(index->nearest({0, nan}, 1, found), InvalidQuery);
   EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidQuery);
 }
 

@@ -1,6 +1,5 @@
 // PairTracker and DiffTracker: frames that grow and shrink, changes listed and not, frames that fail.
 #include <functional>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -13,50 +12,14 @@
 #include "broadside/sinks.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/trackers.hpp"
 
 namespace broadside {
 namespace {
 
-using Ids = std::vector<BoxId>;
-using Pairs = std::vector<Pair>;
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
-
-struct Events {
-  Pairs begun;
-  Pairs ended;
-};
-
-Events update(PairTracker<2>& tracker, const std::vector<Box2>& boxes, const Ids& changed) {
-  Events events;
-  PairCollector begun(events.begun);
-  PairCollector ended(events.ended);
-  tracker.update({boxes, changed}, begun, ended);
-  return events;
-}
-
 std::unique_ptr<PairTracker<2>> diff_tracker() {
   return std::make_unique<DiffTracker<2>>(make_finder<2>("brute_force"));
 }
-
-/// Calls a function with the change that an algorithm gets to see.
-class StubTracker final : public PairTracker<2> {
- public:
-  using Update = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
-
-  explicit StubTracker(Update update) : update_(std::move(update)) {}
-
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
-    update_(change, begun, ended);
-  }
-
-  Update update_;
-};
 
 /// What a StubTracker was last shown, copied.
 struct Seen {
@@ -132,7 +95,7 @@ TEST(PairTracker, SortsTheEventsOfItsAlgorithm) {
     ended.add(BoxId{9}, BoxId{8});
     ended.add(BoxId{9}, BoxId{4});
   });
-  const Events events = update(tracker, {}, {});
+  const PairEvents events = update(tracker, {}, {});
   EXPECT_EQ(events.begun, (Pairs{pair(0, 3), pair(0, 5), pair(1, 2)}));
   EXPECT_EQ(events.ended, (Pairs{pair(4, 9), pair(8, 9)}));
 }
@@ -184,18 +147,13 @@ TEST(PairTracker, IsUnchangedByAFrameThatWasRefused) {
   EXPECT_THROW(update(*tracker, {at(9), wrong, at(0)}, {BoxId{0}, BoxId{1}}), InvalidInput);
   EXPECT_THROW(update(*tracker, {at(9), at(1), wrong}, {BoxId{0}}), InvalidInput);
   EXPECT_THROW(update(*tracker, {at(9), at(1)}, {BoxId{0}, BoxId{2}}), InvalidFrame);
-  const Events rest = update(*tracker, {at(0), at(1)}, {});
+  const PairEvents rest = update(*tracker, {at(0), at(1)}, {});
   EXPECT_TRUE(rest.begun.empty());
   EXPECT_TRUE(rest.ended.empty());
   EXPECT_EQ(update(*tracker, {at(0), at(9)}, {BoxId{1}}).ended, (Pairs{pair(0, 1)}));
 }
 
 /// Takes nothing.
-class FailingSink final : public PairSink {
- private:
-  void consume(std::span<const Pair>) override { throw std::runtime_error("full"); }
-};
-
 TEST(PairTracker, DeliversTheEventsOfAFailedUpdateWithTheNext) {
   for (const bool begun_fails : {true, false}) {
     const auto tracker = diff_tracker();
@@ -211,10 +169,10 @@ TEST(PairTracker, DeliversTheEventsOfAFailedUpdateWithTheNext) {
     EXPECT_THROW(tracker->update({boxes, changed}, begun, ended), std::runtime_error);
 
     // The caller need not list again what the failed frame had changed.
-    const Events events = update(*tracker, boxes, {});
+    const PairEvents events = update(*tracker, boxes, {});
     EXPECT_EQ(events.begun, (Pairs{pair(0, 3), pair(1, 2)}));
     EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
-    const Events rest = update(*tracker, boxes, {});
+    const PairEvents rest = update(*tracker, boxes, {});
     EXPECT_TRUE(rest.begun.empty());
     EXPECT_TRUE(rest.ended.empty());
   }
@@ -227,7 +185,7 @@ TEST(PairTracker, TakesAShorterFrameAfterAFailedLongerOne) {
   FailingSink failing;
   PairCounter counter;
   EXPECT_THROW(tracker->update({longer, {}}, failing, counter), std::runtime_error);
-  const Events events = update(*tracker, {at(0)}, {});
+  const PairEvents events = update(*tracker, {at(0)}, {});
   EXPECT_TRUE(events.begun.empty());
   EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
   EXPECT_EQ(update(*tracker, {at(0), at(1)}, {}).begun, (Pairs{pair(0, 1)}));
@@ -266,7 +224,7 @@ TEST(PairTracker, RebuildsAfterItsAlgorithmThrew) {
 TEST(DiffTracker, TellsWhatBeganAndWhatEnded) {
   const auto tracker = diff_tracker();
   EXPECT_EQ(update(*tracker, {at(0), at(1), at(9)}, {}).begun, (Pairs{pair(0, 1)}));
-  const Events events = update(*tracker, {at(0), at(8), at(9)}, {BoxId{1}});
+  const PairEvents events = update(*tracker, {at(0), at(8), at(9)}, {BoxId{1}});
   EXPECT_EQ(events.begun, (Pairs{pair(1, 2)}));
   EXPECT_EQ(events.ended, (Pairs{pair(0, 1)}));
 }
@@ -275,13 +233,12 @@ TEST(DiffTracker, IsSilentWhereAListedBoxDidNotChangeOrItsPairsDidNot) {
   const auto tracker = diff_tracker();
   update(*tracker, {at(0), at(1)}, {});
   EXPECT_TRUE(update(*tracker, {at(0), at(1)}, {BoxId{0}, BoxId{1}}).begun.empty());
-  const Events events = update(*tracker, {at(0), at(0.5f)}, {BoxId{1}});
+  const PairEvents events = update(*tracker, {at(0), at(0.5f)}, {BoxId{1}});
   EXPECT_TRUE(events.begun.empty());
   EXPECT_TRUE(events.ended.empty());
 }
 
 TEST(DiffTracker, EndsThePairsOfABoxThatGoesEvenWithInfiniteOnes) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const Box2 whole = {{-infinity, -infinity}, {infinity, infinity}};
   const auto tracker = diff_tracker();
   EXPECT_EQ(update(*tracker, {whole, at(1)}, {}).begun, (Pairs{pair(0, 1)}));

@@ -1,11 +1,11 @@
 // The signals of boxes made up by hand, to the last digit.
-#include <limits>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lab/advise/signals.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -13,8 +13,6 @@ namespace {
 using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Signals, CountsBoxesByWhatTheyAre) {
   const Signals signals = signals_of(History<2>{{{{0, 0}, {1, 2}},

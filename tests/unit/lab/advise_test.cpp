@@ -14,8 +14,8 @@
 #include "broadside/executor.hpp"
 #include "broadside/pair_finder.hpp"
 
-#include "lab/advise/variants.hpp"
-#include "lab/measure/find_case.hpp"
+#include "lab/advise/choice.hpp"
+#include "lab/measure/cases.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/scenes/motion.hpp"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 
 #include "lab/report/drawing_paths.hpp"
 #include "lab/report/drawing_svg.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -20,8 +20,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Of a hundred units both ways, ten to one of the world.
 const Window ten_by_ten = {{0, 0}, {10, 10}, 100, 100};

@@ -1,12 +1,11 @@
 // The floor: that its work is done, and when it is timed.
 #include "lab/measure/floor.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lab/measure/compare.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -19,7 +18,6 @@ using testing::IsEmpty;
 Box2 begins_at(float x, float y) { return {{x, y}, {x + 1, y + 2}}; }
 
 TEST(Floor, SortsByTheLeastXWithTiesInTheirOrder) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Box2> boxes{begins_at(1e-20F, 0), begins_at(-3, 0),  begins_at(infinity, 0),
                                 begins_at(0, 0),      begins_at(1e9, 0), begins_at(-0.0F, 0),
                                 begins_at(-3.5F, 0),  begins_at(-3, 0),  begins_at(-infinity, 0)};

@@ -1,10 +1,8 @@
 // Pairs of boxes within a distance: exact where a sum of coordinates would round.
-#include "lab/join_within.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -13,6 +11,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/join.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -81,7 +80,6 @@ TEST(JoinWithin, FindsThePairsWhoseGapIsAtMostTheDistanceOnEachAxis) {
 }
 
 TEST(JoinWithin, TakesInfiniteBoxesAsTheyAre) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::vector<DoubleBox2> boxes = {{{0, 0}, {1, 1}},
                                          {{infinity, 0}, {infinity, 1}},
                                          {{1e308, 0}, {1.5e308, 1}},

@@ -12,6 +12,8 @@
 
 #include "broadside/error.hpp"
 
+#include "tests/unit/boxes.hpp"
+
 namespace broadside::lab {
 namespace {
 
@@ -141,7 +143,6 @@ TEST(Motion, TeleportsTheFractionOfMoversAskedFor) {
 }
 
 TEST(Motion, LeavesInfiniteAndAbsentBoxesWhereTheyAre) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float largest = std::numeric_limits<float>::max();
   const std::vector<Box2> boxes = {{{-infinity, 0}, {infinity, 1}},
                                    absent_box<2>(),

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/measure/paired_ratio.hpp"
-#include "lab/report/case_line.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/json.hpp"
+#include "lab/report/phrases.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::lab {

@@ -29,7 +29,7 @@ Case tracked(std::size_t seeds, std::size_t frames) {
   return of;
 }
 
-Measurement with(std::vector<double> samples) {
+Measurement with_samples(std::vector<double> samples) {
   Measurement measurement;
   measurement.algorithm = "grid";
   measurement.outcome = samples.empty() ? Outcome::skipped : Outcome::verified;
@@ -52,33 +52,35 @@ TEST(Spread, IsNoneWithoutThreeRepetitions) {
 }
 
 TEST(Unsteady, IsASearchWhoseTimesOfTheSameBoxesAreFarApart) {
-  EXPECT_FALSE(is_unsteady(searched(1), with({1, 1.5, 1.5, 9})));
-  EXPECT_TRUE(is_unsteady(searched(1), with({1, 1.6, 1.6, 1.7})));
+  EXPECT_FALSE(is_unsteady(searched(1), with_samples({1, 1.5, 1.5, 9})));
+  EXPECT_TRUE(is_unsteady(searched(1), with_samples({1, 1.6, 1.6, 1.7})));
   // One seed's boxes take three times as long as the other's, each time.
-  EXPECT_FALSE(is_unsteady(searched(2), with({1, 3, 1, 3, 1, 3})));
+  EXPECT_FALSE(is_unsteady(searched(2), with_samples({1, 3, 1, 3, 1, 3})));
 }
 
 TEST(Unsteady, IsNoSearchBecauseItsBoxesDiffer) {
-  EXPECT_FALSE(is_unsteady(searched(100), with({1, 2.1, 2.2, 9, 3, 4})));
+  EXPECT_FALSE(is_unsteady(searched(100), with_samples({1, 2.1, 2.2, 9, 3, 4})));
 }
 
 TEST(Unsteady, IsNoHistoryBecauseItsFramesDiffer) {
-  EXPECT_FALSE(is_unsteady(tracked(1, 3), with({1, 5, 9})));
-  EXPECT_FALSE(is_unsteady(tracked(1, 3), with({1, 5, 9, 1, 5, 9})));
-  EXPECT_FALSE(is_unsteady(tracked(2, 3), with({1, 5, 9, 2, 10, 18})));
-  EXPECT_TRUE(is_unsteady(tracked(1, 3), with({1, 5, 9, 3, 15, 27})));
+  EXPECT_FALSE(is_unsteady(tracked(1, 3), with_samples({1, 5, 9})));
+  EXPECT_FALSE(is_unsteady(tracked(1, 3), with_samples({1, 5, 9, 1, 5, 9})));
+  EXPECT_FALSE(is_unsteady(tracked(2, 3), with_samples({1, 5, 9, 2, 10, 18})));
+  EXPECT_TRUE(is_unsteady(tracked(1, 3), with_samples({1, 5, 9, 3, 15, 27})));
 }
 
 TEST(Unsteady, AreCountedAmongWhatHasTimes) {
-  const CaseResult result = {searched(1), {with({1, 1, 1, 1}), with({1, 4, 4, 4}), with({}), with({7})}};
+  const CaseResult result = {
+      searched(1),
+      {with_samples({1, 1, 1, 1}), with_samples({1, 4, 4, 4}), with_samples({}), with_samples({7})}};
   EXPECT_EQ(steadiness_of(result), (Steadiness{3, 1}));
 }
 
 TEST(Unsteady, AreNamedAtTheEndOfTheTablesWhereThereAreAny) {
   Comparison comparison;
-  comparison.cases = {{searched(1), {with({1, 1, 1, 1}), with({1, 1, 1, 4})}}};
+  comparison.cases = {{searched(1), {with_samples({1, 1, 1, 1}), with_samples({1, 1, 1, 4})}}};
   EXPECT_THAT(summary_of(comparison), Not(HasSubstr("unsteady")));
-  comparison.cases.push_back({searched(1), {with({1, 4, 4, 4})}});
+  comparison.cases.push_back({searched(1), {with_samples({1, 4, 4, 4})}});
   EXPECT_THAT(summary_of(comparison), testing::EndsWith("least times (min_ms in --json)\n"));
   EXPECT_THAT(summary_of(comparison), HasSubstr("\nunsteady: 1 of 3 measurements, "));
 }

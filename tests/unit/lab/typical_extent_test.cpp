@@ -2,15 +2,14 @@
 #include "lab/peers/typical_extent.hpp"
 
 #include <array>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/boxes.hpp"
+
 namespace broadside::lab::peers {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Squares of this side, so many in a row, a tenth of their side apart.
 std::vector<Box2> row(std::size_t count, float side) {

@@ -2,20 +2,17 @@
 #include "lab/verify/verify.hpp"
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/boxes.hpp"
+
 namespace broadside::lab {
 namespace {
 
-using Pairs = std::vector<Pair>;
-
-Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }
-
-const std::vector<Box2> row = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}, {{2, 2}, {3, 3}}, {{5, 5}, {6, 6}}};
+const std::vector<Box2> chain = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}, {{2, 2}, {3, 3}}, {{5, 5}, {6, 6}}};
 
 /// Reports the same pairs whatever the boxes.
 class FixedFinder final : public PairFinder<2> {
@@ -32,15 +29,14 @@ class FixedFinder final : public PairFinder<2> {
 
 std::optional<Divergence> divergence_of(const Pairs& found) {
   FixedFinder finder(found);
-  return check_finder<2>(finder, row, "fixed");
+  return check_finder<2>(finder, chain, "fixed");
 }
 
 TEST(ReferencePairs, AreTheClosedOverlapsSorted) {
-  EXPECT_EQ(reference_pairs<2>(row), (Pairs{pair(0, 1), pair(1, 2)}));
+  EXPECT_EQ(reference_pairs<2>(chain), (Pairs{pair(0, 1), pair(1, 2)}));
 }
 
 TEST(ReferencePairs, LeaveOutAbsentBoxesEvenBesideInfiniteOnes) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const Box2 whole = {{-infinity, -infinity}, {infinity, infinity}};
   EXPECT_EQ(reference_pairs<2>(std::vector{whole, absent_box<2>(), whole, absent_box<2>()}),
             (Pairs{pair(0, 2)}));
@@ -107,7 +103,7 @@ class FixedTracker final : public PairTracker<2> {
 };
 
 /// Box 1 leaves box 0 for box 3 (with which no one overlapped) and keeps box 2 behind.
-const History<2> leaving = {row, {{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, {4, {}, {}}}};
+const History<2> leaving = {chain, {{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, {4, {}, {}}}};
 
 std::optional<Divergence> tracking_divergence(const std::vector<FixedTracker::Events>& frames) {
   FixedTracker tracker(frames);

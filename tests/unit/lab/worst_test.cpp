@@ -8,7 +8,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/verify/verify.hpp"
-#include "lab/worst/fixed_inputs.hpp"
+#include "lab/worst/input.hpp"
 #include "tests/message.hpp"
 
 namespace broadside::lab {

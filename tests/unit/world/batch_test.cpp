@@ -1,6 +1,5 @@
 // World: many boxes at once, a new origin, and the joins of two worlds.
 #include <array>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -10,17 +9,11 @@
 #include "broadside/world.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
+#include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
-
-using HandlePairs = std::vector<HandlePair>;
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 class WorldBatchTest : public testing::Test {
  protected:

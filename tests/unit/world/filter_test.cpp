@@ -8,15 +8,11 @@
 #include "broadside/world.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
+#include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
-
-using HandlePairs = std::vector<HandlePair>;
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 class WorldFilterTest : public testing::Test {
  protected:

@@ -2,7 +2,6 @@
 // it.
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 
 #include "tests/fuzz/snapshot_fields.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside {
 namespace {
@@ -23,8 +23,6 @@ using Fields = fuzz::SnapshotFields<2, float>;
 
 constexpr Pair first{BoxId{0}, BoxId{1}};
 constexpr Pair apart{BoxId{0}, BoxId{3}};
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
 
 /// Four boxes in a row: those of neighbours are pairs, of which (0, 1) began with the last update. Box 3 has
 /// left its place since then.

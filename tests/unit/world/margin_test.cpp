@@ -10,17 +10,11 @@
 #include "broadside/world.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
+#include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
-
-using HandlePairs = std::vector<HandlePair>;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 WorldOptions with_margin(double margin) {
   WorldOptions options;

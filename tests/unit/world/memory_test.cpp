@@ -14,13 +14,10 @@
 #include "broadside/world.hpp"
 
 #include "lab/measure/allocation.hpp"
+#include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
-
-using HandlePairs = std::vector<HandlePair>;
-
-HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 /// Boxes in rows, each of which overlaps its neighbours.
 Box2 in_row(std::size_t i) {

@@ -15,6 +15,7 @@
 
 #include "lab/scenes/random.hpp"
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
 
 namespace broadside {
 namespace {
@@ -22,8 +23,6 @@ namespace {
 using lab::Random;
 using testing::HasSubstr;
 using Bytes = std::vector<std::byte>;
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
 
 /// All that an update tells, and what holds after it.
 struct Told {

@@ -2,7 +2,6 @@
 #include "broadside/world.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -12,18 +11,11 @@
 #include "broadside/error.hpp"
 
 #include "tests/message.hpp"
+#include "tests/unit/boxes.hpp"
+#include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
-
-using HandlePairs = std::vector<HandlePair>;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
-
-HandlePairs listed(std::span<const HandlePair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 class WorldTest : public testing::Test {
  protected:

@@ -1,6 +1,7 @@
-// Text of a file, as an error shows it.
+// Text of files: shown in messages, and split into words.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -17,6 +18,15 @@ inline std::string plainly(std::string_view text) {
 /// The beginning of `text` in quotes, with '?' for every character that is not printable ASCII.
 inline std::string shown(std::string_view text, std::size_t most = 60) {
   return "'" + plainly(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
+}
+
+/// Takes the first word off the text; empty where there is none left.
+inline std::string_view next_word(std::string_view& text) {
+  constexpr std::string_view blanks = " \t";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(blanks));
+  text.remove_prefix(word.size());
+  return word;
 }
 
 }  // namespace broadside::lab

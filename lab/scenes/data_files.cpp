@@ -1,10 +1,26 @@
-// Real maps: neighbours that share borders, and coasts, whose lines have segments of every length.
+// Scenes of real boxes, from the files that scripts/setup fetches.
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
 #include "lab/formats/descriptions.hpp"
-#include "lab/scenes/data_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 
 namespace broadside::lab::generated {
 namespace {
+
+/// Where scripts/setup puts the file of this name, or the folder $BROADSIDE_DATA has it.
+std::filesystem::path data_file(const std::string& name) {
+  const char* const folder = std::getenv("BROADSIDE_DATA");
+  return std::filesystem::path(folder != nullptr ? folder : BROADSIDE_DATA_FOLDER) / name;
+}
+
+/// Why a scene of this file cannot be made: the file is missing, or `reader_missing`; empty if it can be.
+std::string missing_data(const std::filesystem::path& file, const std::string& reader_missing) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored) ? reader_missing
+                                                : file.string() + " is missing; run scripts/setup";
+}
 
 /// A map, described; `feature_part` is the part of the format whose boxes are one a feature, `feature` what
 /// that is.
@@ -29,6 +45,26 @@ Scene map_scene(Scene scene, const std::filesystem::path& path, const std::strin
 
 }  // namespace
 
+// The triangles of the Stanford bunny: a surface, where boxes are many in space but few on a line through it.
+Scene bunny() {
+  Scene scene{.name = "bunny",
+              .summary = "the triangles of the Stanford bunny; seen along the z axis in 2D",
+              .source = "Stanford University Computer Graphics Laboratory; npm package bunny",
+              .kind = SceneKind::file,
+              .fixed_count = true,
+              .fixed_seed = true};
+  const std::filesystem::path path = data_file("bunny.obj");
+  scene.missing = missing_data(path, readers::mesh().missing);
+  scene.boxes_2d = [path](const Settings&, std::size_t, std::uint64_t) {
+    return read_file(path).in_2d.value().boxes;
+  };
+  scene.boxes_3d = [path](const Settings&, std::size_t, std::uint64_t) {
+    return read_file(path).in_3d.value().boxes;
+  };
+  return scene;
+}
+
+// Maps: neighbours that share borders, and coasts, whose lines have segments of every length.
 Scene counties() {
   return map_scene({.name = "counties",
                     .summary = "the counties of the United States, in degrees",
