@@ -74,7 +74,8 @@ bool has_threads(const Algorithm& algorithm);
 /// The library's algorithms: its own, then the paper's, in a fixed order. Thread-safe.
 std::span<const Algorithm> algorithms();
 
-/// The algorithm called `name` among `among`, or a null pointer.
+/// The algorithm called `name` among `among`, or a null pointer. A name of an earlier version finds what took
+/// its place: `hierarchical_grid` is `grid`.
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
 
 /// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec

@@ -8,6 +8,7 @@
 
 #include "algorithms/descriptions.hpp"
 #include "core/float_environment.hpp"
+#include "core/former_names.hpp"
 #include "doubles/double_finder.hpp"
 #include "paper/listings/descriptions.hpp"
 
@@ -60,16 +61,16 @@ bool has_threads(const Algorithm& algorithm) {
 
 std::span<const Algorithm> algorithms() {
   static const std::array list = {
-      own::automatic(),         own::brute_force(),   own::grid(),
-      own::sweep_and_prune(),   own::quadtree(),      own::bvh(),
-      own::hierarchical_grid(), paper::brute_force(), paper::grid(),
-      paper::sweep_and_prune(), paper::quadtree(),
+      own::automatic(), own::brute_force(),   own::grid(),   own::sweep_and_prune(),   own::quadtree(),
+      own::bvh(),       paper::brute_force(), paper::grid(), paper::sweep_and_prune(), paper::quadtree(),
   };
   return list;
 }
 
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {
-  const auto found = std::ranges::find(among, name, &Algorithm::name);
+  auto found = std::ranges::find(among, name, &Algorithm::name);
+  if (found == among.end())
+    found = std::ranges::find(among, core::current_algorithm(name), &Algorithm::name);
   return found == among.end() ? nullptr : &*found;
 }
 

@@ -1,4 +1,5 @@
-// MovedBox: a box that changed from one frame to the next, as structures and kernels take it.
+// MovedBox: a box that changed from one frame to the next, as structures and kernels take it, and where they
+// write what it meets.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,28 @@ struct MovedBox {
 
   /// Whether the two boxes are so far apart that each is to be looked up by itself. For the algorithm to set.
   bool is_far = false;
+};
+
+/// Where a search for what moved boxes meet writes.
+struct ChangeSinks {
+  PairSink& begun;       ///< a moved box with each box at rest that it overlaps now and did not before
+  PairSink& ended;       ///< and that it did and does not
+  PairSink& candidates;  ///< pairs whose boxes must be looked at again; some more than once
+
+  /// By id: 1 for boxes that move, whether the structure has moved them already or not yet.
+  const std::uint8_t* moves;
+};
+
+/// What a search went through.
+struct ChangeWork {
+  std::uint64_t tests = 0;   ///< pairs of boxes compared
+  std::uint64_t blocks = 0;  ///< blocks looked at
+
+  ChangeWork& operator+=(const ChangeWork& other) {
+    tests += other.tests;
+    blocks += other.blocks;
+    return *this;
+  }
 };
 
 }  // namespace broadside::core

@@ -49,7 +49,7 @@ std::vector<Spec> strained_specs(const LawCase& law_case) {
     }
   }
   // Leaves of a few boxes are many: only then does a mover have far to go in a tree.
-  if (const Spec spec{"quadtree", {{"capacity", "3"}, {"update", "siblings"}}};
+  if (const Spec spec{"quadtree", {{"capacity", "3"}, {"update", "follow"}}};
       law_case.algorithm->name == spec.name && is_accepted(law_case, spec))
     specs.push_back(spec);
   return specs;
