@@ -2,10 +2,12 @@
 // status and a message.
 #include "broadside/program.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,21 @@
 namespace {
 
 using broadside::cli::Exit;
+
+/// Says which of the algorithms that are named have another name by now.
+void explain_former_names(std::span<const std::string> arguments) {
+  for (const std::string& argument : arguments) {
+    for (std::size_t begin = 0; begin < argument.size();) {
+      const std::size_t end = std::min(argument.find(',', begin), argument.size());
+      const std::string spec = argument.substr(begin, end - begin);
+      const std::string name = spec.substr(0, spec.find(':'));
+      begin = end + 1;
+      const broadside::Algorithm* const found = broadside::find_algorithm(name);
+      if (found != nullptr && found->name != name)
+        broadside::cli::say(fmt::format("'{}' is a former name: it is {} now", name, found->name));
+    }
+  }
+}
 
 Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue& catalogue) {
   const std::vector<std::string> arguments = broadside::cli::without_help_verb(given);
@@ -63,6 +80,7 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
     program.exit(error);
     return Exit::fine;
   }
+  explain_former_names(given);
   for (const auto& [name, verb] : verbs) {
     if (program.got_subcommand(name)) return verb();
   }

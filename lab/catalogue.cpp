@@ -113,6 +113,7 @@ std::vector<Contender> Catalogue::select(std::string_view list) const {
                                     did_you_mean(spec.name, known), fmt::join(known, ", ")));
     }
     const Settings checked(spec, algorithm->tunables);
+    spec.name = algorithm->name;  // the current one, where a former one was given
     select_once(*algorithm, std::move(spec));
   }
   return selected;

@@ -57,7 +57,7 @@ double over_the_best(const Outcome& outcome) {
 }
 
 void ways_in(int dimension, const std::string& scene, const Wishes& wishes, std::vector<double>& ratios) {
-  const std::string algorithms = wishes.algorithms_or("auto,auto:way=rebuild,auto:way=incremental");
+  const std::string algorithms = wishes.algorithms_or("auto,auto:update=rebuild,auto:update=follow");
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(20, 3);
   const std::vector<double> fractions = wishes.moving.empty() ? ten_fractions() : wishes.moving;

@@ -64,7 +64,7 @@ void jumps_in(const Wishes& wishes) {
   const lab::Catalogue catalogue;
   const std::string scene = fmt::format("jumps:every={}", between_jumps + 1);
   const Outcome outcome =
-      race<D>(catalogue.select(wishes.algorithms_or("auto,auto:way=rebuild")),
+      race<D>(catalogue.select(wishes.algorithms_or("auto,auto:update=rebuild")),
               motion_of<D>(scene, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames}), turns);
   print_heading(scene, D, boxes, turns);
   lab::Columns columns("<>>>>");

@@ -84,7 +84,8 @@ std::span<const Algorithm> algorithms();
 /// not grow. Cost: a copy of the list, once for each algorithm.
 void register_algorithm(Algorithm algorithm);
 
-/// The algorithm called `name` among `among`, or a null pointer.
+/// The algorithm called `name` among `among`, or a null pointer. A name of an earlier version finds what took
+/// its place: `hierarchical_grid` is `grid`.
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
 
 /// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec

@@ -127,24 +127,18 @@ std::vector<std::string> cells(const Signals& signals) {
 std::vector<Trial> trials_of(std::string_view algorithm, const Signals& signals) {
   const bool moves = signals.motion.has_value();
   std::vector<Trial> trials;
-  if (algorithm == "auto" && moves) trials.push_back({"way", {"rebuild", "incremental"}});
-  if (algorithm == "brute_force" && moves) trials.push_back({"update", {"changed", "all"}});
-  if (algorithm == "bvh" && moves) trials.push_back({"update", {"refit", "enlarge", "reinsert", "rebuild"}});
-  if (algorithm == "grid") {
-    trials.push_back({"cell", cells(signals)});
-    if (moves) trials.push_back({"update", {"reinsert", "translate", "rebuild"}});
-  }
-  if (algorithm == "quadtree") {
-    trials.push_back({"capacity", {"8", "16", "32", "64", "128"}});
-    if (moves) trials.push_back({"update", {"root", "relative", "rebuild"}});
-  }
+  const bool adapts = algorithm == "auto" || algorithm == "brute_force" || algorithm == "grid" ||
+                      algorithm == "quadtree" || algorithm == "sweep_and_prune";
+  if (adapts && moves) trials.push_back({"update", {"follow", "rebuild"}});
+  if (algorithm == "bvh" && moves) trials.push_back({"update", {"reinsert", "rebuild"}});
+  if (algorithm == "grid") trials.push_back({"cell", cells(signals)});
+  if (algorithm == "quadtree") trials.push_back({"capacity", {"8", "16", "32", "64", "128"}});
   if (algorithm == "sweep_and_prune") {
     std::vector<std::string> axes;
     for (std::size_t axis = 0; axis < signals.axis_tests.size(); ++axis)
       axes.emplace_back(1, axis_name(axis));
     trials.push_back({"axis", axes});
     trials.push_back({"axes", {"1", "2"}});
-    if (moves) trials.push_back({"update", {"insertion", "binary", "merge", "heap", "rebuild"}});
   }
   return trials;
 }

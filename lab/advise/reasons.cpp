@@ -60,7 +60,7 @@ std::string suits(const std::string& algorithm, const Measurement& measurement, 
                          rounded(*signals.overlaps), tests);
     return fmt::format("its bounds fit themselves to the boxes: {}", tests);
   }
-  if (algorithm == "grid" || algorithm == "hierarchical_grid") {
+  if (algorithm == "grid") {
     const bool even = signals.sizes[4] <= alike * signals.sizes[2];
     if (signals.clustering < clustered && even)
       return fmt::format("boxes of much the same size, spread evenly, suit its cells: {}", tests);
@@ -212,8 +212,8 @@ const Ranked* find(const Advice& advice, std::string_view spec) {
 
 /// From which moving fraction on finding anew is the cheaper way, by the times of both ways here.
 std::string break_even(const Advice& advice) {
-  const Ranked* const rebuild = find(advice, "auto:way=rebuild");
-  const Ranked* const follow = find(advice, "auto:way=incremental");
+  const Ranked* const rebuild = find(advice, "auto:update=rebuild");
+  const Ranked* const follow = find(advice, "auto:update=follow");
   const double moving = advice.signals.motion ? advice.signals.motion->moving : 0;
   if (rebuild == nullptr || follow == nullptr || !(moving > 0)) return "";
   const double anew = rebuild->milliseconds;

@@ -11,6 +11,7 @@
 
 #include "algorithms/descriptions.hpp"
 #include "core/float_environment.hpp"
+#include "core/former_names.hpp"
 #include "doubles/double_finder.hpp"
 
 namespace broadside {
@@ -84,7 +85,9 @@ void register_algorithm(Algorithm algorithm) {
 }
 
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {
-  const auto found = std::ranges::find(among, name, &Algorithm::name);
+  auto found = std::ranges::find(among, name, &Algorithm::name);
+  if (found == among.end())
+    found = std::ranges::find(among, core::current_algorithm(name), &Algorithm::name);
   return found == among.end() ? nullptr : &*found;
 }
 

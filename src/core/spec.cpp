@@ -9,6 +9,8 @@
 #include "broadside/error.hpp"
 #include "broadside/suggestion.hpp"
 
+#include "core/former_names.hpp"
+
 namespace broadside {
 namespace {
 
@@ -54,7 +56,8 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   if (value == tunable.standard) return;
   const auto refuse = [&](const std::string& expected) {
     throw InvalidSpec(owner + ": " + tunable.name + " is '" + value + "'; expected " + expected +
-                      (tunable.standard == "auto" ? ", or auto" : ""));
+                      (tunable.standard == "auto" ? ", or auto" : "") +
+                      core::former_value(tunable.name, value));
   };
   if (tunable.type == Tunable::Type::choice) {
     if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
@@ -108,7 +111,8 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
       std::vector<std::string> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
       throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'" + did_you_mean(name, names) +
-                        "; expected " + (names.empty() ? "none" : "one of: " + listed(names)));
+                        "; expected " + (names.empty() ? "none" : "one of: " + listed(names)) +
+                        core::former_tunable(name));
     }
     check(spec.name, *tunable, value);
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;

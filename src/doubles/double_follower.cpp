@@ -8,7 +8,7 @@
 namespace broadside::own {
 namespace {
 
-/// So many false candidates a box cost about what rounding all boxes anew does.
+/// False candidates a box that cost about what rounding all boxes anew does.
 constexpr double most_false_candidates = 32;
 
 /// Writes the events among candidates, and counts the candidates that are false.
@@ -44,13 +44,13 @@ class Candidates final : public PairSink {
 template <int D>
 void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
   const double most = most_false_candidates * static_cast<double>(change.now.size());
-  const bool starts = change.rebuild || !grid_ || static_cast<double>(false_candidates_) > most;
+  const bool starts = change.rebuild || static_cast<double>(false_candidates_) > most;
   if (starts) start(change);
   before_.resize(change.now.size(), absent_box<D>());
   now_.resize(change.now.size(), absent_box<D>());
   for (const BoxId id : change.changed) now_[index(id)] = rounded(change.now[index(id)]);
   Candidates<D> candidates(change, begun, ended);
-  Statistics statistics = grid_->candidates(
+  Statistics statistics = floats_->candidates(
       {.before = before_, .now = now_, .changed = change.changed, .flags = change.flags, .rebuild = starts},
       candidates);
   candidates.flush();
@@ -67,7 +67,6 @@ void DoubleFollower<D>::start(const Change<D, double>& change) {
   fit_ = core::fit_linear<D>(change.now);
   by_quantiles_ = core::makes_false_pairs<D>(fit_, change.now, 0);
   quantiles_ = by_quantiles_ ? core::fit_quantiles<D>(change.now) : std::array<core::QuantileRounding, D>{};
-  grid_ = std::make_unique<HierarchicalGridTracker<D>>();
   before_.resize(change.before.size());
   for (std::size_t i = 0; i < before_.size(); ++i) before_[i] = rounded(change.before[i]);
   now_ = before_;
@@ -87,7 +86,7 @@ template <int D>
 std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
   std::size_t bytes = (before_.capacity() + now_.capacity()) * sizeof(Box<D>);
   for (const core::QuantileRounding& rounding : quantiles_) bytes += rounding.bytes();
-  return bytes + (grid_ ? grid_->kept_bytes() : 0);
+  return bytes + floats_->kept_bytes();
 }
 
 template class DoubleFollower<2>;

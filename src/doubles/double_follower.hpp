@@ -1,17 +1,18 @@
-// Follows boxes of doubles by their floats: the grid's tracker tells which pairs may have changed, and a last
-// test in double whether they did.
+// Follows boxes of doubles by their floats: a structure tells which pairs may have changed, and a last test
+// in double whether they did.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "broadside/pair_tracker.hpp"
 
-#include "algorithms/hierarchical_grid/tracker.hpp"
 #include "core/rounding.hpp"
+#include "interface/candidate_tracker.hpp"
 
 namespace broadside::own {
 
@@ -22,6 +23,9 @@ namespace broadside::own {
 /// each candidate.
 template <int D>
 class DoubleFollower final : public PairTracker<D, double> {
+ public:
+  explicit DoubleFollower(std::unique_ptr<core::CandidateTracker<D>> floats) : floats_(std::move(floats)) {}
+
  private:
   void update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) override;
   std::size_t algorithm_bytes() const noexcept override;
@@ -33,7 +37,7 @@ class DoubleFollower final : public PairTracker<D, double> {
   std::array<core::QuantileRounding, D> quantiles_;
   bool by_quantiles_ = false;
   std::uint64_t false_candidates_ = 0;  // since all boxes were rounded
-  std::unique_ptr<HierarchicalGridTracker<D>> grid_;
+  std::unique_ptr<core::CandidateTracker<D>> floats_;
   std::vector<Box<D>> before_;
   std::vector<Box<D>> now_;
 };

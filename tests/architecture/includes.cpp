@@ -34,13 +34,13 @@ const std::vector<Rule>& rules() {
       {"src/interface/", interface},
       {"src/kernels/",
        standard +
-           R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
+           R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"core/((moved|nan)_box|cell_axis)\.hpp")" +
+           R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry",
        interface + R"(|"algorithms/descriptions\.hpp"|"doubles/double_finder\.hpp")"},
       {"src/algorithms/auto/", algorithm + R"(|"algorithms/auto/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
       {"src/algorithms/", algorithm},
-      {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")" +
-                           R"(|"algorithms/hierarchical_grid/tracker\.hpp")"},
+      {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
       {"src/world/", interface + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp")"},

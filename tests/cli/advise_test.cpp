@@ -48,7 +48,7 @@ TEST(AdviseVerb, TakesARecordingOfAnEngine) {
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("In 12 frames after the first, "),
                                   HasSubstr("a frame to be expected"), HasSubstr("p99"),
-                                  HasSubstr("auto:way=rebuild"), HasSubstr("broadside::World2 world(\"")));
+                                  HasSubstr("auto:update=rebuild"), HasSubstr("broadside::World2 world(\"")));
 }
 
 TEST(AdviseVerb, WritesAllOfItAsJson) {

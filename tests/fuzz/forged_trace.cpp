@@ -180,7 +180,7 @@ void check(Bytes& bytes) {
     forgery.frames.push_back(Forgery<D, Real>::any_frame(bytes, i == 0 ? 0 : forgery.frames.back().slots));
   for (std::size_t i = bytes.below(4); i > 0; --i) forgery.mutate(bytes);
 
-  constexpr std::array<const char*, 4> specs = {"auto", "hierarchical_grid", "grid", "brute_force"};
+  constexpr std::array<const char*, 4> specs = {"auto", "quadtree", "grid", "brute_force"};
   const auto tracker = make_tracker<D, Real>(specs[bytes.below(specs.size())]);
   std::set<Pair> pairs;
   std::istringstream stream(forgery.encoded());

@@ -57,8 +57,6 @@ constexpr std::array<GoldenOrder, 14> golden_orders = {{
     {"quadtree", 3, 0x4e4907df8b50316aU},
     {"bvh", 2, 0x84e8fe29d048d7edU},
     {"bvh", 3, 0xa5ece44084832406U},
-    {"hierarchical_grid", 2, 0x41b31846a2c02011U},
-    {"hierarchical_grid", 3, 0x1f47c2fcb3649d12U},
 }};
 
 template <int D>

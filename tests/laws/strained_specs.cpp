@@ -53,6 +53,9 @@ std::vector<Spec> strained_specs(const LawCase& law_case) {
     const Spec spec{"paper_quadtree", {{"capacity", "3"}, {"update", update}}};
     if (law_case.algorithm->name == spec.name && is_accepted(law_case, spec)) specs.push_back(spec);
   }
+  if (const Spec spec{"quadtree", {{"capacity", "3"}, {"update", "follow"}}};
+      law_case.algorithm->name == spec.name && is_accepted(law_case, spec))
+    specs.push_back(spec);
   return specs;
 }
 

@@ -40,7 +40,7 @@ std::vector<Kind> kinds() {
           {.name = "predicate", .has_predicate = true},
           {.name = "no pairs kept", .keep_pairs = false},
           {.name = "a tracker of the caller's", .has_own_tracker = false},
-          {.name = "hierarchical_grid", .algorithm = "hierarchical_grid"},
+          {.name = "grid", .algorithm = "grid"},
           {.name = "bvh", .algorithm = "bvh"}};
 }
 

@@ -16,7 +16,6 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
-#include "algorithms/auto/auto_tracker.hpp"
 #include "algorithms/auto/glance.hpp"
 #include "algorithms/auto/segment_join.hpp"
 #include "algorithms/descriptions.hpp"
@@ -24,6 +23,8 @@
 #include "core/sample.hpp"
 #include "doubles/double_finder.hpp"
 #include "doubles/double_follower.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "interface/yielding.hpp"
 
 namespace broadside::own {
@@ -263,64 +264,31 @@ std::unique_ptr<PairFinder<D>> make(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
-Way way_of(const Settings& settings) {
-  const std::string& way = settings.text("way");
-  if (way == "rebuild") return Way::rebuild;
-  return way == "incremental" ? Way::incremental : Way::automatic;
+/// Those after the first take over where it makes too many tests.
+template <int D>
+std::vector<core::Follower<D, float>> followers() {
+  return {
+      {"grid", [] { return make_tracker<D>("grid:update=follow"); }, core::grid_following<D>},
+      {"quadtree", [] { return make_tracker<D>("quadtree:update=follow"); },
+       core::quadtree_following_for_auto},
+      {"bvh", [] { return make_tracker<D>("bvh:update=reinsert"); }, core::bvh_following_for_auto},
+  };
 }
-
-/// The others come where the first one makes some five hundred tests a mover: by measurements with 50,000
-/// boxes, one in a hundred moving, in stacks of plates, lines and clusters.
-template <int D>
-constexpr std::array<Follower<D, float>, 3> followers = {{
-    {.name = "hierarchical_grid",
-     .make = [] { return make_tracker<D>(*find_algorithm("hierarchical_grid"), Spec{}); },
-     .start = D == 2 ? 15 : 18,
-     .mover = D == 2 ? 110 : 140,
-     .mover_alone = D == 2 ? 110 : 140,
-     .test = 1.8,
-     .further_test = 0.8},
-    {.name = "quadtree",
-     .make = [] { return make_tracker<D>("quadtree:update=root"); },
-     .start = 300,
-     .mover = 600,
-     .mover_alone = 300,
-     .test = 2,
-     .further_test = 2},
-    {.name = "bvh",
-     .make = [] { return make_tracker<D>("bvh:update=reinsert"); },
-     .start = 100,
-     .mover = 600,
-     .mover_alone = 300,
-     .test = 0.9,
-     .further_test = 0.9},
-}};
-
-template <int D>
-constexpr std::array<Follower<D, double>, 1> double_followers = {{
-    {.name = "hierarchical_grid",
-     .make = []() -> std::unique_ptr<PairTracker<D, double>> {
-       return std::make_unique<DoubleFollower<D>>();
-     },
-     .start = D == 2 ? 15 : 18,
-     .mover = D == 2 ? 110 : 140,
-     .mover_alone = D == 2 ? 110 : 140,
-     .test = 1.8,
-     .further_test = 0.8},
-}};
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
-  return std::make_unique<AutoTracker<D, float>>(std::make_unique<Auto<D>>(), followers<D>,
-                                                 make_tracker<D>(*find_algorithm("brute_force"), Spec{}),
-                                                 way_of(settings));
+  return std::make_unique<core::AdaptiveTracker<D>>(core::update_of(settings), std::make_unique<Auto<D>>(),
+                                                    core::grid_finding<D>, followers<D>(),
+                                                    make_tracker<D>("brute_force"));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
-  return std::make_unique<AutoTracker<D, double>>(
-      std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()), double_followers<D>, nullptr,
-      way_of(settings));
+  const auto follower = [] { return std::make_unique<DoubleFollower<D>>(grid_candidates<D>()); };
+  return std::make_unique<core::AdaptiveTracker<D, double>>(
+      core::update_of(settings), std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
+      core::grid_finding<D>,
+      std::vector<core::Follower<D, double>>{{"grid", follower, core::grid_following<D>}});
 }
 
 }  // namespace
@@ -332,12 +300,7 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, from frame to "
           "frame",
       .source = "Broadside's measurements",
-      .tunables = {core::threads_tunable(),
-                   {.name = "way",
-                    .summary = "in tracking: find all pairs anew in each frame, or follow what changed",
-                    .standard = "auto",
-                    .type = Tunable::Type::choice,
-                    .choices = {"auto", "rebuild", "incremental"}}},
+      .tunables = {core::threads_tunable(), core::update_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
       .tracker_2d = make_tracking<2>,

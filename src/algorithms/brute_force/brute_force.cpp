@@ -7,6 +7,8 @@
 #include "algorithms/brute_force/tracker.hpp"
 #include "algorithms/descriptions.hpp"
 #include "core/parallel.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::own {
@@ -62,7 +64,10 @@ std::unique_ptr<PairFinder<D>> make(const Settings&) {
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
-  return make_brute_force_tracker<D>(settings, make<D>(settings));
+  return std::make_unique<core::AdaptiveTracker<D>>(
+      core::update_of(settings), make<D>(settings), core::brute_force_finding,
+      std::vector<core::Follower<D, float>>{
+          {"brute_force", make_brute_force_tracker<D>, core::brute_force_following}});
 }
 
 }  // namespace
@@ -72,7 +77,7 @@ Algorithm brute_force() {
       .name = "brute_force",
       .summary = "every box against every other, over a structure of arrays",
       .source = "paper.md, sections II and VI-A",
-      .tunables = {brute_force_update(), core::threads_tunable()},
+      .tunables = {core::update_tunable(), core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
       .tracker_2d = make_tracker<2>,

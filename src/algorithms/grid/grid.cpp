@@ -1,7 +1,7 @@
 // Grid: cells over all axes but one, and a sweep along that one in each.
 //
 // Section III of the paper, without its limits: the cells clamp what lies outside them, so no world is
-// declared. A box is filed in the cell that holds its minimum, and goes on from there to the others that it
+// declared. A box is put into the cell that holds its minimum, and goes on from there to the others that it
 // reaches while these are swept, so what is kept is one copy of each box. No pair is found twice: it is
 // reported in the one cell that holds the greater of the two boxes' minima on every gridded axis.
 #include <algorithm>
@@ -23,7 +23,10 @@
 #include "algorithms/grid/sweep.hpp"
 #include "algorithms/grid/tracker.hpp"
 #include "core/parallel.hpp"
+#include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/run.hpp"
@@ -55,12 +58,12 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
     sweeps_.resize(std::max(sweeps_.size(), parallel_.lanes()));
     choose_cells(boxes);
     count_boxes(boxes);
-    file(boxes);
+    scatter(boxes);
     swept_to_.resize(layout_.slabs());
     const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const GridCells<D> cells{filed_, begin_};
+        const BoxesByCell<D> cells{entries_, begin_};
         const Statistics of_slab =
             sweeps_[lane].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
         swept_to_[slab] = sweeps_[lane].swept_to();
@@ -142,7 +145,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
             std::min(swept.high + more, std::numeric_limits<float>::max())};
   }
 
-  /// Calls `visit` with each cell in which a box is filed and the bits that keep it apart there: the cell of
+  /// Calls `visit` with each cell that a box is put into and the bits that keep it apart there: the cell of
   /// its minimum, and the first row of each further slab that it reaches.
   template <typename Visit>
   void for_each_place(const Box<D>& box, Visit visit) const {
@@ -169,27 +172,23 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
       for (std::size_t i = range.begin; i < range.end; ++i)
         for_each_place(boxes[i], [count](std::size_t cell, std::uint32_t) { ++count[cell]; });
     });
-    begin_.resize(cells + 1);
-    std::uint64_t begin = 0;
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      begin_[cell] = begin;
-      for (std::size_t at = cell; at < next_.size(); at += cells) begin += std::exchange(next_[at], begin);
-    }
-    begin_[cells] = begin;
+    const std::uint64_t sum = core::prefix_sum(std::span<std::uint64_t>(next_), cells);
+    begin_.assign(next_.begin(), next_.begin() + static_cast<std::ptrdiff_t>(cells));
+    begin_.push_back(sum);
   }
 
   /// Copies the boxes to their cells.
-  void file(std::span<const Box<D>> boxes) {
-    filed_.resize(begin_.back());
+  void scatter(std::span<const Box<D>> boxes) {
+    entries_.resize(begin_.back());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
       std::uint64_t* const next = next_.data() + number * layout_.cells();
-      Filed<D>* const filed = filed_.data();
+      CellEntry<D>* const entries = entries_.data();
       for (std::size_t i = range.begin; i < range.end; ++i) {
         const Box<D>& box = boxes[i];
         const auto id = static_cast<BoxId>(i);
         const std::uint32_t side = kernels::side_bit(id, this->left_count());
         for_each_place(box, [&](std::size_t cell, std::uint32_t apart) {
-          filed[next[cell]++] = {box, id, side | apart};
+          entries[next[cell]++] = {box, id, side | apart};
         });
       }
     });
@@ -201,32 +200,29 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
   GridLayout<D> layout_;
   std::vector<std::uint64_t> begin_;
   std::vector<std::uint64_t> next_;
-  std::vector<Filed<D>> filed_;
+  std::vector<CellEntry<D>> entries_;
   core::Parallel parallel_;
   std::vector<GridSweep<D>> sweeps_;   // by lane
   std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
+std::optional<double> cell_of(const Settings& settings) {
+  if (settings.is_auto("cell")) return std::nullopt;
+  return settings.number("cell");
+}
+
 template <int D>
 std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
-  if (settings.is_auto("cell")) return std::make_unique<Grid<D>>(std::nullopt);
-  return std::make_unique<Grid<D>>(settings.number("cell"));
+  return std::make_unique<Grid<D>>(cell_of(settings));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
-  return make_grid_tracker<D>(settings, make<D>(settings));
-}
-
-std::vector<Tunable> tunables() {
-  std::vector<Tunable> all = {
-      {.name = "cell",
-       .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 cells a box",
-       .standard = "auto",
-       .least = std::numeric_limits<float>::min()}};
-  for (Tunable& tunable : grid_tracking()) all.push_back(std::move(tunable));
-  all.push_back(core::threads_tunable());
-  return all;
+  const std::optional<double> cell = cell_of(settings);
+  return std::make_unique<core::AdaptiveTracker<D>>(
+      core::update_of(settings), make<D>(settings), core::grid_finding<D>,
+      std::vector<core::Follower<D, float>>{
+          {"grid", [cell] { return std::make_unique<GridTracker<D>>(cell); }, core::grid_following<D>}});
 }
 
 }  // namespace
@@ -234,14 +230,33 @@ std::vector<Tunable> tunables() {
 Algorithm grid() {
   return {
       .name = "grid",
-      .summary = "cells over all axes but one, a sweep along that one in each",
-      .source = "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256",
-      .tunables = tunables(),
+      .summary =
+          "cells over all axes but one, a sweep along that one in each; boxes that move are followed in "
+          "levels "
+          "of cells, one for each size of boxes",
+      .source =
+          "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256; levels: "
+          "C. Ericson, Real-Time Collision Detection (2005), 7.2",
+      .tunables = {{.name = "cell",
+                    .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 "
+                               "cells a box; in tracking, the size of the smallest cells",
+                    .standard = "auto",
+                    .least = std::numeric_limits<float>::min()},
+                   core::update_tunable(),
+                   core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
       .tracker_2d = make_tracker<2>,
       .tracker_3d = make_tracker<3>,
   };
 }
+
+template <int D>
+std::unique_ptr<core::CandidateTracker<D>> grid_candidates() {
+  return std::make_unique<GridTracker<D>>(std::nullopt);
+}
+
+template std::unique_ptr<core::CandidateTracker<2>> grid_candidates();
+template std::unique_ptr<core::CandidateTracker<3>> grid_candidates();
 
 }  // namespace broadside::own

@@ -1,6 +1,7 @@
 // Where a grid's cells lie.
 #include "algorithms/grid/layout.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -119,13 +120,13 @@ void GridLayout<D>::set(const core::Sample<D>& sample, const std::array<double, 
     const core::AxisSample& on_axis = sample[axes_[axis + 1]];
     cells_[axis] = static_cast<std::uint32_t>(cells[axis]);
     cell_count_ *= cells_[axis];
-    low_[axis] = on_axis.low;
-    last_[axis] = static_cast<float>(cells_[axis] - 1);
     // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
     const double range = range_of(on_axis);
     const double per_unit = range > 0 ? cells_[axis] / range : 1;
-    per_unit_[axis] = static_cast<float>(
-        std::clamp<double>(per_unit, std::numeric_limits<float>::min(), std::numeric_limits<float>::max()));
+    cell_axes_[axis] = {.low = on_axis.low,
+                        .per_unit = static_cast<float>(std::clamp<double>(
+                            per_unit, std::numeric_limits<float>::min(), std::numeric_limits<float>::max())),
+                        .last = static_cast<float>(cells_[axis] - 1)};
     set_borders(axis);
   }
   set_slabs();
@@ -137,7 +138,7 @@ void GridLayout<D>::set_borders(int axis) {
   borders.resize(cells_[axis]);
   for (std::uint32_t cell = 1; cell < cells_[axis]; ++cell) {
     // The least float that lies in the cell or after it. Rounding may have moved it by a little.
-    float border = low_[axis] + static_cast<float>(cell) / per_unit_[axis];
+    float border = cell_axes_[axis].low + static_cast<float>(cell) / cell_axes_[axis].per_unit;
     for (int i = 0; i < 4 && cell_of(border, axis) < cell; ++i) border = std::nextafter(border, infinity);
     for (int i = 0; i < 4 && cell_of(std::nextafter(border, -infinity), axis) >= cell; ++i)
       border = std::nextafter(border, -infinity);

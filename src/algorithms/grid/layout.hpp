@@ -1,7 +1,6 @@
 // Where a grid's cells lie: which axes have cells, how many, and in which cell a coordinate is.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,7 @@
 
 #include "broadside/box.hpp"
 
+#include "core/cell_axis.hpp"
 #include "core/sample.hpp"
 
 namespace broadside::own {
@@ -40,12 +40,8 @@ class GridLayout {
   /// The slab that a row is in.
   std::size_t slab_of(std::size_t row) const { return slab_of_[row]; }
 
-  /// The one formula by which a coordinate has a cell, here on the axis `axes()[1 + axis]`. It rises with the
-  /// coordinate and clamps it, infinite or not.
-  std::uint32_t cell_of(float coordinate, int axis) const {
-    const float cell = (coordinate - low_[axis]) * per_unit_[axis];
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(std::max(cell, 0.0F), last_[axis])));
-  }
+  /// The cell that a coordinate has on the axis `axes()[1 + axis]`.
+  std::uint32_t cell_of(float coordinate, int axis) const { return cell_axes_[axis](coordinate); }
 
   /// The row and, in it, the cell that hold a box's minimum.
   std::size_t row_of(const Box<D>& box) const { return cell_of(box.min[axes_[D - 1]], gridded - 1); }
@@ -57,7 +53,7 @@ class GridLayout {
   float column_border(std::size_t column) const { return borders_[0][column]; }
 
   /// How wide the cells on an axis are: axis `axes()[1 + axis]`.
-  float cell_size(int axis) const { return 1 / per_unit_[axis]; }
+  float cell_size(int axis) const { return 1 / cell_axes_[axis].per_unit; }
 
   /// The border of a row's slab.
   float slab_border(std::size_t row) const { return slab_border_[row]; }
@@ -69,9 +65,7 @@ class GridLayout {
 
   std::array<int, D> axes_{};
   std::array<std::uint32_t, gridded> cells_{};
-  std::array<float, gridded> low_{};
-  std::array<float, gridded> per_unit_{};
-  std::array<float, gridded> last_{};
+  std::array<core::CellAxis, gridded> cell_axes_{};
   std::size_t cell_count_ = 0;
   std::array<std::vector<float>, gridded> borders_;
   std::vector<std::uint32_t> slab_begin_;

@@ -1,8 +1,8 @@
 // Sweeps the cells of a grid, slab by slab.
 //
-// A cell's boxes are brought into order by filing them in buckets of the swept axis: one pass to count, one
-// to file. Within a bucket they stay as they came, which the kernels allow for (Run::slack). Where buckets
-// would be too uneven for that, boxes are sorted.
+// A cell's boxes are brought into order by a counting sort by buckets of the swept axis: one pass to count,
+// one to scatter. Within a bucket they stay as they came, which the kernels allow for (Run::slack). Where
+// buckets would be too uneven for that, boxes are sorted.
 #include "algorithms/grid/sweep.hpp"
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/prefix_sum.hpp"
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
@@ -60,7 +61,7 @@ class CountingSink final : public PairSink {
 
 template <int D>
 Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
-                               const GridCells<D>& cells, std::size_t slab, std::uint64_t most_tests,
+                               const BoxesByCell<D>& cells, std::size_t slab, std::uint64_t most_tests,
                                PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
@@ -72,7 +73,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   swept_to_ = layout.slab_begin(slab) * length;
   CountingSink counted(pairs);
   for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
-    // What reaches into the next slab is filed there.
+    // What reaches into the next slab is there already.
     const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
     along_.size = 0;
     for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
@@ -111,7 +112,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
   bucket_of_.resize(std::max(bucket_of_.size(), count));
   const Buckets buckets = cut(range_, count);
-  starts_.assign(buckets.count, 0);
+  starts_.assign(buckets.count(), 0);
   std::uint16_t* bucket_of = bucket_of_.data();
   for (std::size_t i = 0; i < lists.size(); ++i) {
     // A box goes along the row where it is met first, and up from everywhere.
@@ -137,51 +138,48 @@ std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, i
   std::size_t reaching = 0;
   for (const auto& list : lists)
     reaching += static_cast<std::size_t>(std::ranges::count_if(
-        list, [axis, border](const Filed<D>& filed) { return filed.box.max[axis] >= border; }));
+        list, [axis, border](const CellEntry<D>& entry) { return entry.box.max[axis] >= border; }));
   return reaching;
 }
 
 template <int D>
 typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::size_t count) {
-  Buckets buckets;
-  buckets.count = std::bit_ceil(std::clamp(count, least_buckets, most_buckets));
-  const auto buckets_in_range = static_cast<float>(buckets.count);
+  const auto count_in_range =
+      static_cast<float>(std::bit_ceil(std::clamp(count, least_buckets, most_buckets)));
   const float length = range.high - range.low;
   // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
-  buckets.per_unit =
-      std::clamp(length > 0 ? buckets_in_range / length : 1, std::numeric_limits<float>::min(), largest);
-  buckets.low = range.low;
-  buckets.last = buckets_in_range - 1;
+  const float per_unit =
+      std::clamp(length > 0 ? count_in_range / length : 1, std::numeric_limits<float>::min(), largest);
   // A bucket's width and what rounding may add to it.
   constexpr float rounding = 1e-6F;
-  const float width = std::max(1 / buckets.per_unit, length / buckets_in_range);
-  buckets.slack =
+  const float width = std::max(1 / per_unit, length / count_in_range);
+  const float slack =
       std::min(width * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high)), largest);
-  return buckets;
+  return {{.low = range.low, .per_unit = per_unit, .last = count_in_range - 1}, slack};
 }
 
 template <int D>
 template <bool Along>
-void GridSweep<D>::look_at(std::span<const Filed<D>> list, const Buckets& buckets, float column_border,
+void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
                            float row_border, std::uint16_t* bucket_of) {
   const int swept = axes_[0];
   const int column_axis = axes_[1];
   const int row_axis = axes_[D - 1];
-  Filed<D>* along = next_along_.memory.data() + next_along_.size;
-  Filed<D>* up = next_up_.memory.data() + next_up_.size;
+  CellEntry<D>* along = next_along_.memory.data() + next_along_.size;
+  CellEntry<D>* up = next_up_.memory.data() + next_up_.size;
   std::uint32_t* const counts = starts_.data();
-  for (const Filed<D>& filed : list) {
-    const std::uint16_t bucket = buckets.of(filed.box.min[swept]);
+  for (const CellEntry<D>& entry : list) {
+    const auto bucket = static_cast<std::uint16_t>(buckets.of(entry.box.min[swept]));
     *bucket_of++ = bucket;
     ++counts[bucket];
     // Written in any case and kept if it goes on: no predictor could know.
-    *up = filed;
+    *up = entry;
     up->apart |= 1U << row_axis;
-    up += filed.box.max[row_axis] >= row_border ? 1 : 0;
+    up += entry.box.max[row_axis] >= row_border ? 1 : 0;
     if constexpr (Along) {
-      *along = filed;
+      *along = entry;
       along->apart |= 1U << column_axis;
-      along += filed.box.max[column_axis] >= column_border ? 1 : 0;
+      along += entry.box.max[column_axis] >= column_border ? 1 : 0;
     }
   }
   next_along_.size = static_cast<std::size_t>(along - next_along_.memory.data());
@@ -193,7 +191,7 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
   const std::size_t before = starts_.front();
   const std::size_t after = starts_.back();
   if (std::max(before, after) <= most_beyond && are_even(count)) {
-    file_by_bucket(lists);
+    scatter(lists);
     run_.sort(0, before);
     run_.sort(count - after, count);
     return buckets.slack;
@@ -202,28 +200,28 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
   constexpr float infinity = std::numeric_limits<float>::infinity();
   SweptRange own{infinity, -infinity};
   for (const auto& list : lists) {
-    for (const Filed<D>& filed : list) {
-      own.low = std::min(own.low, filed.box.min[axes_[0]]);
-      own.high = std::max(own.high, filed.box.min[axes_[0]]);
+    for (const CellEntry<D>& entry : list) {
+      own.low = std::min(own.low, entry.box.min[axes_[0]]);
+      own.high = std::max(own.high, entry.box.min[axes_[0]]);
     }
   }
   if (std::isfinite(own.high - own.low)) {
     const Buckets narrower = cut(own, count);
-    starts_.assign(narrower.count, 0);
+    starts_.assign(narrower.count(), 0);
     std::uint16_t* bucket_of = bucket_of_.data();
     for (const auto& list : lists) {
-      for (const Filed<D>& filed : list) {
-        *bucket_of = narrower.of(filed.box.min[axes_[0]]);
+      for (const CellEntry<D>& entry : list) {
+        *bucket_of = static_cast<std::uint16_t>(narrower.of(entry.box.min[axes_[0]]));
         ++starts_[*bucket_of++];
       }
     }
     // Where all begin at one place, there is nothing to be gained by sorting them.
     if (own.low == own.high || are_even(count)) {
-      file_by_bucket(lists);
+      scatter(lists);
       return narrower.slack;
     }
   }
-  file_exactly(lists, count);
+  sort(lists, count);
   return 0;
 }
 
@@ -235,50 +233,49 @@ bool GridSweep<D>::are_even(std::size_t count) const {
 }
 
 template <int D>
-void GridSweep<D>::file_by_bucket(const Lists& lists) {
-  std::uint32_t begin = 0;
-  for (std::uint32_t& start : starts_) start = std::exchange(begin, begin + start);
+void GridSweep<D>::scatter(const Lists& lists) {
+  core::prefix_sum(std::span<std::uint32_t>(starts_), starts_.size());
   const kernels::RunArrays<D> run = run_.arrays();
   const std::array<int, D> axes = axes_;
   std::uint32_t* const starts = starts_.data();
   const std::uint16_t* bucket_of = bucket_of_.data();
   for (const auto& list : lists) {
-    for (const Filed<D>& filed : list) {
+    for (const CellEntry<D>& entry : list) {
       const std::size_t place = starts[*bucket_of++]++;
       for (int axis = 0; axis < D; ++axis) {
-        run.min[axis][place] = filed.box.min[axes[axis]];
-        run.max[axis][place] = filed.box.max[axes[axis]];
+        run.min[axis][place] = entry.box.min[axes[axis]];
+        run.max[axis][place] = entry.box.max[axes[axis]];
       }
-      run.id[place] = filed.id;
-      run.apart[place] = filed.apart;
+      run.id[place] = entry.id;
+      run.apart[place] = entry.apart;
     }
   }
 }
 
 template <int D>
-void GridSweep<D>::file_exactly(const Lists& lists, std::size_t count) {
+void GridSweep<D>::sort(const Lists& lists, std::size_t count) {
   const std::span<core::KeyedPlace> places = radix_.places(count);
   std::uint32_t next = 0;
   for (const auto& list : lists) {
-    for (const Filed<D>& filed : list) {
-      places[next] = {core::sort_key(filed.box.min[axes_[0]]), next};
+    for (const CellEntry<D>& entry : list) {
+      places[next] = {core::sort_key(entry.box.min[axes_[0]]), next};
       ++next;
     }
   }
-  const auto filed_at = [&lists](std::size_t place) -> const Filed<D>& {
+  const auto filed_at = [&lists](std::size_t place) -> const CellEntry<D>& {
     std::size_t list = 0;
     while (place >= lists[list].size()) place -= lists[list++].size();
     return lists[list][place];
   };
   run_.clear();
   for (const core::KeyedPlace& place : radix_.sort()) {
-    const Filed<D>& filed = filed_at(place.place);
+    const CellEntry<D>& entry = filed_at(place.place);
     Box<D> box;
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = filed.box.min[axes_[axis]];
-      box.max[axis] = filed.box.max[axes_[axis]];
+      box.min[axis] = entry.box.min[axes_[axis]];
+      box.max[axis] = entry.box.max[axes_[axis]];
     }
-    run_.append(box, filed.id, filed.apart);
+    run_.append(box, entry.id, entry.apart);
   }
 }
 

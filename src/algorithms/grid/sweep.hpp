@@ -1,7 +1,6 @@
 // Sweeps the cells of a grid, slab by slab: brings a cell's boxes into order and reports their pairs.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,15 +12,16 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/grid/layout.hpp"
+#include "core/cell_axis.hpp"
 #include "core/radix_sort.hpp"
 #include "kernels/run.hpp"
 
 namespace broadside::own {
 
-/// A box filed in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
+/// A box in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
 /// run.
 template <int D>
-struct Filed {
+struct CellEntry {
   Box<D> box;
   BoxId id;
   std::uint32_t apart;
@@ -30,8 +30,8 @@ struct Filed {
 /// The boxes of a grid by the cell that holds their minimum (and, for those that reach into other slabs, also
 /// in the first row of each of these): `boxes[begin[c], begin[c + 1])` are those of cell c.
 template <int D>
-struct GridCells {
-  std::span<const Filed<D>> boxes;
+struct BoxesByCell {
+  std::span<const CellEntry<D>> boxes;
   std::span<const std::uint64_t> begin;
 };
 
@@ -49,7 +49,7 @@ class GridSweep {
   /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
   /// gridded axis. Stops before the cell at which tests become more than `most_tests` and than pairs account
   /// for.
-  Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const GridCells<D>& cells,
+  Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const BoxesByCell<D>& cells,
                    std::size_t slab, std::uint64_t most_tests, PairSink& pairs);
 
   /// The cell behind the last one that was swept.
@@ -58,31 +58,25 @@ class GridSweep {
  private:
   /// Boxes on their way to a cell.
   struct Carried {
-    std::vector<Filed<D>> memory;
+    std::vector<CellEntry<D>> memory;
     std::size_t size = 0;
 
     void reserve(std::size_t count) {
       if (memory.size() < count) memory.resize(count + count / 2);
     }
-    std::span<const Filed<D>> list() const { return {memory.data(), size}; }
+    std::span<const CellEntry<D>> list() const { return {memory.data(), size}; }
   };
 
   /// The swept axis cut into buckets. The first and the last one take in what lies beyond.
   struct Buckets {
-    float low;
-    float per_unit;
-    float last;
+    core::CellAxis of;
     float slack;  // no box between the ends begins more than this before one of the same bucket
-    std::size_t count;
 
-    std::uint16_t of(float coordinate) const {
-      const float bucket = (coordinate - low) * per_unit;
-      return static_cast<std::uint16_t>(static_cast<std::int32_t>(std::min(std::max(bucket, 0.0F), last)));
-    }
+    std::size_t count() const { return of.count(); }
   };
 
-  /// A cell's boxes: those filed there, those from the row before and, in 3D, those from along the row.
-  using Lists = std::array<std::span<const Filed<D>>, D>;
+  /// A cell's boxes: those that begin there, those from the row before and, in 3D, those from along the row.
+  using Lists = std::array<std::span<const CellEntry<D>>, D>;
 
   /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach. False if the
   /// cell alone would take more than `most_tests`, few of which find a pair: then it reports none.
@@ -96,16 +90,16 @@ class GridSweep {
 
   /// Counts a list's boxes by bucket, and sends them on.
   template <bool Along>
-  void look_at(std::span<const Filed<D>> list, const Buckets& buckets, float column_border, float row_border,
-               std::uint16_t* bucket_of);
+  void look_at(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
+               float row_border, std::uint16_t* bucket_of);
 
   /// Sets run_ to the cell's boxes in the order of the sweep, by the buckets that were counted if they will
   /// do. Returns the run's slack.
   float order(const Lists& lists, std::size_t count, const Buckets& buckets);
 
   bool are_even(std::size_t count) const;
-  void file_by_bucket(const Lists& lists);
-  void file_exactly(const Lists& lists, std::size_t count);
+  void scatter(const Lists& lists);
+  void sort(const Lists& lists, std::size_t count);
 
   std::array<int, D> axes_{};
   std::size_t swept_to_ = 0;

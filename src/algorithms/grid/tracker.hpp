@@ -1,20 +1,47 @@
-// The grid, frame after frame: see grid_tracker.cpp.
+// The grid's tracker: moves boxes from cell to cell and looks for what those that moved meet.
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "broadside/pair_tracker.hpp"
-#include "broadside/spec.hpp"
+
+#include "algorithms/grid/cells.hpp"
+#include "core/moved_box.hpp"
+#include "interface/candidate_tracker.hpp"
 
 namespace broadside::own {
 
-/// The tunables that are for the grid's trackers only.
-std::vector<Tunable> grid_tracking();
-
-/// A tracker of the grid, whose finder is `finder`.
+/// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
+/// longer suit the boxes: not before searching has cost that much too much.
 template <int D>
-std::unique_ptr<PairTracker<D>> make_grid_tracker(const Settings& settings,
-                                                  std::unique_ptr<PairFinder<D>> finder);
+class GridTracker final : public core::CandidateTracker<D> {
+ public:
+  explicit GridTracker(std::optional<double> cell) : cells_(cell) {}
+
+  Statistics candidates(const Change<D>& change, PairSink& pairs) override;
+  std::size_t kept_bytes() const noexcept override { return algorithm_bytes(); }
+
+ private:
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  std::size_t algorithm_bytes() const noexcept override;
+
+  Statistics follow(const Change<D>& change, const core::ChangeSinks& sinks, bool every_pair);
+  bool needs_rebuild(const Change<D>& change) const;
+  void build(const Change<D>& change);
+  void weigh(const core::ChangeWork& work, std::size_t queries);
+
+  HierarchicalCells<D> cells_;
+  std::vector<BoxId> moved_;  // whose entries cover more than where they are
+  std::vector<BoxId> moving_;
+  std::vector<core::MovedBox<D>> boxes_;  // a batch of those that moved
+  std::size_t built_for_ = 0;
+  double usual_blocks_ = 0;  // a query, since the cells were laid out
+  std::uint64_t first_queries_ = 0;
+  double excess_ = 0;  // blocks looked at beyond what is usual
+};
 
 }  // namespace broadside::own

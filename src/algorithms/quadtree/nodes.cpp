@@ -8,20 +8,20 @@
 namespace broadside::own {
 namespace {
 
-/// So many references a box are not exceeded by splitting.
+/// Splitting does not go beyond so many references a box.
 constexpr std::size_t most_references = 16;
 
 }  // namespace
 
 template <int D>
 void QuadtreeNodes<D>::build(std::span<const Box<D>> boxes) {
-  packs_.clear();
+  chains_.pool().clear();
   nodes_.clear();
   free_.clear();
   grown_.clear();
   shrunk_.clear();
   references_ = kept_ = 0;
-  degenerate_ = false;
+  is_too_deep_ = false;
   homes_.assign(boxes.size(), {});
   QuadtreeNode<D> whole{};
   whole.low.fill(-std::numeric_limits<float>::infinity());
@@ -43,7 +43,7 @@ std::uint32_t QuadtreeNodes<D>::insert(std::uint32_t node, const Box<D>& box, Bo
     ++kept_;
   else if (to.count > std::max(capacity_, to.split_at))
     grown_.push_back(node);
-  return packs_.insert(to.pack, box, id);
+  return chains_.insert(to.block, node, box, id);
 }
 
 template <int D>
@@ -51,7 +51,7 @@ void QuadtreeNodes<D>::erase(std::uint32_t node, std::uint32_t slot) {
   QuadtreeNode<D>& from = nodes_[node];
   --from.count;
   --references_;
-  packs_.erase(from.pack, slot);
+  chains_.erase(from.block, slot);
   if (!from.is_leaf())
     --kept_;
   else if (from.parent != no_node && from.count <= capacity_ / child_count)
@@ -74,7 +74,7 @@ void QuadtreeNodes<D>::tidy(std::span<const Box<D>> boxes) {
 
 template <int D>
 std::size_t QuadtreeNodes<D>::bytes() const noexcept {
-  return packs_.bytes() + nodes_.capacity() * sizeof(QuadtreeNode<D>) +
+  return chains_.pool().bytes() + nodes_.capacity() * sizeof(QuadtreeNode<D>) +
          homes_.capacity() * sizeof(QuadtreeHome) + masks_.capacity() +
          (free_.capacity() + grown_.capacity() + shrunk_.capacity() + ids_.capacity()) *
              sizeof(std::uint32_t);
@@ -182,7 +182,7 @@ void QuadtreeNodes<D>::put(std::uint32_t node, std::uint32_t id, const Box<D>& b
   ++to.count;
   ++references_;
   if (!to.is_leaf()) ++kept_;
-  const std::uint32_t slot = packs_.insert(to.pack, box, BoxId(id));
+  const std::uint32_t slot = chains_.insert(to.block, node, box, BoxId(id));
   QuadtreeHome& home = homes_[id];
   if (home.node != no_node || !to.is_leaf()) home.several = 1;
   if (home.node != no_node) return;
@@ -213,7 +213,7 @@ std::uint32_t QuadtreeNodes<D>::add_children(std::uint32_t parent) {
       ((child >> axis & 1U) != 0 ? node.low : node.high)[axis] = above.split[axis];
     }
   }
-  degenerate_ |= above.depth + 1 >= most_depth;
+  is_too_deep_ |= above.depth + 1 >= most_depth;
   return first;
 }
 
@@ -224,7 +224,7 @@ void QuadtreeNodes<D>::drain(std::uint32_t node) {
   references_ -= from.count;
   if (!from.is_leaf()) kept_ -= from.count;
   from.count = 0;
-  packs_.drain(from.pack, [&](BoxId id) {
+  chains_.drain(from.block, [&](BoxId id) {
     if (homes_[index(id)].node == node) homes_[index(id)].node = no_node;
     ids_.push_back(index(id));
   });

@@ -11,12 +11,11 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "algorithms/quadtree/packs.hpp"
-#include "kernels/packs.hpp"
+#include "algorithms/quadtree/chains.hpp"
 
 namespace broadside::own {
 
-/// What a node is without children, and who has no parent.
+/// Sentinel: "no child" or "no parent".
 inline constexpr std::uint32_t no_node = 0xffffffffU;
 
 /// A region and how it is split. The root's is all of space: no world is declared.
@@ -28,7 +27,7 @@ struct QuadtreeNode {
   std::array<float, D> large;  ///< a box that touches all children and is as large on every axis stays here
   std::uint32_t parent = no_node;
   std::uint32_t children = no_node;  ///< the first of 2^D; no_node for a leaf
-  std::uint32_t pack = kernels::no_pack;
+  std::uint32_t block = kernels::no_slot;
   std::uint32_t count = 0;     ///< boxes in the node itself
   std::uint32_t split_at = 0;  ///< a leaf that could not be split is tried again with more boxes than this
   std::uint32_t depth = 0;
@@ -64,17 +63,10 @@ struct QuadtreeNode {
     return inside;
   }
 
-  /// Whether a box touches the node's region.
-  bool touches(const Box<D>& box) const {
-    bool meets = true;
-    for (int axis = 0; axis < D; ++axis) meets &= box.max[axis] >= low[axis] && box.min[axis] < high[axis];
-    return meets;
-  }
-
   std::uint32_t whole = 0;  ///< the children on either side of the axes that are split
 };
 
-/// Where a box is filed first, in the order of a descent: from here it is looked for.
+/// The first node that a box is in, in the order of a descent: from here it is looked for.
 struct QuadtreeHome {
   std::uint32_t node = no_node;
   std::uint32_t slot : 31 = 0;
@@ -101,25 +93,22 @@ class QuadtreeNodes {
   QuadtreeHome& home(std::uint32_t id) { return homes_[id]; }
 
   /// A box's slot in a node.
-  std::uint32_t find(std::uint32_t node, BoxId id) const { return packs_.find(nodes_[node].pack, id); }
+  std::uint32_t find(std::uint32_t node, BoxId id) const { return chains_.find(nodes_[node].block, id); }
 
   std::uint32_t insert(std::uint32_t node, const Box<D>& box, BoxId id);
   void erase(std::uint32_t node, std::uint32_t slot);
-  QuadtreePacks<D>& packs() { return packs_; }
+  kernels::BlockPool<D>& pool() { return chains_.pool(); }
 
   /// Splits nodes that have become too full and merges those that have emptied, since the last call.
   void tidy(std::span<const Box<D>> boxes);
 
-  /// Boxes that are not in leaves; while there are none, nobody has to look.
+  /// Boxes that are not in leaves; while there are none, no search has to look for them.
   std::size_t kept() const noexcept { return kept_; }
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
 
-  /// Every node's number is less.
-  std::size_t node_end() const noexcept { return nodes_.size(); }
-
   /// Whether the tree has become too deep to be left as it is.
-  bool is_degenerate() const noexcept { return degenerate_; }
+  bool needs_rebuild() const noexcept { return is_too_deep_; }
 
   std::size_t bytes() const noexcept;
 
@@ -142,11 +131,11 @@ class QuadtreeNodes {
   std::uint32_t capacity_;
   std::vector<QuadtreeNode<D>> nodes_;
   std::vector<std::uint32_t> free_;  // first children
-  QuadtreePacks<D> packs_;
+  QuadtreeChains<D> chains_;
   std::vector<QuadtreeHome> homes_;
   std::size_t references_ = 0;
   std::size_t kept_ = 0;
-  bool degenerate_ = false;
+  bool is_too_deep_ = false;
 
   std::vector<std::uint32_t> grown_;   // leaves that may be too full
   std::vector<std::uint32_t> shrunk_;  // inner nodes whose children may have emptied

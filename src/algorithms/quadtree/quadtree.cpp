@@ -28,6 +28,8 @@
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
@@ -256,6 +258,18 @@ std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
                                            : static_cast<std::size_t>(settings.integer("capacity")));
 }
 
+template <int D>
+std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+  const auto capacity = settings.is_auto("capacity")
+                            ? tracking_capacity
+                            : static_cast<std::uint32_t>(settings.integer("capacity"));
+  return std::make_unique<core::AdaptiveTracker<D>>(
+      core::update_of(settings), make<D>(settings), core::tree_finding<D>,
+      std::vector<core::Follower<D, float>>{{"quadtree",
+                                             [capacity] { return make_quadtree_tracker<D>(capacity); },
+                                             core::quadtree_following<D>}});
+}
+
 }  // namespace
 
 Algorithm quadtree() {
@@ -269,14 +283,12 @@ Algorithm quadtree() {
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1 << 30},
-                   quadtree_update(),
+                   core::update_tunable(),
                    core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,
-      .tracker_2d =
-          [](const Settings& settings) { return make_quadtree_tracker(settings, make<2>(settings)); },
-      .tracker_3d =
-          [](const Settings& settings) { return make_quadtree_tracker(settings, make<3>(settings)); },
+      .tracker_2d = make_tracker<2>,
+      .tracker_3d = make_tracker<3>,
   };
 }
 

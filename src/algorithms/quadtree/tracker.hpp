@@ -1,19 +1,19 @@
-// The quadtree as a tracker, for the description in quadtree.cpp.
+// The tracker of the quadtree.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
-#include "broadside/algorithm.hpp"
+#include "broadside/pair_tracker.hpp"
 
 namespace broadside::own {
 
-/// The tunable `update`.
-Tunable quadtree_update();
-
-/// `finder` is what finds all pairs anew where most boxes move.
-
+/// A tracker that keeps a tree whose leaves hold up to `capacity` boxes.
 template <int D>
-std::unique_ptr<PairTracker<D>> make_quadtree_tracker(const Settings& settings,
-                                                      std::unique_ptr<PairFinder<D>> finder);
+std::unique_ptr<PairTracker<D>> make_quadtree_tracker(std::uint32_t capacity);
+
+/// The capacity where none is given. Smaller than the finder's, which sweeps a leaf once for all of its
+/// boxes.
+inline constexpr std::uint32_t tracking_capacity = 32;
 
 }  // namespace broadside::own

@@ -181,6 +181,41 @@ void SweepOrder<D>::remove(std::size_t place) {
 }
 
 template <int D>
+std::uint64_t SweepOrder<D>::find_changes(const core::MovedBox<D>& moved, std::size_t near,
+                                          const core::ChangeSinks& sinks) const {
+  const Box<D>& before = moved.before;
+  const Box<D>& now = moved.now;
+  if (!moved.was_present) return find_changes(moved, now.min[0], now.max[0], near, sinks);
+  if (!moved.is_present) return find_changes(moved, before.min[0], before.max[0], near, sinks);
+  const float min = std::min(before.min[0], now.min[0]);
+  const float max = std::max(before.max[0], now.max[0]);
+  if (max - min <= 2 * ((before.max[0] - before.min[0]) + (now.max[0] - now.min[0])))
+    return find_changes(moved, min, max, near, sinks);
+  return find_changes(moved, before.min[0], before.max[0], near, sinks) +
+         find_changes(moved, now.min[0], now.max[0], near, sinks);
+}
+
+template <int D>
+std::uint64_t SweepOrder<D>::find_changes(const core::MovedBox<D>& moved, float min, float max,
+                                          std::size_t near, const core::ChangeSinks& sinks) const {
+  const std::size_t begin = find({min, BoxId(0)}, near);
+  const std::size_t end = std::max(begin, find_end(max, begin));
+  std::uint64_t tests = end - begin;
+  const std::size_t begin_block = begin / fan;
+  for (std::size_t high = 0; high * fan <= begin_block; ++high) {
+    if (!(high_reach_[high] >= min)) continue;
+    for (std::size_t block = high * fan; block <= std::min(begin_block, high * fan + fan - 1); ++block) {
+      if (block >= reach_.size() || !(reach_[block] >= min)) continue;
+      const std::size_t block_end = std::min(block * fan + fan, begin);
+      tests += block_end - block * fan;
+      kernels::find_changes(run_, block * fan, block_end, moved, sinks);
+    }
+  }
+  kernels::find_changes(run_, begin, end, moved, sinks);
+  return tests;
+}
+
+template <int D>
 std::size_t SweepOrder<D>::bytes() const noexcept {
   return arrays_.bytes() + other_.bytes() + (reach_.capacity() + high_reach_.capacity()) * sizeof(float);
 }

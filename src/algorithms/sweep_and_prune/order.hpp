@@ -11,7 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "kernels/toggle.hpp"
+#include "kernels/moved.hpp"
 
 namespace broadside::own {
 
@@ -70,27 +70,15 @@ class SweepOrder {
   /// Lets the box at `place` overlap nothing, until it is left out of a new order.
   void remove(std::size_t place);
 
-  /// Calls `visit` with each box whose overlap with the mover its step changes. `near` is a place near the
-  /// mover's. Returns how many boxes were compared.
-  template <typename Visit>
-  std::uint64_t find_toggles(const kernels::Mover<D>& mover, std::size_t near, Visit visit) {
-    const Box<D>& before = mover.before;
-    const Box<D>& now = mover.now;
-    if (!is_present(before)) return find_toggles(mover, now.min[0], now.max[0], near, visit);
-    if (!is_present(now)) return find_toggles(mover, before.min[0], before.max[0], near, visit);
-    const float min = std::min(before.min[0], now.min[0]);
-    const float max = std::max(before.max[0], now.max[0]);
-    if (max - min <= 2 * ((before.max[0] - before.min[0]) + (now.max[0] - now.min[0])))
-      return find_toggles(mover, min, max, near, visit);
-    return find_toggles(mover, before.min[0], before.max[0], near, visit) +
-           find_toggles(mover, now.min[0], now.max[0], near, visit);
-  }
+  /// Writes what the moved box, whose axes are in the sweep's order, begins to overlap or ceases to. `near`
+  /// is a place near its own. Returns how many boxes were compared.
+  std::uint64_t find_changes(const core::MovedBox<D>& moved, std::size_t near,
+                             const core::ChangeSinks& sinks) const;
 
   std::size_t bytes() const noexcept;
 
  private:
   static constexpr std::size_t fan = 64;  // boxes in a block, and blocks in a block of blocks
-  static constexpr std::size_t at_once = 1024;
 
   struct Arrays {
     std::array<std::vector<float>, D> min;
@@ -103,34 +91,8 @@ class SweepOrder {
   };
 
   /// Those among the boxes that may touch [min, max] on the swept axis.
-  template <typename Visit>
-  std::uint64_t find_toggles(const kernels::Mover<D>& mover, float min, float max, std::size_t near,
-                             Visit visit) {
-    const std::size_t begin = find({min, BoxId(0)}, near);
-    const std::size_t end = std::max(begin, find_end(max, begin));
-    std::uint64_t tests = end - begin;
-    const std::size_t begin_block = begin / fan;
-    for (std::size_t high = 0; high * fan <= begin_block; ++high) {
-      if (!(high_reach_[high] >= min)) continue;
-      for (std::size_t block = high * fan; block <= std::min(begin_block, high * fan + fan - 1); ++block) {
-        if (block >= reach_.size() || !(reach_[block] >= min)) continue;
-        const std::size_t block_end = std::min(block * fan + fan, begin);
-        tests += block_end - block * fan;
-        compare(mover, block * fan, block_end, visit);
-      }
-    }
-    compare(mover, begin, end, visit);
-    return tests;
-  }
-
-  template <typename Visit>
-  void compare(const kernels::Mover<D>& mover, std::size_t begin, std::size_t end, Visit visit) {
-    for (; begin < end; begin += at_once) {
-      const std::size_t count =
-          kernels::find_toggles(mover, run_, begin, std::min(begin + at_once, end), toggles_.data());
-      for (std::size_t i = 0; i < count; ++i) visit(toggles_[i]);
-    }
-  }
+  std::uint64_t find_changes(const core::MovedBox<D>& moved, float min, float max, std::size_t near,
+                             const core::ChangeSinks& sinks) const;
 
   std::size_t find_end(float max, std::size_t near) const;
   void take_other();
@@ -142,7 +104,6 @@ class SweepOrder {
   std::vector<float> reach_;
   std::vector<float> high_reach_;
   kernels::Run<D> run_{};
-  std::array<kernels::Toggle, at_once> toggles_{};
 
   std::array<std::vector<float>, D>& min_ = arrays_.min;
   std::array<std::vector<float>, D>& max_ = arrays_.max;

@@ -19,11 +19,13 @@
 #include "broadside/outline.hpp"
 
 #include "algorithms/descriptions.hpp"
-#include "algorithms/sweep_and_prune/cell_lists.hpp"
 #include "algorithms/sweep_and_prune/tracker.hpp"
+#include "core/cell_lists.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/sweep.hpp"
@@ -162,7 +164,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
     parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {
         for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
-          stripes_.file(stripe, static_cast<std::uint32_t>(i), number);
+          stripes_.append(stripe, static_cast<std::uint32_t>(i), number);
       }
     });
     const auto sweep = [&](core::Range stripes, std::size_t lane, PairSink& sink) {
@@ -210,7 +212,12 @@ std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
-  return make_sweep_and_prune_tracker<D>(settings, make<D>(settings));
+  const int axis = settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
+  return std::make_unique<core::AdaptiveTracker<D>>(
+      core::update_of(settings), make<D>(settings), core::sweep_finding<D>,
+      std::vector<core::Follower<D, float>>{{"sweep_and_prune",
+                                             [axis] { return make_sweep_and_prune_tracker<D>(axis); },
+                                             core::sweep_following<D>}});
 }
 
 }  // namespace
@@ -232,7 +239,7 @@ Algorithm sweep_and_prune() {
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"1", "2"}},
-                   sweep_and_prune_update(),
+                   core::update_tunable(),
                    core::threads_tunable()},
       .finder_2d = make<2>,
       .finder_3d = make<3>,

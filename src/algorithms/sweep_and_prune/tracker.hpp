@@ -1,19 +1,14 @@
-// Sweep and prune, frame after frame: see sweep_and_prune_tracker.cpp.
+// The tracker of sweep and prune.
 #pragma once
 
 #include <memory>
 
 #include "broadside/pair_tracker.hpp"
-#include "broadside/spec.hpp"
 
 namespace broadside::own {
 
-/// The tunable `update`: how trackers of sweep and prune keep the order.
-Tunable sweep_and_prune_update();
-
-/// A tracker of sweep and prune, whose finder is `finder`.
+/// A tracker that keeps boxes in the order of a sweep along `axis`, or along the best one where that is -1.
 template <int D>
-std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracker(const Settings& settings,
-                                                             std::unique_ptr<PairFinder<D>> finder);
+std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracker(int axis);
 
 }  // namespace broadside::own

@@ -167,7 +167,7 @@ class Followed {
 
   std::vector<Box3> boxes_;
   std::unique_ptr<PairTracker<3>> tracker_;
-  std::unique_ptr<PairTracker<3>> expected_ = make_tracker<3>("brute_force:update=changed");
+  std::unique_ptr<PairTracker<3>> expected_ = make_tracker<3>("brute_force:update=follow");
 };
 
 Box3 shifted(Box3 box, Random& random) {
@@ -190,7 +190,7 @@ TEST(AutoTrackerHandOver, TestsLessThanItsFirstFollowerInPlatesAndLines) {
         followed.move(100, random, [&](const Box3& box) { return shifted(box, random); });
       return followed.tracker().statistics()->tests;
     };
-    EXPECT_LT(tests_by("auto"), tests_by("hierarchical_grid") * 3 / 4);
+    EXPECT_LT(tests_by("auto"), tests_by("grid:update=follow") * 3 / 4);
   }
 }
 
@@ -206,7 +206,7 @@ TEST(AutoTrackerHandOver, MissesNoEventWhereBoxesChangeTheirCharacter) {
       followers += followed.tracker().explanation() + "\n";
     }
   }
-  EXPECT_THAT(followers, testing::HasSubstr("followed by hierarchical_grid"));
+  EXPECT_THAT(followers, testing::HasSubstr("followed by grid"));
   EXPECT_THAT(followers, testing::AnyOf(testing::HasSubstr("followed by quadtree"),
                                         testing::HasSubstr("followed by bvh")));
 }

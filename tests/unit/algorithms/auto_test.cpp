@@ -104,7 +104,7 @@ TEST(AutoTracker, ComparesFewBoxesAndKeepsThemForSomeMore) {
 TEST(AutoTracker, MissesNoEventWhereBoxesBecomeFewOrMany) {
   std::mt19937 random(7);
   const auto automatic = make_tracker<2>("auto");
-  const auto expected = make_tracker<2>("brute_force:update=all");
+  const auto expected = make_tracker<2>("brute_force:update=rebuild");
   std::vector<Box2> boxes;
   for (const std::size_t count : {300, 300, 500, 500, 500, 300, 280, 280, 390, 450, 450, 0, 310, 700, 20}) {
     std::vector<BoxId> changed;

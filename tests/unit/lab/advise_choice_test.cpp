@@ -271,8 +271,8 @@ TEST(Changes, TellFromWhichFractionOnFollowingDoesNotPay) {
   advice.ranking[1].measurement.peak_bytes.reset();
   advice.mode = Mode::track;
   advice.signals.motion = MotionSignals{.frames = 10, .moving = 0.1};
-  advice.ranking[0].measurement.algorithm = "auto:way=incremental";
-  advice.ranking[1].measurement.algorithm = "auto:way=rebuild";
+  advice.ranking[0].measurement.algorithm = "auto:update=follow";
+  advice.ranking[1].measurement.algorithm = "auto:update=rebuild";
   EXPECT_THAT(changes_of(advice), Contains(HasSubstr("from about 31 % moving on")));
 }
 

@@ -50,7 +50,7 @@ TEST(Snippet, IsWhatIsCompiledHere) {
   EXPECT_EQ(snippet("grid:cell=2.5", Mode::find, 2, single), pasted("find_2d"));
   EXPECT_EQ(snippet("auto", Mode::find, 3, single), pasted("find_3d"));
   EXPECT_EQ(snippet("bvh", Mode::find, 2, twice), pasted("find_double_2d"));
-  EXPECT_EQ(snippet("sweep_and_prune:update=merge", Mode::track, 2, single), pasted("track_2d"));
+  EXPECT_EQ(snippet("sweep_and_prune:update=follow", Mode::track, 2, single), pasted("track_2d"));
   EXPECT_EQ(snippet("auto", Mode::track, 3, twice), pasted("track_double_3d"));
   EXPECT_EQ(snippet("mine:axis=x", Mode::find, 2, single), pasted("find_mine"));
   EXPECT_EQ(snippet("mine", Mode::track, 3, twice), pasted("track_mine"));

@@ -62,11 +62,10 @@ TEST(Variants, AreOfTunablesThatTheUserLeftOpen) {
   EXPECT_THAT(variants_of(catalogue.select("grid:cell=3")[0], signals), IsEmpty());
   EXPECT_THAT(texts(variants_of(catalogue.select("sweep_and_prune")[0], signals)),
               AllOf(Contains("sweep_and_prune:axis=y"), Not(Contains("sweep_and_prune:axis=z"))));
-  EXPECT_THAT(variants_of(catalogue.select("hierarchical_grid")[0], signals), IsEmpty());
   EXPECT_THAT(variants_of(catalogue.select("paper_grid")[0], signals), IsEmpty());
   signals.motion = MotionSignals{};
   EXPECT_THAT(texts(variants_of(catalogue.select("grid:threads=2")[0], signals)),
-              Contains("grid:threads=2:update=translate"));
+              Contains("grid:threads=2:update=follow"));
 }
 
 TEST(Advise, MeasuresBoxesOfDoublesInDouble) {
@@ -89,7 +88,7 @@ TEST(Advise, MeasuresMotionAndTriesBothWaysOfAuto) {
   EXPECT_THAT(advice.snippet, HasSubstr("World3"));
   std::vector<std::string> specs;
   for (const Ranked& ranked : advice.ranking) specs.push_back(ranked.measurement.algorithm);
-  EXPECT_THAT(specs, AllOf(Contains("auto:way=rebuild"), Contains("auto:way=incremental"), Contains("bvh")));
+  EXPECT_THAT(specs, AllOf(Contains("auto:update=rebuild"), Contains("auto:update=follow"), Contains("bvh")));
 }
 
 TEST(Advise, MeasuresAPartOfALongHistoryFromItsMiddle) {

@@ -1,7 +1,7 @@
-// Lists of boxes by cell, filed by counting: each list is one stretch of one array.
+// CellLists: lists of boxes by cell, made by counting: each list is one stretch of one array.
 //
-// Several threads may count and file at once, each for a range of the items: ranges have counts of their own,
-// and in a list the items of one range stand before those of the next.
+// Several threads may count and append at once, each for a range of the items: ranges have counts of their
+// own, and in a list the items of one range stand before those of the next.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,11 @@
 #include <span>
 #include <vector>
 
+#include "core/prefix_sum.hpp"
+
 namespace broadside::core {
 
-/// Use: reset(), count() every reference, prepare(), file() the same references, then read the lists.
+/// Use: reset(), count() every reference, prepare(), append() the same references, then read the lists.
 class CellLists {
  public:
   /// Memory: 8 bytes for each cell and range.
@@ -22,28 +24,18 @@ class CellLists {
 
   void count(std::size_t cell, std::size_t range = 0) { ++ends_[range * cells_ + cell]; }
 
-  /// How many references to the cell were counted; only before prepare(), and where there is one range.
-  std::size_t counted(std::size_t cell) const { return ends_[cell]; }
-
   /// Makes room for what was counted.
   void prepare() {
-    std::size_t total = 0;
-    for (std::size_t cell = 0; cell < cells_; ++cell) {
-      for (std::size_t at = cell; at < ends_.size(); at += cells_) {
-        const std::size_t count = ends_[at];
-        ends_[at] = total;
-        total += count;
-      }
-    }
+    const std::size_t total = prefix_sum(std::span<std::size_t>(ends_), cells_);
     items_.resize(total);
   }
 
   /// Appends `item` to the cell's list, or to the range's part of it.
-  void file(std::size_t cell, std::uint32_t item, std::size_t range = 0) {
+  void append(std::size_t cell, std::uint32_t item, std::size_t range = 0) {
     items_[ends_[range * cells_ + cell]++] = item;
   }
 
-  /// The cell's list; only after everything was filed.
+  /// The cell's list; only after everything was appended.
   std::span<const std::uint32_t> list(std::size_t cell) const {
     const std::size_t* const ends = ends_.data() + ends_.size() - cells_;  // the last range's
     const std::size_t begin = cell == 0 ? 0 : ends[cell - 1];

@@ -1,5 +1,5 @@
 // How many levels there are, and how long their cells.
-#include "algorithms/hierarchical_grid/levels.hpp"
+#include "algorithms/grid/levels.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -7,11 +7,14 @@
 namespace broadside::own {
 namespace {
 
-/// So many boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
+/// Boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
 constexpr double boxes_a_cell = 10;
 
-/// Beyond so many others in its cell, a typical box is in a crowd that smaller cells would disperse.
-constexpr double crowded = 40;
+/// Where cells are asked for by their size, there may be this many for each box.
+constexpr double most_cells_a_box = 4;
+
+/// With more others in a typical box's cell, smaller cells pay.
+constexpr double max_load_factor = 40;
 
 constexpr std::size_t most_sampled = 1024;
 
@@ -26,7 +29,7 @@ std::size_t whole_root(std::size_t count) {
 }  // namespace
 
 template <int D>
-void HierarchicalGridLevels<D>::choose(std::span<const Box<D>> like) {
+void CellLevels<D>::choose(std::span<const Box<D>> like) {
   sampled_.clear();
   const std::size_t tries = std::min(like.size(), 4 * most_sampled);
   for (std::size_t i = 0; i < tries && sampled_.size() < most_sampled; ++i) {
@@ -61,7 +64,7 @@ void HierarchicalGridLevels<D>::choose(std::span<const Box<D>> like) {
 
 /// How many boxes there are on each level, and how long they are.
 template <int D>
-void HierarchicalGridLevels<D>::measure(std::span<const Box<D>> like) {
+void CellLevels<D>::measure(std::span<const Box<D>> like) {
   for (Level& level : levels_) level.extent = {};
   expected_.fill(0);
   factor_.fill(0);
@@ -82,13 +85,13 @@ void HierarchicalGridLevels<D>::measure(std::span<const Box<D>> like) {
 }
 
 template <int D>
-std::uint32_t HierarchicalGridLevels<D>::lay_out() {
+std::uint32_t CellLevels<D>::lay_out() {
   std::uint32_t cells = 0;
   for (std::size_t level = 0; level < count_; ++level) {
     lay_out_level(level);
     levels_[level].first_cell = cells;
     std::uint32_t count = 1;
-    for (int axis = 0; axis < D; ++axis) count *= static_cast<std::uint32_t>(levels_[level].last[axis]) + 1;
+    for (int axis = 0; axis < D; ++axis) count *= levels_[level].axes[axis].count();
     cells += count;
   }
   return cells;
@@ -97,7 +100,7 @@ std::uint32_t HierarchicalGridLevels<D>::lay_out() {
 /// Sets the cells of a level: as many as suit its boxes, but none shorter than they are; smaller ones from
 /// call to call, where disperse_crowds() has said so.
 template <int D>
-void HierarchicalGridLevels<D>::lay_out_level(std::size_t index) {
+void CellLevels<D>::lay_out_level(std::size_t index) {
   Level& level = levels_[index];
   const bool is_last = index + 1 == count_;
   std::array<double, D> range;
@@ -119,19 +122,26 @@ void HierarchicalGridLevels<D>::lay_out_level(std::size_t index) {
     for (const double count : counts) all *= count;
     return all;
   };
-  if (factor_[index] == 0) {
+  if (cell_ && !is_last) {
+    double asked = *cell_;
+    for (std::size_t i = 0; i < index; ++i) asked *= level_ratio;
+    for (double& side : length) side = asked;
+  }
+  const double most = std::max(1.0, expected_[index] * (cell_ ? most_cells_a_box : 1 / boxes_a_cell));
+  if (factor_[index] == 0 || cell_) {
     double factor = 1;
-    while (product(cells(factor)) > std::max(1.0, expected_[index] / boxes_a_cell)) factor *= 1.125;
+    while (product(cells(factor)) > most) factor *= 1.125;
     factor_[index] = factor;
   }
   const std::array<double, D> counts = cells(factor_[index]);
   std::uint32_t stride = 1;
   for (int axis = 0; axis < D; ++axis) {
     const double side = counts[axis] > 1 ? range[axis] / counts[axis] : 0;
-    level.low[axis] = sample_[axis].low;
-    level.inverse[axis] =
-        side > 0 ? static_cast<float>(std::min<double>(1 / side, std::numeric_limits<float>::max())) : 0;
-    level.last[axis] = static_cast<float>(counts[axis] - 1);
+    level.axes[axis] = {
+        .low = sample_[axis].low,
+        .per_unit =
+            side > 0 ? static_cast<float>(std::min<double>(1 / side, std::numeric_limits<float>::max())) : 0,
+        .last = static_cast<float>(counts[axis] - 1)};
     level.stride[axis] = stride;
     stride *= static_cast<std::uint32_t>(counts[axis]);
     if (index == 0) smallest_[axis] = static_cast<float>(side);
@@ -139,9 +149,9 @@ void HierarchicalGridLevels<D>::lay_out_level(std::size_t index) {
 }
 
 template <int D>
-bool HierarchicalGridLevels<D>::disperse_crowds(std::span<const std::uint32_t> counts) {
+bool CellLevels<D>::disperse_crowds(std::span<const std::uint32_t> counts) {
   bool any = false;
-  for (std::size_t index = 0; index + 1 < count_; ++index) {
+  for (std::size_t index = 0; index + 1 < count_ && !cell_; ++index) {
     const std::size_t end = index + 1 < count_ ? levels_[index + 1].first_cell : counts.size();
     double boxes = 0;
     double met = 0;
@@ -151,14 +161,14 @@ bool HierarchicalGridLevels<D>::disperse_crowds(std::span<const std::uint32_t> c
       met += count * count;
     }
     const auto cells = static_cast<double>(end - levels_[index].first_cell);
-    if (met <= crowded * boxes || factor_[index] <= 1 || cells > boxes / 2) continue;
+    if (met <= max_load_factor * boxes || factor_[index] <= 1 || cells > boxes / 2) continue;
     factor_[index] = std::max(1.0, factor_[index] / (D == 2 ? 2 : 1.6));
     any = true;
   }
   return any;
 }
 
-template class HierarchicalGridLevels<2>;
-template class HierarchicalGridLevels<3>;
+template class CellLevels<2>;
+template class CellLevels<3>;
 
 }  // namespace broadside::own

@@ -1,4 +1,5 @@
-// The levels of a hierarchical grid: cells of one length each, for boxes of about one size.
+// CellLevels: the levels of a hierarchical grid, cells of one length each, for boxes of about one size
+// (C. Ericson, Real-Time Collision Detection, 7.2).
 #pragma once
 
 #include <algorithm>
@@ -7,20 +8,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "broadside/box.hpp"
 
 #include "core/sample.hpp"
-#include "kernels/cell_blocks.hpp"
+#include "kernels/moved.hpp"
 
 namespace broadside::own {
 
 /// The last level is one cell: it is for boxes that are about as long as all is.
 template <int D>
-class HierarchicalGridLevels {
+class CellLevels {
  public:
+  /// Cells of the first level are `cell` wide, those of each further one four times as wide; or as suits the
+  /// boxes.
+  explicit CellLevels(std::optional<double> cell) : cell_(cell) {}
+
   using Level = kernels::CellLevel<D>;
 
   /// Chooses levels that suit `like`. O(n).
@@ -78,6 +84,7 @@ class HierarchicalGridLevels {
   void measure(std::span<const Box<D>> like);
   void lay_out_level(std::size_t level);
 
+  std::optional<double> cell_;
   core::Sample<D> sample_;
   std::vector<Box<D>> sampled_;
   std::array<float, D> typical_{};  // lengths of boxes, or more where they lie further apart

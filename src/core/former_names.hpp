@@ -1,0 +1,18 @@
+// Names of earlier versions, so that old specs and results are understood, or refused with the reason.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace broadside::core {
+
+/// What an algorithm of that name is called now; the name itself where it is no former one.
+std::string_view current_algorithm(std::string_view name) noexcept;
+
+/// What became of a value that a tunable once had, as the end of an error message; empty if it never had it.
+std::string former_value(std::string_view tunable, std::string_view value);
+
+/// What became of a tunable that algorithms once had, likewise.
+std::string former_tunable(std::string_view tunable);
+
+}  // namespace broadside::core

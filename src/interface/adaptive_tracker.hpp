@@ -1,0 +1,68 @@
+// AdaptiveTracker: follows what changed in a structure that stays, or finds all pairs anew, whichever costs
+// less in this frame.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadside/pair_finder.hpp"
+#include "broadside/pair_tracker.hpp"
+
+#include "interface/follow_policy.hpp"
+
+namespace broadside::core {
+
+/// A structure that follows boxes: a tracker that does nothing else.
+template <int D, typename Real>
+struct Follower {
+  std::string_view name;
+  std::function<std::unique_ptr<PairTracker<D, Real>>()> make;
+  FollowCosts costs;
+};
+
+/// One structure is kept at a time; where there are several, another takes over when the first makes many
+/// tests.
+template <int D, typename Real = float>
+class AdaptiveTracker final : public PairTracker<D, Real> {
+ public:
+  /// All are of the library: what finds all pairs; what may follow boxes, at least one; and what does all of
+  /// it where boxes are few, or null for none.
+  AdaptiveTracker(Update update, std::unique_ptr<PairFinder<D, Real>> finder, const FindCosts& finding,
+                  std::vector<Follower<D, Real>> followers,
+                  std::unique_ptr<PairTracker<D, Real>> for_few = nullptr);
+
+  std::string explanation() const override;
+
+ private:
+  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
+  void workers_changed() override { finder_->set_workers(this->workers()); }
+  std::size_t algorithm_bytes() const noexcept override;
+
+  bool are_few(std::size_t boxes) const;
+  void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void start_following(std::span<const Box<D, Real>> boxes);
+  void try_out(std::span<const Box<D, Real>> boxes);
+  PairTracker<D, Real>& follower();
+
+  std::unique_ptr<PairFinder<D, Real>> finder_;
+  std::vector<Follower<D, Real>> followers_;
+  std::unique_ptr<PairTracker<D, Real>> for_few_;  // null: none
+  FollowPolicy policy_;
+  std::unique_ptr<PairTracker<D, Real>> follower_;  // null: none was needed yet
+  std::size_t follower_number_ = 0;
+
+  bool were_few_ = false;      // whether for_few_ has the boxes of the last frame
+  bool was_followed_ = false;  // whether the last frame was
+  std::size_t changed_ = 0;    // of the last update
+  std::vector<Pair> pairs_;    // those of the frame before, if has_pairs_
+  std::vector<Pair> found_;
+  bool has_pairs_ = false;
+};
+
+}  // namespace broadside::core

@@ -1,0 +1,60 @@
+// What the algorithms cost that follow boxes: the tuned numbers of FollowPolicy, in one table.
+//
+// In nanoseconds of one machine; only ratios within an algorithm matter. `ways` of bench/motion shows what
+// comes of them: auto over the better of following and finding anew, 0.1 to 100 % of the boxes moving, and a
+// line an algorithm with --algorithms. Measured with 10,000 to 100,000 boxes, uniform, mixed and clustered;
+// the share of moving boxes from which finding anew is not slower is 0.45 for brute force, 0.3 (2D) and 0.2
+// (3D) for trees and cells, and about 500 / (4000 + tests) for a sweep.
+#pragma once
+
+#include "interface/follow_policy.hpp"
+
+namespace broadside::core {
+
+inline constexpr FindCosts brute_force_finding = {.box = 40};
+inline constexpr FollowCosts brute_force_following = {
+    .start = 1, .mover = 65, .mover_alone = 30, .test = 0.55, .further_test = 0.55};
+
+/// Also what auto's own finding costs.
+template <int D>
+inline constexpr FindCosts grid_finding = {.box = D == 2 ? 40.0 : 65.0};
+template <int D>
+inline constexpr FollowCosts grid_following = {.start = D == 2 ? 15 : 18,
+                                               .mover = D == 2 ? 110 : 140,
+                                               .mover_alone = D == 2 ? 110 : 140,
+                                               .test = 1.8,
+                                               .further_test = 0.8};
+
+template <int D>
+inline constexpr FindCosts sweep_finding = {.box = D == 2 ? 40.0 : 65.0, .further_test = 0.1};
+template <int D>
+inline constexpr FollowCosts sweep_following = {.start = 50,
+                                                .mover = D == 2 ? 340 : 560,
+                                                .mover_alone = D == 2 ? 320 : 520,
+                                                .test = 0.08,
+                                                .further_test = 0.08};
+
+template <int D>
+inline constexpr FindCosts tree_finding = {.box = D == 2 ? 40.0 : 65.0};
+template <int D>
+inline constexpr FollowCosts quadtree_following = {.start = 100,
+                                                   .mover = D == 2 ? 133 : 325,
+                                                   .mover_alone = D == 2 ? 80 : 200,
+                                                   .test = 1.2,
+                                                   .further_test = 1.2};
+template <int D>
+inline constexpr FollowCosts bvh_following = {.start = 100,
+                                              .mover = D == 2 ? 133 : 260,
+                                              .mover_alone = D == 2 ? 80 : 170,
+                                              .test = 0.9,
+                                              .further_test = 0.9};
+
+/// To auto, which finds anew by whatever costs least, trees are worth it where the grid's cells make some
+/// five hundred tests a mover: measured with 50,000 boxes, one in a hundred moving, in stacks of plates,
+/// lines and clusters.
+inline constexpr FollowCosts quadtree_following_for_auto = {
+    .start = 300, .mover = 600, .mover_alone = 300, .test = 2, .further_test = 2};
+inline constexpr FollowCosts bvh_following_for_auto = {
+    .start = 100, .mover = 600, .mover_alone = 300, .test = 0.9, .further_test = 0.9};
+
+}  // namespace broadside::core

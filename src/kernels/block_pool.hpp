@@ -1,0 +1,136 @@
+// BlockPool: blocks of sixteen boxes in chains, for structures that stay from frame to frame.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "kernels/block.hpp"
+
+namespace broadside::kernels {
+
+/// What is known of a block without looking into it.
+struct BlockHead {
+  std::uint32_t next;   ///< the next block of the same chain, or no_slot
+  std::uint32_t owner;  ///< whose chain it is: a cell's or a node's number
+  std::uint16_t used;   ///< bit i: lane i holds a box
+  std::uint16_t
+      moving;  ///< bit i: the box of lane i moves in this update, its bounds cover where it was and is
+};
+
+/// All blocks, by number.
+template <int D>
+struct BlocksView {
+  const BlockHead* heads;
+  const Block<D>* blocks;
+};
+
+/// A chain is named by its first block. A slot is a block and a lane: 16 * block + lane.
+template <int D>
+class BlockPool {
+ public:
+  static constexpr std::uint32_t width = block_size;
+  static constexpr std::uint16_t all_used = 0xffff;
+
+  BlocksView<D> view() const { return {heads_.data(), blocks_.data()}; }
+  const BlockHead& head(std::uint32_t block) const { return heads_[block]; }
+  bool is_full(std::uint32_t block) const { return heads_[block].used == all_used; }
+
+  /// A new block, without boxes, in front of the chain `first`.
+  void add_block(std::uint32_t& first, std::uint32_t owner) {
+    std::uint32_t block = static_cast<std::uint32_t>(blocks_.size());
+    if (free_.empty()) {
+      if (blocks_.size() == blocks_.capacity()) reserve(blocks_.size());
+      heads_.emplace_back();
+      blocks_.emplace_back();
+    } else {
+      block = free_.back();
+      free_.pop_back();
+    }
+    heads_[block] = {first, owner, 0, 0};
+    blocks_[block].clear();
+    first = block;
+  }
+
+  /// Takes a block, whose boxes count no longer, out of the chain `first`.
+  void remove_block(std::uint32_t& first, std::uint32_t block) {
+    std::uint32_t* link = &first;
+    while (*link != block) link = &heads_[*link].next;
+    *link = heads_[block].next;
+    heads_[block] = {no_slot, no_slot, 0, 0};
+    free_.push_back(block);
+  }
+
+  /// Puts a box into the first lane of the block that is free. Its slot.
+  std::uint32_t insert(std::uint32_t block, const Box<D>& box, BoxId id) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_one(heads_[block].used));
+    const std::uint32_t slot = block * width + lane;
+    put(slot, box, id);
+    return slot;
+  }
+
+  /// Puts a box into a free slot.
+  void put(std::uint32_t slot, const Box<D>& box, BoxId id) {
+    heads_[slot / width].used = static_cast<std::uint16_t>(heads_[slot / width].used | bit(slot));
+    blocks_[slot / width].id[slot % width] = index(id);
+    set(slot, box);
+  }
+
+  /// Empties a slot.
+  void erase(std::uint32_t slot) {
+    heads_[slot / width].used = static_cast<std::uint16_t>(heads_[slot / width].used & ~bit(slot));
+    unmark(slot);
+    set(slot, nan_box<D>());
+  }
+
+  Box<D> box(std::uint32_t slot) const { return blocks_[slot / width].box(slot % width); }
+  BoxId id(std::uint32_t slot) const { return BoxId{blocks_[slot / width].id[slot % width]}; }
+  void set(std::uint32_t slot, const Box<D>& box) { blocks_[slot / width].set(slot % width, box); }
+
+  /// Says that the box of a slot moves, or no longer does.
+  void mark(std::uint32_t slot) {
+    heads_[slot / width].moving = static_cast<std::uint16_t>(heads_[slot / width].moving | bit(slot));
+  }
+  void unmark(std::uint32_t slot) {
+    heads_[slot / width].moving = static_cast<std::uint16_t>(heads_[slot / width].moving & ~bit(slot));
+  }
+  bool is_marked(std::uint32_t slot) const { return (heads_[slot / width].moving & bit(slot)) != 0; }
+
+  /// Memory for an eighth more blocks than `count`. They are the most of what a structure keeps: twice as
+  /// many, as a vector takes by itself, would be too many.
+  void reserve(std::size_t count) {
+    constexpr std::size_t spare = 16;
+    heads_.reserve(count + count / 8 + spare);
+    blocks_.reserve(count + count / 8 + spare);
+  }
+
+  /// Drops all blocks, and gives memory back that far exceeds what was in use.
+  void clear() {
+    if (blocks_.capacity() > 4 * (blocks_.size() - free_.size()) + 1024) {
+      heads_ = {};
+      blocks_ = {};
+    }
+    heads_.clear();
+    blocks_.clear();
+    free_.clear();
+  }
+
+  std::size_t bytes() const noexcept {
+    return heads_.capacity() * sizeof(BlockHead) + blocks_.capacity() * sizeof(Block<D>) +
+           free_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  static constexpr std::uint32_t bit(std::uint32_t slot) { return 1U << slot % width; }
+
+  std::vector<BlockHead> heads_;
+  std::vector<Block<D>> blocks_;
+  std::vector<std::uint32_t> free_;
+};
+
+}  // namespace broadside::kernels
