@@ -10,50 +10,17 @@
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <utility>
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/broadcast_box.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, block_size>;
-
-/// The elements of a vector, sixteen of which are one or several.
-constexpr std::size_t lanes = hn::MaxLanes(Floats());
-
-/// A bit for each of a block's boxes that `box` overlaps, from `at` on. None if it is NaN, and none that is.
-template <int D>
-HWY_INLINE std::uint32_t touching(const Box<D>& box, const CellBlock<D>& block, std::size_t at) {
-  const Floats floats;
-  auto hits = hn::Le(hn::Load(floats, block.min[0].data() + at), hn::Set(floats, box.max[0]));
-  hits = hn::And(hits, hn::Ge(hn::Load(floats, block.max[0].data() + at), hn::Set(floats, box.min[0])));
-  for (int axis = 1; axis < D; ++axis) {
-    hits =
-        hn::And(hits, hn::Le(hn::Load(floats, block.min[axis].data() + at), hn::Set(floats, box.max[axis])));
-    hits =
-        hn::And(hits, hn::Ge(hn::Load(floats, block.max[axis].data() + at), hn::Set(floats, box.min[axis])));
-  }
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(floats, hits, bytes.data());
-  std::uint16_t bits;
-  std::memcpy(&bits, bytes.data(), sizeof bits);  // the lowest one first, as all machines that we know do
-  return bits;
-}
-
-/// The same for the whole block.
-template <int D>
-HWY_INLINE std::uint32_t touching(const Box<D>& box, const CellBlock<D>& block) {
-  std::uint32_t bits = 0;
-  for (std::size_t at = 0; at < block_size; at += lanes) bits |= touching(box, block, at) << at;
-  return bits;
-}
-
 /// What is asked of a block: `Changes` or `Later`. `hits()` gives a bit for each of its boxes that counts,
 /// and `write()` writes those.
 template <int D>
@@ -66,12 +33,12 @@ struct Changes {
     std::uint16_t candidates;
   };
 
-  HWY_INLINE bool hits(const CellQuery<D>& query, const BlockHead& head, const CellBlock<D>& block,
+  HWY_INLINE bool hits(const MovedBox<D>& query, const BlockHead& head, const Block<D>& block,
                        Found& found) const {
-    const std::uint32_t was = touching(query.before, block);
-    const std::uint32_t is = touching(query.now, block);
-    const std::uint32_t own = query.place / block_size == found.block ? 1U << query.place % block_size : 0;
-    const std::uint32_t unknown = query.all ? 0xffffU : head.moving;
+    const std::uint32_t was = BroadcastBox<D>(query.before).overlaps(block);
+    const std::uint32_t is = BroadcastBox<D>(query.now).overlaps(block);
+    const std::uint32_t own = query.slot / block_size == found.block ? 1U << query.slot % block_size : 0;
+    const std::uint32_t unknown = query.filter_changed ? 0xffffU : head.moving;
     const std::uint32_t candidates = (was | is) & unknown & ~own;
     const std::uint32_t begun = is & ~was & ~unknown;
     const std::uint32_t ended = was & ~is & ~unknown;
@@ -81,20 +48,20 @@ struct Changes {
     return (begun | ended | candidates) != 0;
   }
 
-  void write(BoxId id, const CellBlock<D>& block, const Found& found) const {
+  void write(BoxId id, const Block<D>& block, const Found& found) const {
     write(id, block, found.begun, sinks.begun);
     write(id, block, found.ended, sinks.ended);
     write(id, block, found.candidates, sinks.candidates);
   }
 
-  void write(BoxId id, const CellBlock<D>& block, std::uint32_t bits, PairSink& sink) const {
+  void write(BoxId id, const Block<D>& block, std::uint32_t bits, PairSink& sink) const {
     for (; bits != 0; bits &= bits - 1) {
-      const BoxId other = block.id[static_cast<std::size_t>(std::countr_zero(bits))];
+      const BoxId other{block.id[static_cast<std::size_t>(std::countr_zero(bits))]};
       if (other != id) (sinks.moves[index(other)] != 0 ? sinks.candidates : sink).add(id, other);
     }
   }
 
-  static const Box<D>& near(const CellQuery<D>& query) { return query.bounds; }
+  static const Box<D>& near(const MovedBox<D>& query) { return query.bounds; }
 
   const CellSinks& sinks;
 };
@@ -107,20 +74,20 @@ struct Later {
     std::uint32_t hits;
   };
 
-  HWY_INLINE bool hits(const CellQuery<D>& query, const BlockHead&, const CellBlock<D>& block,
+  HWY_INLINE bool hits(const MovedBox<D>& query, const BlockHead&, const Block<D>& block,
                        Found& found) const {
-    found.hits = touching(query.now, block);
+    found.hits = BroadcastBox<D>(query.now).overlaps(block);
     return found.hits != 0;
   }
 
-  void write(BoxId id, const CellBlock<D>& block, const Found& found) const {
+  void write(BoxId id, const Block<D>& block, const Found& found) const {
     for (std::uint32_t bits = found.hits; bits != 0; bits &= bits - 1) {
-      const BoxId other = block.id[static_cast<std::size_t>(std::countr_zero(bits))];
+      const BoxId other{block.id[static_cast<std::size_t>(std::countr_zero(bits))]};
       if (id < other) pairs.add(id, other);
     }
   }
 
-  static const Box<D>& near(const CellQuery<D>& query) { return query.now; }
+  static const Box<D>& near(const MovedBox<D>& query) { return query.now; }
 
   PairSink& pairs;
 };
@@ -128,7 +95,7 @@ struct Later {
 template <int D, typename Question>
 class Search {
  public:
-  Search(const CellsView<D>& cells, std::span<const CellQuery<D>> queries, const Question& question)
+  Search(const CellsView<D>& cells, std::span<const MovedBox<D>> queries, const Question& question)
       : cells_(cells), queries_(queries), question_(question) {}
 
   CellWork run() {
@@ -187,8 +154,8 @@ class Search {
       }
       const std::uint32_t block = cells_.first[place];
       entries_[listed_] = {query, block};
-      listed_ += static_cast<std::size_t>(counts & (block != no_block));
-      call_for(block == no_block ? 0 : block);
+      listed_ += static_cast<std::size_t>(counts & (block != no_slot));
+      call_for(block == no_slot ? 0 : block);
     }
   }
 
@@ -200,7 +167,7 @@ class Search {
         const std::uint32_t begin = cell + row * level.stride[1] + (D == 2 ? 0 : plane * level.stride[D - 1]);
         for (std::uint32_t place = begin; place < begin + count[0]; ++place) {
           const std::uint32_t block = cells_.first[place];
-          if (block == no_block) continue;
+          if (block == no_slot) continue;
           if (listed_ == most_listed) compare();
           entries_[listed_++] = {query, block};
           call_for(block);
@@ -221,8 +188,8 @@ class Search {
   /// Compares what is listed.
   HWY_NOINLINE void compare() {
     const BlockHead* const heads = cells_.heads;
-    const CellBlock<D>* const blocks = cells_.blocks;
-    const CellQuery<D>* const queries = queries_.data();
+    const Block<D>* const blocks = cells_.blocks;
+    const MovedBox<D>* const queries = queries_.data();
     const std::size_t listed = std::exchange(listed_, 0);
     std::size_t found = 0;
     std::uint64_t tests = 0;
@@ -240,7 +207,7 @@ class Search {
         found += static_cast<std::size_t>(question_.hits(queries[query], head, blocks[block], found_[found]));
         if (HWY_UNLIKELY(found == most_listed)) write(std::exchange(found, 0));
         block = next;
-      } while (HWY_UNLIKELY(block != no_block));
+      } while (HWY_UNLIKELY(block != no_slot));
     }
     write(found);
     work_.tests += tests;
@@ -255,7 +222,7 @@ class Search {
   static constexpr std::size_t most_listed = 128;
 
   const CellsView<D>& cells_;
-  std::span<const CellQuery<D>> queries_;
+  std::span<const MovedBox<D>> queries_;
   Question question_;
   CellWork work_;
   std::size_t listed_ = 0;
@@ -263,18 +230,18 @@ class Search {
   std::array<Found, most_listed> found_;
 };
 
-CellWork find_changes_2d(const CellsView<2>& cells, std::span<const CellQuery<2>> queries,
+CellWork find_changes_2d(const CellsView<2>& cells, std::span<const MovedBox<2>> queries,
                          const CellSinks& sinks) {
   return Search<2, Changes<2>>(cells, queries, {sinks}).run();
 }
-CellWork find_changes_3d(const CellsView<3>& cells, std::span<const CellQuery<3>> queries,
+CellWork find_changes_3d(const CellsView<3>& cells, std::span<const MovedBox<3>> queries,
                          const CellSinks& sinks) {
   return Search<3, Changes<3>>(cells, queries, {sinks}).run();
 }
-CellWork find_later_2d(const CellsView<2>& cells, std::span<const CellQuery<2>> queries, PairSink& pairs) {
+CellWork find_later_2d(const CellsView<2>& cells, std::span<const MovedBox<2>> queries, PairSink& pairs) {
   return Search<2, Later<2>>(cells, queries, {pairs}).run();
 }
-CellWork find_later_3d(const CellsView<3>& cells, std::span<const CellQuery<3>> queries, PairSink& pairs) {
+CellWork find_later_3d(const CellsView<3>& cells, std::span<const MovedBox<3>> queries, PairSink& pairs) {
   return Search<3, Later<3>>(cells, queries, {pairs}).run();
 }
 
@@ -291,24 +258,24 @@ HWY_EXPORT(find_later_2d);
 HWY_EXPORT(find_later_3d);
 
 template <>
-CellWork find_changes(const CellsView<2>& cells, std::span<const CellQuery<2>> queries,
+CellWork find_changes(const CellsView<2>& cells, std::span<const MovedBox<2>> queries,
                       const CellSinks& sinks) {
   return HWY_DYNAMIC_DISPATCH(find_changes_2d)(cells, queries, sinks);
 }
 
 template <>
-CellWork find_changes(const CellsView<3>& cells, std::span<const CellQuery<3>> queries,
+CellWork find_changes(const CellsView<3>& cells, std::span<const MovedBox<3>> queries,
                       const CellSinks& sinks) {
   return HWY_DYNAMIC_DISPATCH(find_changes_3d)(cells, queries, sinks);
 }
 
 template <>
-CellWork find_later(const CellsView<2>& cells, std::span<const CellQuery<2>> queries, PairSink& pairs) {
+CellWork find_later(const CellsView<2>& cells, std::span<const MovedBox<2>> queries, PairSink& pairs) {
   return HWY_DYNAMIC_DISPATCH(find_later_2d)(cells, queries, pairs);
 }
 
 template <>
-CellWork find_later(const CellsView<3>& cells, std::span<const CellQuery<3>> queries, PairSink& pairs) {
+CellWork find_later(const CellsView<3>& cells, std::span<const MovedBox<3>> queries, PairSink& pairs) {
   return HWY_DYNAMIC_DISPATCH(find_later_3d)(cells, queries, pairs);
 }
 

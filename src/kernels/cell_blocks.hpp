@@ -10,27 +10,15 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-namespace broadside::kernels {
+#include "kernels/block.hpp"
 
-/// How many boxes a block has room for: so many are compared at once.
-inline constexpr std::size_t block_size = 16;
+namespace broadside::kernels {
 
 inline constexpr std::size_t most_cell_levels = 8;
 
-/// Where there is no block.
-inline constexpr std::uint32_t no_block = 0xffffffffU;
-
-/// Sixteen boxes, as a structure of arrays. Where there is none its minima are NaN.
-template <int D>
-struct alignas(64) CellBlock {
-  std::array<std::array<float, block_size>, D> min;
-  std::array<std::array<float, block_size>, D> max;
-  std::array<BoxId, block_size> id;
-};
-
 /// What is known of a block without looking into it.
 struct BlockHead {
-  std::uint32_t next;  ///< the next block of the same cell, or no_block
+  std::uint32_t next;  ///< the next block of the same cell, or no_slot
   std::uint32_t cell;  ///< the cell, counted over all levels
   std::uint16_t used;  ///< a bit for each place that holds a box
   std::uint16_t
@@ -67,26 +55,9 @@ struct CellLevel {
 template <int D>
 struct CellsView {
   std::span<const CellLevel<D>> levels;
-  const std::uint32_t* first;  ///< by cell, over all levels: the first block, or no_block
+  const std::uint32_t* first;  ///< by cell, over all levels: the first block, or no_slot
   const BlockHead* heads;
-  const CellBlock<D>* blocks;
-};
-
-/// Where there is no place.
-inline constexpr std::uint32_t no_place = 0xffffffffU;
-
-/// A box that changed.
-template <int D>
-struct CellQuery {
-  Box<D> before;  ///< NaN if it was absent
-  Box<D> now;     ///< NaN if it is
-  Box<D> bounds;  ///< around both, or the one that is there
-  BoxId id{};
-  std::uint32_t place = no_place;  ///< its own among all blocks' places
-  bool is_far = false;  ///< whether the two are so far apart that each is to be looked up by itself
-
-  /// Whether every box it overlaps is asked for, and not only those of which that changed.
-  bool all = false;
+  const Block<D>* blocks;
 };
 
 /// What a search went through.
@@ -108,11 +79,11 @@ struct CellSinks {
 /// Writes what each query's box meets and met, but for itself. Where all are asked for, every box at rest
 /// that overlaps one of its two boxes is a candidate.
 template <int D>
-CellWork find_changes(const CellsView<D>& cells, std::span<const CellQuery<D>> queries,
+CellWork find_changes(const CellsView<D>& cells, std::span<const MovedBox<D>> queries,
                       const CellSinks& sinks);
 
 /// Writes the pair of each query's box `now` with every one of a greater id that overlaps it.
 template <int D>
-CellWork find_later(const CellsView<D>& cells, std::span<const CellQuery<D>> queries, PairSink& pairs);
+CellWork find_later(const CellsView<D>& cells, std::span<const MovedBox<D>> queries, PairSink& pairs);
 
 }  // namespace broadside::kernels

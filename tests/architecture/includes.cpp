@@ -33,8 +33,8 @@ const std::vector<Rule>& rules() {
       {"src/core/", core},
       {"src/interface/", interface},
       {"src/kernels/",
-       standard +
-           R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
+       standard + R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"core/(moved|nan)_box\.hpp")" +
+           R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", interface + R"(|"(algorithms|paper/listings)/descriptions\.hpp")" +
                                       R"(|"doubles/double_finder\.hpp")"},
       {"src/algorithms/auto/", algorithm + R"(|"algorithms/auto/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},

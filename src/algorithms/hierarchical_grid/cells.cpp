@@ -8,16 +8,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
-#include <utility>
 
-#include "kernels/nowhere.hpp"
+#include "core/nan_box.hpp"
 
 namespace broadside::own {
 namespace {
 
+using core::no_slot;
 using kernels::block_size;
-using kernels::no_block;
 
 constexpr std::uint16_t all_used = 0xffff;
 constexpr std::uint32_t no_cell = 0xffffffffU;
@@ -43,7 +41,7 @@ void HierarchicalGridCells<D>::build(std::span<const Box<D>> boxes, std::span<co
 /// Files `boxes`, of which place_ says in which cell each is, and counts_ how many are in each.
 template <int D>
 void HierarchicalGridCells<D>::file(std::span<const Box<D>> boxes) {
-  first_.assign(counts_.size(), no_block);
+  first_.assign(counts_.size(), no_slot);
   heads_.clear();
   blocks_.clear();
   free_.clear();
@@ -58,7 +56,7 @@ void HierarchicalGridCells<D>::file(std::span<const Box<D>> boxes) {
   reserve_blocks(blocks);
   for (std::uint32_t cell = 0; cell < counts_.size(); ++cell) {
     for (std::uint32_t count = 0; count < counts_[cell]; count += block_size) new_block(cell);
-    if (first_[cell] != no_block)
+    if (first_[cell] != no_slot)
       counts_[cell] +=
           (first_[cell] + 1) * block_size - (counts_[cell] + block_size - 1) / block_size * block_size;
   }
@@ -69,7 +67,7 @@ void HierarchicalGridCells<D>::file(std::span<const Box<D>> boxes) {
     place_[i] = --counts_[cell];
     kernels::BlockHead& head = heads_[place_[i] / block_size];
     head.used = static_cast<std::uint16_t>(head.used | 1U << place_[i] % block_size);
-    blocks_[place_[i] / block_size].id[place_[i] % block_size] = BoxId(i);
+    blocks_[place_[i] / block_size].id[place_[i] % block_size] = static_cast<std::uint32_t>(i);
     write(place_[i], boxes[i]);
     const std::size_t level = levels_.level_of(boxes[i]);
     levels_.widen(level, boxes[i]);
@@ -115,12 +113,12 @@ void HierarchicalGridCells<D>::put(BoxId id, const Box<D>& box, std::size_t leve
   levels_.widen(level, box);
   const std::uint32_t cell = levels_[level].cell(box.min);
   std::uint32_t block = first_[cell];
-  if (block == no_block || heads_[block].used == all_used) block = new_block(cell);
+  if (block == no_slot || heads_[block].used == all_used) block = new_block(cell);
   kernels::BlockHead& head = heads_[block];
   const auto slot = static_cast<std::uint32_t>(std::countr_one(head.used));
   head.used = static_cast<std::uint16_t>(head.used | 1U << slot);
   head.moving = static_cast<std::uint16_t>(head.moving | std::uint32_t{is_moving} << slot);
-  blocks_[block].id[slot] = id;
+  blocks_[block].id[slot] = index(id);
   place_[index(id)] = block * std::uint32_t{block_size} + slot;
   write(place_[index(id)], box);
   ++levels_[level].boxes;
@@ -148,22 +146,14 @@ std::uint32_t HierarchicalGridCells<D>::new_block(std::uint32_t cell) {
     free_.pop_back();
   }
   heads_[block] = {first_[cell], cell, 0, 0};
-  for (int axis = 0; axis < D; ++axis) {
-    blocks_[block].min[axis].fill(std::numeric_limits<float>::quiet_NaN());
-    blocks_[block].max[axis].fill(std::numeric_limits<float>::quiet_NaN());
-  }
-  blocks_[block].id.fill(BoxId{0});
+  blocks_[block].clear();
   first_[cell] = block;
   return block;
 }
 
 template <int D>
 void HierarchicalGridCells<D>::write(std::uint32_t place, const Box<D>& box) {
-  Block& block = blocks_[place / block_size];
-  for (int axis = 0; axis < D; ++axis) {
-    block.min[axis][place % block_size] = box.min[axis];
-    block.max[axis][place % block_size] = box.max[axis];
-  }
+  blocks_[place / block_size].set(place % block_size, box);
 }
 
 template <int D>
@@ -173,7 +163,7 @@ void HierarchicalGridCells<D>::drop_stale() {
     const std::uint32_t others = ~(1U << place % block_size);
     head.used = static_cast<std::uint16_t>(head.used & others);
     head.moving = static_cast<std::uint16_t>(head.moving & others);
-    write(place, kernels::nowhere<D>());
+    write(place, core::nan_box<D>());
     std::size_t level = levels_.count() - 1;
     while (levels_[level].first_cell > head.cell) --level;
     --levels_[level].boxes;
@@ -189,7 +179,7 @@ void HierarchicalGridCells<D>::close_hole(std::uint32_t place) {
   const std::uint32_t block = place / block_size;
   const std::uint32_t cell = heads_[block].cell;
   if (cell == no_cell) return;  // the block is gone already
-  while (first_[cell] != no_block && heads_[first_[cell]].used == 0) {
+  while (first_[cell] != no_slot && heads_[first_[cell]].used == 0) {
     const std::uint32_t empty = first_[cell];
     first_[cell] = heads_[empty].next;
     heads_[empty].cell = no_cell;
@@ -200,14 +190,10 @@ void HierarchicalGridCells<D>::close_hole(std::uint32_t place) {
   kernels::BlockHead& head = heads_[first];
   const auto slot = static_cast<std::uint32_t>(std::bit_width(head.used) - 1);
   const std::uint32_t bit = 1U << slot;
-  const BoxId id = blocks_[first].id[slot];
-  Block& from = blocks_[first];
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = std::exchange(from.min[axis][slot], std::numeric_limits<float>::quiet_NaN());
-    box.max[axis] = std::exchange(from.max[axis][slot], std::numeric_limits<float>::quiet_NaN());
-  }
-  blocks_[block].id[place % block_size] = id;
+  const BoxId id{blocks_[first].id[slot]};
+  const Box<D> box = blocks_[first].box(slot);
+  blocks_[first].set(slot, core::nan_box<D>());
+  blocks_[block].id[place % block_size] = index(id);
   write(place, box);
   place_[index(id)] = place;
   const std::uint32_t hole = 1U << place % block_size;

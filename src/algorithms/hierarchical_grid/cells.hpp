@@ -61,7 +61,7 @@ class HierarchicalGridCells {
   std::size_t bytes() const noexcept;
 
  private:
-  using Block = kernels::CellBlock<D>;
+  using Block = kernels::Block<D>;
 
   void file(std::span<const Box<D>> boxes);
   void put(BoxId id, const Box<D>& box, std::size_t level, bool is_moving);

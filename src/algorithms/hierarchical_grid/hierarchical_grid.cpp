@@ -28,13 +28,18 @@ class HierarchicalGrid final : public PairFinder<D>, public Outlined<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     cells_.build(boxes, boxes);
     constexpr std::size_t batch = 64;
-    std::array<kernels::CellQuery<D>, batch> queries;
+    std::array<core::MovedBox<D>, batch> queries;
     std::uint64_t tests = 0;
     for (std::size_t at = 0; at < boxes.size(); at += batch) {
       const std::size_t count = std::min(batch, boxes.size() - at);
       for (std::size_t i = 0; i < count; ++i)
-        queries[i] = {
-            .before = boxes[at + i], .now = boxes[at + i], .bounds = boxes[at + i], .id = BoxId(at + i)};
+        queries[i] = {.before = boxes[at + i],
+                      .now = boxes[at + i],
+                      .bounds = boxes[at + i],
+                      .id = BoxId(at + i),
+                      .was_present = true,
+                      .is_present = true,
+                      .filter_changed = false};
       tests += kernels::find_later<D>(cells_.view(), std::span(queries).first(count), pairs).tests;
     }
     this->count({.tests = tests, .references = boxes.size(), .cells = cells_.cells()});

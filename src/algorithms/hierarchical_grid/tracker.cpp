@@ -7,11 +7,10 @@
 #include "algorithms/hierarchical_grid/tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "algorithms/hierarchical_grid/candidate_sink.hpp"
-#include "kernels/nowhere.hpp"
+#include "interface/moved_boxes.hpp"
 
 namespace broadside::own {
 namespace {
@@ -53,57 +52,47 @@ Statistics HierarchicalGridTracker<D>::follow(const Change<D>& change, const ker
   cells_.reserve(change.now.size());
   moving_.clear();
   for (const BoxId id : moved_) {
-    if (change.flags[index(id)] == 0) cells_.settle(id, change.now[index(id)]);
+    const Box<D>& box = change.now[index(id)];
+    if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
   }
   kernels::CellWork work;
-  std::array<kernels::CellQuery<D>, batch> queries;
-  for (std::size_t at = 0; at < change.changed.size();) {
-    const std::size_t end = std::min(at + batch, change.changed.size());
-    std::size_t count = 0;
-    for (; at < end; ++at) {
-      const kernels::CellQuery<D> query = file(change, change.changed[at], all);
-      if (is_present(query.bounds)) queries[count++] = query;
-    }
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < change.changed.size(); at += batch) {
+    boxes_.clear();
+    const std::size_t size = std::min(batch, change.changed.size() - at);
+    core::append_moved(change, change.changed.subspan(at, size), boxes_, all);
+    for (core::MovedBox<D>& box : boxes_) file(box);
     const kernels::CellWork done =
-        kernels::find_changes<D>(cells_.view(), std::span(queries).first(count), sinks);
+        kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(boxes_), sinks);
     work.tests += done.tests;
     work.blocks += done.blocks;
+    count += boxes_.size();
   }
   cells_.drop_stale();
   std::swap(moved_, moving_);
-  weigh(work, change.changed.size());
+  weigh(work, count);
   return {.tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells()};
 }
 
-/// Files one box, and says what is to be asked for it; bounds that are not present if nothing.
+/// Moves one box in the cells, so that its entry covers where it was and where it is.
 template <int D>
-kernels::CellQuery<D> HierarchicalGridTracker<D>::file(const Change<D>& change, BoxId id, bool all) {
-  const Box<D>& before = change.before[index(id)];
-  const Box<D>& now = change.now[index(id)];
-  const bool was = is_present(before);
-  const bool is = is_present(now);
-  kernels::CellQuery<D> query{.before = was ? before : kernels::nowhere<D>(),
-                              .now = is ? now : kernels::nowhere<D>(),
-                              .bounds = is ? now : before,
-                              .id = id};
-  if (is) moving_.push_back(id);
-  if (was && is) {
-    for (int axis = 0; axis < D; ++axis) {
-      const float both = before.max[axis] - before.min[axis] + (now.max[axis] - now.min[axis]);
-      query.bounds.min[axis] = std::min(before.min[axis], now.min[axis]);
-      query.bounds.max[axis] = std::max(before.max[axis], now.max[axis]);
-      query.is_far |= query.bounds.max[axis] - query.bounds.min[axis] - both > cells_.smallest_cell()[axis];
-    }
-    query.all = all || (!change.filters_now.empty() &&
-                        change.filters_now[index(id)] != change.filters_before[index(id)]);
-    cells_.move(id, before, now, query.bounds);
-  } else if (is) {
-    cells_.add(id, now);
-  } else if (was) {
-    cells_.remove(id, before);
+void HierarchicalGridTracker<D>::file(core::MovedBox<D>& box) {
+  if (box.is_present) moving_.push_back(box.id);
+  if (!box.is_present) {
+    cells_.remove(box.id, box.before);
+    return;
   }
-  if (is) query.place = cells_.place(id);
-  return query;
+  if (box.was_present) {
+    for (int axis = 0; axis < D; ++axis) {
+      const float extents =
+          box.before.max[axis] - box.before.min[axis] + (box.now.max[axis] - box.now.min[axis]);
+      box.is_far |= box.bounds.max[axis] - box.bounds.min[axis] - extents > cells_.smallest_cell()[axis];
+    }
+    cells_.move(box.id, box.before, box.now, box.bounds);
+  } else {
+    cells_.add(box.id, box.now);
+  }
+  box.slot = cells_.place(box.id);
 }
 
 /// Whether the cells were laid out for about as many boxes as there are, and are not found to be slow.
@@ -148,7 +137,8 @@ void HierarchicalGridTracker<D>::weigh(const kernels::CellWork& work, std::size_
 
 template <int D>
 std::size_t HierarchicalGridTracker<D>::algorithm_bytes() const noexcept {
-  return cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId);
+  return cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId) +
+         boxes_.capacity() * sizeof(core::MovedBox<D>);
 }
 
 template class HierarchicalGridTracker<2>;

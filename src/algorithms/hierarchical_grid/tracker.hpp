@@ -10,6 +10,7 @@
 #include "broadside/pair_tracker.hpp"
 
 #include "algorithms/hierarchical_grid/cells.hpp"
+#include "core/moved_box.hpp"
 #include "kernels/cell_blocks.hpp"
 
 namespace broadside::own {
@@ -33,12 +34,13 @@ class HierarchicalGridTracker final : public PairTracker<D> {
   Statistics follow(const Change<D>& change, const kernels::CellSinks& sinks, bool all);
   bool suits(const Change<D>& change) const;
   void build(const Change<D>& change);
-  kernels::CellQuery<D> file(const Change<D>& change, BoxId id, bool all);
+  void file(core::MovedBox<D>& box);
   void weigh(const kernels::CellWork& work, std::size_t queries);
 
   HierarchicalGridCells<D> cells_;
   std::vector<BoxId> moved_;  // whose entries say more than where they are
   std::vector<BoxId> moving_;
+  std::vector<core::MovedBox<D>> boxes_;  // a batch of those that moved
   std::size_t built_for_ = 0;
   double usual_blocks_ = 0;  // a query, since the cells were laid out
   std::uint64_t first_queries_ = 0;

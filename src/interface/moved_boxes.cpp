@@ -1,0 +1,42 @@
+// The changed boxes of an update as a list of MovedBox.
+#include "interface/moved_boxes.hpp"
+
+#include <algorithm>
+
+#include "core/nan_box.hpp"
+
+namespace broadside::core {
+
+template <int D>
+void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved,
+                  bool every_pair) {
+  for (const BoxId id : ids) {
+    const Box<D>& before = change.before[index(id)];
+    const Box<D>& now = change.now[index(id)];
+    const bool filter_changed =
+        every_pair ||
+        (!change.filters_now.empty() && change.filters_before[index(id)] != change.filters_now[index(id)]);
+    if (!filter_changed && before == now) continue;
+    const bool was = is_present(before);
+    const bool is = is_present(now);
+    if (!was && !is) continue;
+    // The absent box is a neutral element of a union: +inf for the minimum, -inf for the maximum.
+    Box<D> bounds;
+    for (int axis = 0; axis < D; ++axis) {
+      bounds.min[axis] = std::min(before.min[axis], now.min[axis]);
+      bounds.max[axis] = std::max(before.max[axis], now.max[axis]);
+    }
+    moved.push_back({.before = was ? before : nan_box<D>(),
+                     .now = is ? now : nan_box<D>(),
+                     .bounds = bounds,
+                     .id = id,
+                     .was_present = was,
+                     .is_present = is,
+                     .filter_changed = filter_changed});
+  }
+}
+
+template void append_moved(const Change<2>&, std::span<const BoxId>, std::vector<MovedBox<2>>&, bool);
+template void append_moved(const Change<3>&, std::span<const BoxId>, std::vector<MovedBox<3>>&, bool);
+
+}  // namespace broadside::core

@@ -1,0 +1,84 @@
+// BroadcastBox: one box against a vector of others, for files that Highway compiles for each instruction set.
+//
+// Included once an instruction set, hence no #pragma once.
+#if defined(BROADSIDE_KERNELS_BROADCAST_BOX) == defined(HWY_TARGET_TOGGLE)
+#ifdef BROADSIDE_KERNELS_BROADCAST_BOX
+#undef BROADSIDE_KERNELS_BROADCAST_BOX
+#else
+#define BROADSIDE_KERNELS_BROADCAST_BOX
+#endif
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include "broadside/box.hpp"
+
+#include "kernels/block.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, block_size>;
+using Numbers = hn::Rebind<std::uint32_t, Floats>;
+using FloatVector = hn::Vec<Floats>;
+using NumberVector = hn::Vec<Numbers>;
+using FloatMask = hn::Mask<Floats>;
+using NumberMask = hn::Mask<Numbers>;
+
+/// The elements of a vector: a block is one vector or several.
+inline constexpr std::size_t lanes = hn::MaxLanes(Floats());
+
+/// A block's coordinates are aligned; those of other boxes need not be.
+HWY_INLINE FloatVector load(const std::array<float, block_size>& values, std::size_t at) {
+  return hn::Load(Floats(), values.data() + at);
+}
+HWY_INLINE FloatVector load(const float* values, std::size_t at) { return hn::LoadU(Floats(), values + at); }
+
+/// Bit i is lane i.
+HWY_INLINE std::uint32_t bits_of(FloatMask mask) {
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(Floats(), mask, bytes.data());
+  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
+}
+
+/// A box in every lane.
+template <int D>
+struct BroadcastBox {
+  HWY_INLINE explicit BroadcastBox(const Box<D>& box) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = hn::Set(Floats(), box.min[axis]);
+      max[axis] = hn::Set(Floats(), box.max[axis]);
+    }
+  }
+
+  /// Which of the boxes from `at` on, a vector of them, it overlaps. `boxes` is a block or a run: anything
+  /// with arrays of `min` and `max` by axis. A NaN overlaps nothing.
+  template <typename Boxes>
+  HWY_INLINE FloatMask overlaps(const Boxes& boxes, std::size_t at) const {
+    FloatMask hits = hn::And(hn::Le(load(boxes.min[0], at), max[0]), hn::Le(min[0], load(boxes.max[0], at)));
+    for (int axis = 1; axis < D; ++axis) {
+      hits = hn::And(hits, hn::Le(load(boxes.min[axis], at), max[axis]));
+      hits = hn::And(hits, hn::Le(min[axis], load(boxes.max[axis], at)));
+    }
+    return hits;
+  }
+
+  /// The same for a whole block: bit i is box i.
+  HWY_INLINE std::uint32_t overlaps(const Block<D>& block) const {
+    std::uint32_t bits = 0;
+    for (std::size_t at = 0; at < block_size; at += lanes) bits |= bits_of(overlaps(block, at)) << at;
+    return bits;
+  }
+
+  FloatVector min[D];
+  FloatVector max[D];
+};
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
