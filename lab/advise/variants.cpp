@@ -34,7 +34,7 @@ std::vector<Trial> trials_of(std::string_view algorithm, const Signals& signals)
   std::vector<Trial> trials;
   if (algorithm == "auto" && moves) trials.push_back({"way", {"rebuild", "incremental"}});
   if (algorithm == "brute_force" && moves) trials.push_back({"update", {"changed", "all"}});
-  if (algorithm == "bvh" && moves) trials.push_back({"update", {"refit", "enlarge", "reinsert", "rebuild"}});
+  if (algorithm == "bvh" && moves) trials.push_back({"update", {"reinsert", "rebuild"}});
   if (algorithm == "grid") {
     trials.push_back({"cell", cells(signals)});
     if (moves) trials.push_back({"update", {"reinsert", "translate", "rebuild"}});
