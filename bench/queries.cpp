@@ -138,10 +138,10 @@ class Queries {
     for (Ray<D>& ray : rays) {
       do {
         ray.origin = any_point();
-      } while (!index_->holding(ray.origin, [](BoxId) { return false; }));
+      } while (!index_->containing(ray.origin, [](BoxId) { return false; }));
       const std::array<float, D> to = any_point();
       for (int axis = 0; axis < D; ++axis) ray.direction[axis] = to[axis] - ray.origin[axis];
-      ray.furthest = 1;
+      ray.t_max = 1;
     }
     return rays;
   }

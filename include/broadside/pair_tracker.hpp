@@ -84,6 +84,9 @@ struct Change {
   }
 };
 
+template <int D, typename Real>
+class BoxIndex;
+
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps. Cost of an update
@@ -127,6 +130,10 @@ class PairTracker {
             {}};
   }
 
+  /// The boxes of the last whole update() for queries (see queries.hpp), where the algorithm keeps such an
+  /// index anyway; else null. Valid until the next update().
+  const BoxIndex<D, Real>* box_index() const noexcept { return dirty_ ? nullptr : algorithm_index(); }
+
   /// What the last update() did; empty where the algorithm does not count.
   const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
 
@@ -161,6 +168,9 @@ class PairTracker {
 
   /// Where a tracker works through a finder or another tracker, it hands workers() on.
   virtual void workers_changed() {}
+
+  /// What box_index() gives after a whole update.
+  virtual const BoxIndex<D, Real>* algorithm_index() const noexcept { return nullptr; }
 
   /// The bytes that the algorithm keeps from frame to frame.
   virtual std::size_t algorithm_bytes() const noexcept { return 0; }

@@ -1,4 +1,4 @@
-// BoxIndex: which boxes overlap a box, hold a point, meet a ray or a moved box, or are nearest to a point.
+// BoxIndex: which boxes overlap a box, contain a point, meet a ray or a cast box, or are nearest to a point.
 #pragma once
 
 #include <array>
@@ -19,11 +19,11 @@
 
 namespace broadside {
 
-/// A box that a ray or a moved box meets, and the parameter at which it does so first.
+/// A box that a ray or a cast box meets, and the parameter at which it does so first.
 template <typename Real>
 struct Hit {
   BoxId box;
-  Real entry;
+  Real t_enter;
 
   friend constexpr bool operator==(const Hit&, const Hit&) = default;
 };
@@ -56,10 +56,10 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// Answers queries to the boxes of a frame, exactly as the definitions in ray.hpp and box.hpp say.
 ///
 /// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
-/// With an `asker`, only boxes whose filter accepts it are. Results have an order that the boxes' history
-/// fixes, and that means nothing but where it is said. A query takes some tens of nanoseconds and what it
-/// finds; none allocates. Each throws InvalidQuery if something asked about is NaN, or infinite where it must
-/// not be, and what the visitor throws.
+/// With a `query_filter`, only boxes whose filter accepts it are. Results have an order that the boxes'
+/// history fixes, and that means nothing but where it is said. A query takes some tens of nanoseconds and
+/// what it finds; none allocates. Each throws InvalidQuery if something asked about is NaN, or infinite where
+/// it must not be, and what the visitor throws.
 template <int D, typename Real = float>
 class BoxIndex {
  public:
@@ -77,53 +77,78 @@ class BoxIndex {
   void update(const Frame<D, Real>& frame);
 
   /// The boxes that overlap `box`; false if the visitor ended the search. Nothing overlaps an absent box.
-  bool overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const Filter* asker = nullptr) const;
+  bool overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const Filter* query_filter = nullptr,
+                   std::optional<BoxId> except = {}) const;
 
-  /// The boxes that hold the point, which may be infinite.
-  bool holding(const Point& point, Visitor<BoxId>& visitor, const Filter* asker = nullptr) const {
-    return overlapping({point, point}, visitor, asker);
+  /// The boxes that contain the point, which may be infinite.
+  bool containing(const Point& point, Visitor<BoxId>& visitor, const Filter* query_filter = nullptr,
+                  std::optional<BoxId> except = {}) const {
+    return overlapping({point, point}, visitor, query_filter, except);
   }
 
   /// All boxes that the moved box, or the ray, meets.
-  bool hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor, const Filter* asker = nullptr) const;
-  bool hits(const Ray<D, Real>& ray, Visitor<Hit<Real>>& visitor, const Filter* asker = nullptr) const {
-    return hits(as_cast(ray), visitor, asker);
+  bool hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor, const Filter* query_filter = nullptr,
+            std::optional<BoxId> except = {}) const;
+  bool hits(const Ray<D, Real>& ray, Visitor<Hit<Real>>& visitor, const Filter* query_filter = nullptr,
+            std::optional<BoxId> except = {}) const {
+    return hits(as_cast(ray), visitor, query_filter, except);
   }
 
-  /// The one that it meets first: of the least entry, of several such the one with the least id.
-  std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast, const Filter* asker = nullptr) const;
-  std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray, const Filter* asker = nullptr) const {
-    return first_hit(as_cast(ray), asker);
+  /// The one that it meets first: of the least t_enter, of several such the one with the least id.
+  std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast, const Filter* query_filter = nullptr,
+                                     std::optional<BoxId> except = {}) const;
+  std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray, const Filter* query_filter = nullptr,
+                                     std::optional<BoxId> except = {}) const {
+    return first_hit(as_cast(ray), query_filter, except);
   }
 
   /// Sets `found` to the `count` boxes nearest to the point, or all if there are fewer: by distance, equally
-  /// distant ones by id. Those farther than `furthest`, a square, do not count.
+  /// distant ones by id. Those farther than `max_distance_squared`, a square, do not count.
   void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
-               const Filter* asker = nullptr, Real furthest = std::numeric_limits<Real>::infinity()) const;
+               const Filter* query_filter = nullptr,
+               Real max_distance_squared = std::numeric_limits<Real>::infinity(),
+               std::optional<BoxId> except = {}) const;
 
   /// The same with a function for each BoxId or Hit.
   template <VisitFunction<BoxId> Function>
-  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* asker = nullptr) const {
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* query_filter = nullptr,
+                   std::optional<BoxId> except = {}) const {
     Calls<BoxId, Function> calls(function);
-    return overlapping(box, static_cast<Visitor<BoxId>&>(calls), asker);
+    return overlapping(box, static_cast<Visitor<BoxId>&>(calls), query_filter, except);
   }
   template <VisitFunction<BoxId> Function>
-  bool holding(const Point& point, Function&& function, const Filter* asker = nullptr) const {
-    return overlapping({point, point}, function, asker);
+  bool containing(const Point& point, Function&& function, const Filter* query_filter = nullptr,
+                  std::optional<BoxId> except = {}) const {
+    return overlapping({point, point}, function, query_filter, except);
   }
   template <typename Shape, VisitFunction<Hit<Real>> Function>
-  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* asker = nullptr) const {
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* query_filter = nullptr,
+            std::optional<BoxId> except = {}) const {
     Calls<Hit<Real>, Function> calls(function);
-    return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(calls), asker);
+    return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(calls), query_filter, except);
   }
 
   /// The bytes held.
-  std::size_t bytes() const noexcept { return filters_.capacity() * sizeof(Filter) + index_bytes(); }
+  std::size_t bytes() const noexcept { return own_filters_.capacity() * sizeof(Filter) + index_bytes(); }
 
  protected:
-  /// Whether box `id` may be found by who asks.
-  bool may_find(BoxId id, const Filter* asker) const noexcept {
-    return asker == nullptr || accepts(*asker, filters_.empty() ? Filter{} : filters_[index(id)]);
+  /// Which boxes a query may find.
+  struct Eligible {
+    const Filter* query_filter = nullptr;  ///< null: all
+    std::optional<BoxId> except{};
+  };
+
+  bool may_find(BoxId id, const Eligible& eligible) const noexcept {
+    if (eligible.except && id == *eligible.except) return false;
+    return eligible.query_filter == nullptr ||
+           accepts(*eligible.query_filter, filters_.empty() ? Filter{} : filters_[index(id)]);
+  }
+
+  /// For an index whose boxes a tracker keeps up to date, instead of update(): these are their filters, which
+  /// stay where they are until the next call, or none.
+  void take_filters(std::span<const Filter> filters) noexcept {
+    filters_ = filters;
+    dirty_ = false;
   }
 
  private:
@@ -154,19 +179,20 @@ class BoxIndex {
 
   /// Likewise, the questions being valid; the box is not absent.
   virtual bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                                const Filter* asker) const = 0;
+                                const Eligible& eligible) const = 0;
   virtual bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                         const Filter* asker) const = 0;
+                         const Eligible& eligible) const = 0;
   virtual std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast,
-                                                  const Filter* asker) const = 0;
-  virtual void find_nearest(const Point& point, std::size_t count, Real furthest,
-                            std::vector<Neighbour<Real>>& found, const Filter* asker) const = 0;
+                                                  const Eligible& eligible) const = 0;
+  virtual void find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
+                            std::vector<Neighbour<Real>>& found, const Eligible& eligible) const = 0;
   virtual std::size_t index_bytes() const noexcept = 0;
 
-  std::vector<Filter> filters_;  // of the last frame; empty if it had none
-  std::vector<BoxId> changed_;   // with those that need not be listed
-  std::size_t size_ = 0;         // of the last frame
-  bool dirty_ = true;            // the last update did not end, or there was none
+  std::span<const Filter> filters_;  // of the last frame; empty if it had none
+  std::vector<Filter> own_filters_;  // what these are of after update()
+  std::vector<BoxId> changed_;       // with those that need not be listed
+  std::size_t size_ = 0;             // of the last frame
+  bool dirty_ = true;                // the last update did not end, or there was none
 };
 
 /// An index that is a tree of bounds, sixteen to a node. Some 100 bytes a box in 2D and 140 in 3D, half of

@@ -11,33 +11,33 @@
 
 namespace broadside {
 
-/// The points origin + t * direction with 0 <= t <= furthest, the parameters t being in units of the
+/// The points origin + t * direction with 0 <= t <= t_max, the parameters t being in units of the
 /// direction's length, which may be any. A direction of zeros is a point.
 template <int D, typename Real = float>
 struct Ray {
   Point<D, Real> origin;     ///< finite
   Point<D, Real> direction;  ///< finite
-  Real furthest = std::numeric_limits<Real>::infinity();
+  Real t_max = std::numeric_limits<Real>::infinity();
 };
 
-/// A box moved along a direction: it stands at `box` + t * direction, 0 <= t <= furthest.
+/// A box moved along a direction: it stands at `box` + t * direction, 0 <= t <= t_max.
 template <int D, typename Real = float>
 struct BoxCast {
-  Box<D, Real> box;          ///< finite, min <= max
+  Box<D, Real> box;               ///< finite, min <= max
   Point<D, Real> direction;  ///< finite
-  Real furthest = std::numeric_limits<Real>::infinity();
+  Real t_max = std::numeric_limits<Real>::infinity();
 };
 
 /// The parameter at which a moved box first touches a present box, 0 if it begins there; none if it does not
-/// touch it up to `furthest`.
+/// touch it up to `t_max`.
 ///
 /// Boxes are closed. Each bound's parameter is (bound - place) / direction, rounded twice; so where the
 /// coordinates' differences are exact, as those of whole numbers are, a cast that grazes a face, an edge or a
 /// corner meets it. A box at infinity is met at infinity.
 template <int D, typename Real>
-constexpr std::optional<Real> entry(const BoxCast<D, Real>& cast, const Box<D, Real>& box) noexcept {
+constexpr std::optional<Real> t_enter(const BoxCast<D, Real>& cast, const Box<D, Real>& box) noexcept {
   Real enter = 0;
-  Real leave = cast.furthest;
+  Real leave = cast.t_max;
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
     const Real direction = cast.direction[axis];
     const Real before = box.min[axis] - cast.box.max[axis];
@@ -58,13 +58,13 @@ constexpr std::optional<Real> entry(const BoxCast<D, Real>& cast, const Box<D, R
 /// The ray as a point that is moved.
 template <int D, typename Real>
 constexpr BoxCast<D, Real> as_cast(const Ray<D, Real>& ray) noexcept {
-  return {{ray.origin, ray.origin}, ray.direction, ray.furthest};
+  return {{ray.origin, ray.origin}, ray.direction, ray.t_max};
 }
 
 /// The parameter at which a ray enters a present box, likewise.
 template <int D, typename Real>
-constexpr std::optional<Real> entry(const Ray<D, Real>& ray, const Box<D, Real>& box) noexcept {
-  return entry(as_cast(ray), box);
+constexpr std::optional<Real> t_enter(const Ray<D, Real>& ray, const Box<D, Real>& box) noexcept {
+  return t_enter(as_cast(ray), box);
 }
 
 /// The square of the distance from a point to a present box: the sum over the axes, in their order, of the

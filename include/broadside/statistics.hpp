@@ -13,7 +13,6 @@ struct Statistics {
   std::uint64_t references = 0;  ///< entries of boxes in cells, leaves or lists
   std::uint64_t cells = 0;       ///< cells or nodes that there are
   std::uint64_t hits = 0;  ///< of the tests, those of boxes that overlap; the others are false positives
-  std::uint64_t debt = 0;  ///< boxes whose place in the structure is still to be bettered
 };
 
 }  // namespace broadside

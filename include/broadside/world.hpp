@@ -22,11 +22,11 @@
 
 namespace broadside {
 
-/// A box that a ray or a moved box meets, and the parameter at which it does so first.
+/// A box that a ray or a cast box meets, and the parameter at which it does so first.
 template <typename Real>
 struct HandleHit {
   Handle handle;
-  Real entry;
+  Real t_enter;
 
   friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
 };
@@ -124,34 +124,41 @@ class World {
   void join(const World& other, std::vector<HandlePair>& pairs) const;
 
   /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
-  /// whose costs and exceptions they have. The first one builds an index, which follows the boxes from then
-  /// on; one after changes pays for what changed. `function` takes a Handle, or a Handle and where it is
-  /// entered; the search ends when it returns false. Rays and moved boxes are Ray and BoxCast.
+  /// whose costs and exceptions they have. `function` takes a Handle, or a Handle and its t_enter; the search
+  /// ends when it returns false. The box `except` is not found, such as the one that a ray starts from; a
+  /// handle that is not in the world leaves out nothing. Rays and cast boxes are Ray and BoxCast.
+  ///
+  /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
+  /// update), the queries use it. Otherwise the first one builds an index, which follows the boxes from then
+  /// on, and each one after changes pays for what changed.
   template <typename Function>
-  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* asker = nullptr) const {
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* query_filter = nullptr,
+                   const Handle& except = {}) const {
     return box_index().overlapping(
-        box, [&](BoxId id) { return function(handle_of(id)); }, asker);
+        box, [&](BoxId id) { return function(handle_of(id)); }, query_filter, slot_of(except));
   }
   template <typename Function>
-  bool holding(const Point<D, Real>& point, Function&& function, const Filter* asker = nullptr) const {
-    return box_index().holding(
-        point, [&](BoxId id) { return function(handle_of(id)); }, asker);
+  bool containing(const Point<D, Real>& point, Function&& function, const Filter* query_filter = nullptr,
+                  const Handle& except = {}) const {
+    return overlapping({point, point}, function, query_filter, except);
   }
   template <typename Shape, typename Function>
-  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* asker = nullptr) const {
-    const auto call = [&](const Hit<Real>& hit) { return function(handle_of(hit.box), hit.entry); };
-    return box_index().hits(ray_or_cast, call, asker);
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* query_filter = nullptr,
+            const Handle& except = {}) const {
+    const auto call = [&](const Hit<Real>& hit) { return function(handle_of(hit.box), hit.t_enter); };
+    return box_index().hits(ray_or_cast, call, query_filter, slot_of(except));
   }
   template <typename Shape>
-  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* asker = nullptr) const {
-    const std::optional<Hit<Real>> hit = box_index().first_hit(ray_or_cast, asker);
+  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* query_filter = nullptr,
+                                           const Handle& except = {}) const {
+    const std::optional<Hit<Real>> hit = box_index().first_hit(ray_or_cast, query_filter, slot_of(except));
     if (!hit) return std::nullopt;
-    return HandleHit<Real>{handle_of(hit->box), hit->entry};
+    return HandleHit<Real>{handle_of(hit->box), hit->t_enter};
   }
 
   /// Sets `found` to the nearest boxes, as BoxIndex::nearest() does; equally distant ones by slot.
   void nearest(const Point<D, Real>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
-               const Filter* asker = nullptr) const;
+               const Filter* query_filter = nullptr, const Handle& except = {}) const;
 
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
   /// the world changes.
@@ -204,6 +211,11 @@ class World {
 
  private:
   struct State;
+
+  /// The slot of a box that is in the world.
+  std::optional<BoxId> slot_of(const Handle& handle) const noexcept {
+    return contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;
+  }
 
   std::unique_ptr<State> state_;
 };

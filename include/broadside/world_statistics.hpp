@@ -31,7 +31,7 @@ struct WorldStatistics {
   std::size_t ignored_pairs = 0;   ///< that ignore() was called for
 
   /// What the tracker counted in the last update: tests, hits (the other tests are false positives),
-  /// references, cells or nodes, debt. Empty where it does not count.
+  /// references, cells or nodes. Empty where it does not count.
   std::optional<Statistics> tracker;
 
   /// What the tracker chose for the last update and why; empty where it is not one that chooses.

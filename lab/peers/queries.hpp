@@ -26,7 +26,7 @@ struct Answers {
   friend bool operator==(const Answers&, const Answers&) = default;
 };
 
-/// An index of finite boxes that others made. Rays have a finite `furthest` and begin in no box.
+/// An index of finite boxes that others made. Rays have a finite `t_max` and begin in no box.
 template <int D>
 class QueryPeer {
  public:

@@ -44,7 +44,7 @@ class Box2dQueries final : public QueryPeer<2> {
   struct All {
     float RayCastCallback(const b2RayCastInput& input, std::int32_t proxy) {
       const BoxId id = peer.id_of_[static_cast<std::size_t>(proxy)];
-      if (entry(ray, peer.boxes_[index(id)])) answers.add(query, id);
+      if (t_enter(ray, peer.boxes_[index(id)])) answers.add(query, id);
       return input.maxFraction;
     }
     const Box2dQueries& peer;
@@ -56,7 +56,7 @@ class Box2dQueries final : public QueryPeer<2> {
   struct First {
     float RayCastCallback(const b2RayCastInput& input, std::int32_t proxy) {
       const BoxId id = peer.id_of_[static_cast<std::size_t>(proxy)];
-      const std::optional<float> enter = entry(ray, peer.boxes_[index(id)]);
+      const std::optional<float> enter = t_enter(ray, peer.boxes_[index(id)]);
       if (!enter || (found && (*enter > nearest || (*enter == nearest && id > box))))
         return input.maxFraction;
       found = true;
@@ -105,7 +105,7 @@ class Box2dQueries final : public QueryPeer<2> {
 
   static b2RayCastInput converted(const Ray<2>& ray) {
     const b2Vec2 from(ray.origin[0], ray.origin[1]);
-    return {from, from + b2Vec2(ray.direction[0], ray.direction[1]), ray.furthest};
+    return {from, from + b2Vec2(ray.direction[0], ray.direction[1]), ray.t_max};
   }
 
   std::span<const Box2> boxes_;

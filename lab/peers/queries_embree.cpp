@@ -79,7 +79,7 @@ class EmbreeQueries final : public QueryPeer<3> {
     ray_hit.ray.dir_y = ray.direction[1];
     ray_hit.ray.dir_z = ray.direction[2];
     ray_hit.ray.tnear = 0;
-    ray_hit.ray.tfar = ray.furthest;
+    ray_hit.ray.tfar = ray.t_max;
     ray_hit.ray.mask = 0xffffffffU;
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &search.context, &ray_hit);

@@ -38,7 +38,7 @@ void check(const BoxCast<D, Real>& cast) {
     if (!are_finite(corner)) refuse("a ray's origin or a cast box", corner.data(), D, "finite numbers");
   }
   if (!are_finite(cast.direction)) refuse("a cast's direction", cast.direction.data(), D, "finite numbers");
-  if (!(cast.furthest >= 0)) refuse("a cast's furthest parameter", &cast.furthest, 1, "0, more, or infinity");
+  if (!(cast.t_max >= 0)) refuse("a cast's t_max", &cast.t_max, 1, "0, more, or infinity");
 }
 
 /// Calls a visitor in the floating-point environment of the query's caller.
@@ -88,15 +88,16 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
   core::check_boxes(frame.boxes, first);
 
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
-  if (rebuild || frame.filters.empty() || filters_.empty()) {
-    filters_.assign(frame.filters.begin(), frame.filters.end());
+  if (rebuild || frame.filters.empty() || own_filters_.empty()) {
+    own_filters_.assign(frame.filters.begin(), frame.filters.end());
   } else {
-    filters_.resize(frame.filters.size());
+    own_filters_.resize(frame.filters.size());
     for (const BoxId id : frame.changed) {
-      if (index(id) < filters_.size()) filters_[index(id)] = frame.filters[index(id)];
+      if (index(id) < own_filters_.size()) own_filters_[index(id)] = frame.filters[index(id)];
     }
-    for (std::size_t i = size_; i < filters_.size(); ++i) filters_[i] = frame.filters[i];
+    for (std::size_t i = size_; i < own_filters_.size(); ++i) own_filters_[i] = frame.filters[i];
   }
+  filters_ = own_filters_;
   changed_.clear();
   if (!rebuild) {
     changed_.assign(frame.changed.begin(), frame.changed.end());
@@ -109,47 +110,50 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                                    const Filter* asker) const {
+                                    const Filter* query_filter, std::optional<BoxId> except) const {
   const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
     throw InvalidQuery(core::fault_of(box, "the box or point asked about"));
   }
   if (dirty_) return true;
-  if (!environment.is_foreign()) return find_overlapping(box, visitor, asker);
+  if (!environment.is_foreign()) return find_overlapping(box, visitor, {query_filter, except});
   CallersVisitor callers(visitor);
-  return find_overlapping(box, callers, asker);
+  return find_overlapping(box, callers, {query_filter, except});
 }
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                             const Filter* asker) const {
+                             const Filter* query_filter, std::optional<BoxId> except) const {
   const core::DefaultEnvironment environment;
   check(cast);
   if (dirty_) return true;
-  if (!environment.is_foreign()) return find_hits(cast, visitor, asker);
+  if (!environment.is_foreign()) return find_hits(cast, visitor, {query_filter, except});
   CallersVisitor callers(visitor);
-  return find_hits(cast, callers, asker);
+  return find_hits(cast, callers, {query_filter, except});
 }
 
 template <int D, typename Real>
 std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& cast,
-                                                      const Filter* asker) const {
+                                                      const Filter* query_filter,
+                                                      std::optional<BoxId> except) const {
   const core::DefaultEnvironment environment;
   check(cast);
-  return dirty_ ? std::nullopt : find_first_hit(cast, asker);
+  return dirty_ ? std::nullopt : find_first_hit(cast, {query_filter, except});
 }
 
 template <int D, typename Real>
 void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
-                                const Filter* asker, Real furthest) const {
+                                const Filter* query_filter, Real max_distance_squared,
+                                std::optional<BoxId> except) const {
   const core::DefaultEnvironment environment;
   for (const Real coordinate : point) {
     if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
   }
-  if (!(furthest >= 0)) refuse("the square of the furthest distance", &furthest, 1, "0, more, or infinity");
+  if (!(max_distance_squared >= 0))
+    refuse("the square of the greatest distance", &max_distance_squared, 1, "0, more, or infinity");
   found.clear();
-  if (count > 0 && !dirty_) find_nearest(point, count, furthest, found, asker);
+  if (count > 0 && !dirty_) find_nearest(point, count, max_distance_squared, found, {query_filter, except});
 }
 
 template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;

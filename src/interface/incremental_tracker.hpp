@@ -26,6 +26,9 @@ class IncrementalTracker : public PairTracker<D> {
   /// `worthwhile` is the fraction of boxes that may change before finding all pairs anew costs less.
   IncrementalTracker(Way way, double worthwhile, std::unique_ptr<PairFinder<D>> finder);
 
+  /// Whether the last update followed: what follow() keeps is of the last frame.
+  bool is_following() const noexcept { return has_kept_ && !is_rebuilding_; }
+
   void set_worthwhile(double worthwhile) noexcept { worthwhile_ = worthwhile; }
 
   /// Whether the filters of a changed box are not what they were.

@@ -48,17 +48,17 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<Tag> compress(Tag tag, hwy::HWY_NAMESPACE::Ve
   namespace hn = hwy::HWY_NAMESPACE;
   static_assert(sizeof(hn::TFromD<Tag>) == 4);
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  constexpr std::size_t lanes = 0;  // an instruction does it
+  constexpr std::size_t vector_size = 0;  // an instruction does it
 #else
-  constexpr std::size_t lanes = hn::MaxLanes(Tag());
+  constexpr std::size_t vector_size = hn::MaxLanes(Tag());
 #endif
-  if constexpr (lanes == 8) {
+  if constexpr (vector_size == 8) {
     const hn::Rebind<std::uint8_t, Tag> bytes;
     std::array<std::uint8_t, 8> set{};
     hn::StoreMaskBits(tag, mask, set.data());
     const auto order = hn::PromoteTo(tag, hn::Load(bytes, lanes_of_8.places[set[0]].data()));
     return hn::TableLookupLanes(numbers, hn::IndicesFromVec(tag, order));
-  } else if constexpr (lanes == 4) {
+  } else if constexpr (vector_size == 4) {
     const hn::Repartition<std::uint8_t, Tag> bytes;
     std::array<std::uint8_t, 8> set{};
     hn::StoreMaskBits(tag, mask, set.data());

@@ -90,6 +90,7 @@ struct World<D, Real>::State {
   void mark_moved(std::uint32_t slot) noexcept;
 
   // queries.hpp.
+  const BoxIndex<D, Real>* trackers_index() const noexcept;
   void bring_index_up_to_date() const;
   void note_changes_for_index();
   void drop_index() noexcept;

@@ -55,7 +55,7 @@ template <int D, typename Real>
 void ask(const World<D, Real>& world, const Box<D, Real>& box, Log& log) {
   const auto add = [&log](Handle handle) { log.add(handle); };
   world.overlapping(box, add);
-  world.holding(box.max, add);
+  world.containing(box.max, add);
   std::vector<HandleNeighbour<Real>> nearest;
   world.nearest(box.max, 5, nearest);
   for (const HandleNeighbour<Real>& near : nearest) {
@@ -63,7 +63,7 @@ void ask(const World<D, Real>& world, const Box<D, Real>& box, Log& log) {
     log.add(near.distance_squared);
     log.add(distance_squared(box.max, world.box(near.handle)));
   }
-  BoxCast<D, Real> cast{.box = box, .direction = {}, .furthest = 3};
+  BoxCast<D, Real> cast{.box = box, .direction = {}, .t_max = 3};
   for (int axis = 0; axis < D; ++axis) {
     if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) return;
     cast.direction[axis] = axis == 0 ? Real(1) / 3 : Real(-2) / 7;

@@ -23,7 +23,7 @@ namespace broadside {
 
 template <typename Real>
 void PrintTo(const Hit<Real>& hit, std::ostream* out) {
-  *out << "box " << index(hit.box) << " at " << hit.entry;
+  *out << "box " << index(hit.box) << " at " << hit.t_enter;
 }
 
 template <typename Real>
@@ -134,40 +134,42 @@ class QueryLaw : public testing::Test {
         if (cast.box.min[axis] > cast.box.max[axis]) std::swap(cast.box.min[axis], cast.box.max[axis]);
       }
     }
-    if (dice_.one_in(3)) cast.furthest = Real(dice_.whole(0, 4)) / Real(dice_.whole(1, 3));
-    if (dice_.one_in(9)) cast.furthest *= 100;
+    if (dice_.one_in(3)) cast.t_max = Real(dice_.whole(0, 4)) / Real(dice_.whole(1, 3));
+    if (dice_.one_in(9)) cast.t_max *= 100;
     return cast;
   }
 
   /// Asks all kinds of queries and compares the answers with the definitions.
   void expect_answers(const BoxIndex<D, Real>& index, const Boxes& boxes, const std::vector<Filter>& filters,
                       std::size_t rounds) {
-    Filter asker{.category = 2, .mask = 1};
+    Filter query_filter{.category = 2, .mask = 1};
     for (std::size_t round = 0; round < rounds; ++round) {
-      const Filter* const filter = dice_.one_in(4) ? &asker : nullptr;
+      const Filter* const filter = dice_.one_in(4) ? &query_filter : nullptr;
+      const std::optional<BoxId> except =
+          dice_.one_in(4) ? std::optional(BoxId(dice_.below(boxes.size() + 2))) : std::nullopt;
       const auto counts = [&](std::size_t i) {
         const Filter own = filters.empty() ? Filter{} : filters[i];
-        return is_present(boxes[i]) && (filter == nullptr || accepts(*filter, own));
+        return is_present(boxes[i]) && except != BoxId(i) && (filter == nullptr || accepts(*filter, own));
       };
-      expect_overlapping(index, boxes, any_box(boxes), filter, counts);
-      expect_met(index, boxes, any_cast(boxes), filter, counts);
+      expect_overlapping(index, boxes, any_box(boxes), filter, except, counts);
+      expect_met(index, boxes, any_cast(boxes), filter, except, counts);
       Point point;
       for (int axis = 0; axis < D; ++axis) point[axis] = coordinate(boxes, axis);
-      expect_nearest(index, boxes, point, filter, counts);
+      expect_nearest(index, boxes, point, filter, except, counts);
       if (this->HasFailure()) return;
     }
   }
 
   template <typename Counts>
   void expect_overlapping(const BoxIndex<D, Real>& index, const Boxes& boxes, const Box<D, Real>& box,
-                          const Filter* filter, Counts counts) {
+                          const Filter* filter, std::optional<BoxId> except, Counts counts) {
     std::vector<BoxId> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (counts(i) && is_present(box) && overlap(boxes[i], box)) expected.push_back(BoxId(i));
     }
     std::vector<BoxId> found;
     EXPECT_TRUE(index.overlapping(
-        box, [&found](BoxId id) { found.push_back(id); }, filter));
+        box, [&found](BoxId id) { found.push_back(id); }, filter, except));
     std::ranges::sort(found);
     EXPECT_EQ(found, expected) << "overlapping a box from " << testing::PrintToString(box.min) << " to "
                                << testing::PrintToString(box.max);
@@ -175,44 +177,44 @@ class QueryLaw : public testing::Test {
 
   template <typename Counts>
   void expect_met(const BoxIndex<D, Real>& index, const Boxes& boxes, const Cast& cast, const Filter* filter,
-                  Counts counts) {
+                  std::optional<BoxId> except, Counts counts) {
     std::vector<Hit<Real>> expected;
     std::optional<Hit<Real>> first;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const std::optional<Real> enter = counts(i) ? entry(cast, boxes[i]) : std::nullopt;
+      const std::optional<Real> enter = counts(i) ? t_enter(cast, boxes[i]) : std::nullopt;
       if (!enter) continue;
       expected.push_back({BoxId(i), *enter});
-      if (!first || *enter < first->entry) first = expected.back();
+      if (!first || *enter < first->t_enter) first = expected.back();
     }
     std::vector<Hit<Real>> found;
     EXPECT_TRUE(index.hits(
-        cast, [&found](Hit<Real> hit) { found.push_back(hit); }, filter));
+        cast, [&found](Hit<Real> hit) { found.push_back(hit); }, filter, except));
     std::ranges::sort(found, {}, &Hit<Real>::box);
     const auto shown = [&cast] {
       return "cast from " + testing::PrintToString(cast.box.min) + " to " +
              testing::PrintToString(cast.box.max) + " along " + testing::PrintToString(cast.direction) +
-             " up to " + testing::PrintToString(cast.furthest);
+             " up to " + testing::PrintToString(cast.t_max);
     };
     EXPECT_EQ(found, expected) << shown();
-    EXPECT_EQ(index.first_hit(cast, filter), first) << shown();
+    EXPECT_EQ(index.first_hit(cast, filter, except), first) << shown();
   }
 
   template <typename Counts>
   void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const Point& point,
-                      const Filter* filter, Counts counts) {
+                      const Filter* filter, std::optional<BoxId> except, Counts counts) {
     constexpr Real infinity = std::numeric_limits<Real>::infinity();
     const std::size_t count = dice_.one_in(10) ? boxes.size() : dice_.below(12);
-    const Real furthest = dice_.one_in(3) ? Real(dice_.whole(0, 9)) : infinity;
+    const Real max_distance_squared = dice_.one_in(3) ? Real(dice_.whole(0, 9)) : infinity;
     std::vector<Neighbour<Real>> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!counts(i)) continue;
       const Real distance = distance_squared(point, boxes[i]);
-      if (distance <= furthest) expected.push_back({BoxId(i), distance});
+      if (distance <= max_distance_squared) expected.push_back({BoxId(i), distance});
     }
     std::ranges::stable_sort(expected, {}, &Neighbour<Real>::distance_squared);
     if (expected.size() > count) expected.resize(count);
     std::vector<Neighbour<Real>> found = {{BoxId(7), 7}};
-    index.nearest(point, count, found, filter, furthest);
+    index.nearest(point, count, found, filter, max_distance_squared, except);
     EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point);
   }
 

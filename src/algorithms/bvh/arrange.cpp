@@ -4,20 +4,20 @@
 #include <cstddef>
 #include <vector>
 
-#include "kernels/query_tree.hpp"
+#include "kernels/bvh.hpp"
 
 namespace broadside::own {
 namespace {
 
-using kernels::node_width;
+using kernels::fan_out;
 
 /// Halves by the middles along the axis on which these lie farthest apart, again and again. Halves are
 /// whole numbers of full subtrees.
 template <int D>
 void halve(std::span<NumberedBox<D>> leaves) {
-  if (leaves.size() <= node_width) return;
-  std::size_t subtree = node_width;
-  while (subtree * node_width < leaves.size()) subtree *= node_width;
+  if (leaves.size() <= fan_out) return;
+  std::size_t subtree = fan_out;
+  while (subtree * fan_out < leaves.size()) subtree *= fan_out;
   const std::size_t half = (leaves.size() / subtree + 1) / 2 * subtree;
   const auto middle_at = static_cast<std::ptrdiff_t>(half);
   std::ranges::nth_element(leaves, leaves.begin() + middle_at, BeforeAlong<D>{widest_axis<D>(leaves)});

@@ -1,6 +1,6 @@
 // A bounding volume hierarchy: sixteen boxes to a leaf, sixteen children to a node, joined with itself.
 //
-// The builder is in bvh_tree.cpp, the join in kernels/box_tree.cpp.
+// The builder is in packer.cpp, the join in kernels/bvh_join.cpp.
 #include <memory>
 #include <span>
 #include <string>
@@ -9,12 +9,12 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
+#include "algorithms/bvh/packer.hpp"
 #include "algorithms/bvh/tracker.hpp"
-#include "algorithms/bvh/tree.hpp"
 #include "algorithms/descriptions.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
-#include "kernels/box_tree.hpp"
+#include "kernels/bvh_join.hpp"
 #include "kernels/waste.hpp"
 
 namespace broadside::own {
@@ -36,7 +36,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     this->set_yielded(false);
     if (boxes.empty()) return this->count({});
     packer_.pack(boxes, this->left_count());
-    const kernels::BoxTree<D>& tree = packer_.tree();
+    const kernels::PackedBvh<D>& tree = packer_.tree();
     kernels::JoinLimit limit;
     if (this->may_yield()) limit = {kernels::tests_per_box * boxes.size(), kernels::tests_per_pair};
     const kernels::JoinWork work = kernels::join(tree, limit, pairs);
@@ -52,7 +52,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
     packer_.pack(boxes);
-    const kernels::BoxTree<D>& tree = packer_.tree();
+    const kernels::PackedBvh<D>& tree = packer_.tree();
     Outline<D> outline;
     outline.kind = "nodes";
     for (std::size_t level = tree.level_count; level-- > 1;) {
@@ -73,7 +73,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     return outline;
   }
 
-  BoxTreePacker<D> packer_;
+  BvhPacker<D> packer_;
   std::vector<bool> is_joined_;  // by id, after a search that gave up
 };
 

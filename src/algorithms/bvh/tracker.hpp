@@ -8,7 +8,7 @@
 
 namespace broadside::own {
 
-/// The tunables `update`, `margin` and `budget`.
+/// The tunable `update`.
 std::vector<Tunable> bvh_tracking();
 
 /// `finder` is what finds all pairs anew where most boxes move.

@@ -1,6 +1,9 @@
-// World: its index for queries, built when the first one is asked.
+// World: its index for queries, the tracker's or one built when the first query is asked.
 #pragma once
 
+#include "broadside/queries.hpp"
+
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -14,6 +17,7 @@ namespace broadside {
 template <int D, typename Real>
 const BoxIndex<D, Real>& World<D, Real>::box_index() const {
   const State& state = *state_;
+  if (const BoxIndex<D, Real>* const trackers = state.trackers_index()) return *trackers;
   if (!state.is_indexed.load(std::memory_order_acquire)) {
     const std::lock_guard lock(state.reading);
     if (!state.is_indexed.load(std::memory_order_relaxed)) state.bring_index_up_to_date();
@@ -23,9 +27,11 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
 
 template <int D, typename Real>
 void World<D, Real>::nearest(const Point<D, Real>& point, std::size_t count,
-                             std::vector<HandleNeighbour<Real>>& found, const Filter* asker) const {
+                             std::vector<HandleNeighbour<Real>>& found, const Filter* query_filter,
+                             const Handle& except) const {
   std::vector<Neighbour<Real>> neighbours;
-  box_index().nearest(point, count, neighbours, asker);
+  box_index().nearest(point, count, neighbours, query_filter, std::numeric_limits<Real>::infinity(),
+                      slot_of(except));
   found.clear();
   for (const Neighbour<Real>& one : neighbours) found.push_back({handle_of(one.box), one.distance_squared});
 }
@@ -33,6 +39,13 @@ void World<D, Real>::nearest(const Point<D, Real>& point, std::size_t count,
 template <int D, typename Real>
 Handle World<D, Real>::handle_of(BoxId slot) const noexcept {
   return state_->handle(slot);
+}
+
+/// The tracker's own index, if it has one of the boxes as they are now.
+template <int D, typename Real>
+const BoxIndex<D, Real>* World<D, Real>::State::trackers_index() const noexcept {
+  if (has_margin() || !changed.empty() || way_back != nullptr) return nullptr;
+  return tracker->box_index();
 }
 
 /// Changes of the boxes that the next update is to tell may be handed on again and again, which costs them.
@@ -47,12 +60,13 @@ void World<D, Real>::State::bring_index_up_to_date() const {
   is_indexed.store(true, std::memory_order_release);
 }
 
-/// Before an update forgets what changed: keeps it for the index. One that nobody has asked for long is
-/// built anew by whoever asks next.
+/// Before an update forgets what changed: keeps it for the index. One that no query has used for long, or
+/// since changes while the tracker has one, is built anew by the next query that needs it.
 template <int D, typename Real>
 void World<D, Real>::State::note_changes_for_index() {
   if (queried == nullptr || is_indexed.load(std::memory_order_relaxed)) return;
-  if (unindexed.size() + changed.size() > slots.size() / 2 + 1024) return drop_index();
+  const bool is_unused = unindexed.size() + changed.size() > slots.size() / 2 + 1024;
+  if (is_unused || (!has_margin() && tracker->box_index() != nullptr)) return drop_index();
   unindexed.insert(unindexed.end(), changed.begin(), changed.end());
 }
 

@@ -40,49 +40,49 @@ std::unique_ptr<BoxIndex<2>> index_of(const std::vector<Box2>& boxes) {
   return index;
 }
 
-std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box, const Filter* asker = nullptr) {
+std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box, const Filter* query_filter = nullptr) {
   std::vector<BoxId> found;
   index.overlapping(
-      box, [&found](BoxId id) { found.push_back(id); }, asker);
+      box, [&found](BoxId id) { found.push_back(id); }, query_filter);
   std::ranges::sort(found);
   return found;
 }
 
 TEST(RayEntry, IsWhereTheRayFirstTouches) {
   const Box2 box{{2, 0}, {4, 1}};
-  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}}, box), 2);
-  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {4, 0}}, box), 0.5f);
-  EXPECT_EQ(entry(Ray<2>{{6, 0.5f}, {-1, 0}}, box), 2);
-  EXPECT_EQ(entry(Ray<2>{{3, 0.5f}, {1, 0}}, box), 0);
-  EXPECT_EQ(entry(Ray<2>{{3, 0.5f}, {0, 0}}, box), 0);
-  EXPECT_EQ(entry(Ray<2>{{6, 0.5f}, {1, 0}}, box), std::nullopt);
-  EXPECT_EQ(entry(Ray<2>{{0, 2}, {1, 0}}, box), std::nullopt);
-  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}, 1.5f}, box), std::nullopt);
-  EXPECT_EQ(entry(Ray<2>{{0, 0.5f}, {1, 0}, 2}, box), 2);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0.5f}, {1, 0}}, box), 2);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0.5f}, {4, 0}}, box), 0.5f);
+  EXPECT_EQ(t_enter(Ray<2>{{6, 0.5f}, {-1, 0}}, box), 2);
+  EXPECT_EQ(t_enter(Ray<2>{{3, 0.5f}, {1, 0}}, box), 0);
+  EXPECT_EQ(t_enter(Ray<2>{{3, 0.5f}, {0, 0}}, box), 0);
+  EXPECT_EQ(t_enter(Ray<2>{{6, 0.5f}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 2}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0.5f}, {1, 0}, 1.5f}, box), std::nullopt);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0.5f}, {1, 0}, 2}, box), 2);
 }
 
 TEST(RayEntry, CountsWhatIsGrazed) {
   const Box2 box{{1, 3}, {2, 4}};
-  EXPECT_EQ(entry(Ray<2>{{0, 3}, {1, 0}}, box), 1) << "along a face";
-  EXPECT_EQ(entry(Ray<2>{{0, 0}, {2, 3}}, box), 1) << "a corner";
-  EXPECT_EQ(entry(Ray<2>{{0, 5}, {7, -7}}, box), 1 / 7.0f) << "another corner";
-  EXPECT_EQ(entry(Ray<2>{{2, 4}, {1, 1}}, box), 0) << "from a corner outwards";
+  EXPECT_EQ(t_enter(Ray<2>{{0, 3}, {1, 0}}, box), 1) << "along a face";
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0}, {2, 3}}, box), 1) << "a corner";
+  EXPECT_EQ(t_enter(Ray<2>{{0, 5}, {7, -7}}, box), 1 / 7.0f) << "another corner";
+  EXPECT_EQ(t_enter(Ray<2>{{2, 4}, {1, 1}}, box), 0) << "from a corner outwards";
 }
 
 TEST(RayEntry, KnowsInfiniteBoxes) {
   const Box2 half_space{{5, -infinity}, {infinity, infinity}};
-  EXPECT_EQ(entry(Ray<2>{{0, 0}, {2, 1}}, half_space), 2.5f);
-  EXPECT_EQ(entry(Ray<2>{{0, 0}, {-1, 0}}, half_space), std::nullopt);
-  EXPECT_EQ(entry(Ray<2>{{0, 0}, {0, 1}}, half_space), std::nullopt);
-  EXPECT_EQ(entry(Ray<2>{{6, 0}, {0, 1}}, half_space), 0);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0}, {2, 1}}, half_space), 2.5f);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0}, {-1, 0}}, half_space), std::nullopt);
+  EXPECT_EQ(t_enter(Ray<2>{{0, 0}, {0, 1}}, half_space), std::nullopt);
+  EXPECT_EQ(t_enter(Ray<2>{{6, 0}, {0, 1}}, half_space), 0);
 }
 
 TEST(BoxCastEntry, IsWhereTheMovedBoxFirstTouches) {
   const Box2 box{{5, 0}, {6, 1}};
-  EXPECT_EQ(entry(BoxCast<2>{{{0, 0}, {2, 1}}, {1, 0}}, box), 3);
-  EXPECT_EQ(entry(BoxCast<2>{{{0, 1}, {2, 2}}, {1, 0}}, box), 3) << "touching at a face";
-  EXPECT_EQ(entry(BoxCast<2>{{{0, 1.5f}, {2, 2}}, {1, 0}}, box), std::nullopt);
-  EXPECT_EQ(entry(BoxCast<2>{{{9, 0}, {10, 1}}, {-2, 0}}, box), 1.5f);
+  EXPECT_EQ(t_enter(BoxCast<2>{{{0, 0}, {2, 1}}, {1, 0}}, box), 3);
+  EXPECT_EQ(t_enter(BoxCast<2>{{{0, 1}, {2, 2}}, {1, 0}}, box), 3) << "touching at a face";
+  EXPECT_EQ(t_enter(BoxCast<2>{{{0, 1.5f}, {2, 2}}, {1, 0}}, box), std::nullopt);
+  EXPECT_EQ(t_enter(BoxCast<2>{{{9, 0}, {10, 1}}, {-2, 0}}, box), 1.5f);
 }
 
 TEST(DistanceSquared, IsZeroInsideAndDefinedForInfinities) {
@@ -168,7 +168,7 @@ TEST(BoxIndex, HandsOnSmallChunksFirst) {
   EXPECT_EQ(std::accumulate(visitor.sizes.begin(), visitor.sizes.end(), std::size_t{0}), 5000U);
 }
 
-TEST(BoxIndex, FindsOnlyWhatAcceptsTheAsker) {
+TEST(BoxIndex, FindsOnlyWhatAcceptsTheQueryFilter) {
   const std::vector<Box2> boxes = row(6);
   std::vector<Filter> filters(6);
   filters[1].category = 4;
@@ -176,15 +176,15 @@ TEST(BoxIndex, FindsOnlyWhatAcceptsTheAsker) {
   filters[4].group = -2;
   auto index = make_box_index<2>();
   index->update({.boxes = boxes, .changed = {}, .filters = filters});
-  const Filter asker{.category = 1, .mask = 1, .group = -2};
+  const Filter query_filter{.category = 1, .mask = 1, .group = -2};
   const Box2 all{{0, 0}, {100, 1}};
-  EXPECT_THAT(overlapping(*index, all, &asker), ElementsAre(BoxId(0), BoxId(2), BoxId(5)));
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker)->box, BoxId(5));
+  EXPECT_THAT(overlapping(*index, all, &query_filter), ElementsAre(BoxId(0), BoxId(2), BoxId(5)));
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter)->box, BoxId(5));
   filters[5].category = 16;
   index->update({.boxes = boxes, .changed = std::vector{BoxId(5)}, .filters = filters});
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker), std::nullopt);
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter), std::nullopt);
   index->update({.boxes = boxes, .changed = {}});
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &asker)->box, BoxId(3));
+  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter)->box, BoxId(3));
 }
 
 TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
@@ -209,11 +209,11 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   bad.direction[0] = nan;
   EXPECT_THAT(message_of<InvalidQuery>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
   bad = good;
-  bad.furthest = -1;
+  bad.t_max = -1;
   EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
   EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidQuery);
   EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
-  EXPECT_THROW(index->holding({0, nan}, ignore), InvalidQuery);
+  EXPECT_THROW(index->containing({0, nan}, ignore), InvalidQuery);
   EXPECT_THROW(index->nearest({0, nan}, 1, found), InvalidQuery);
   EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidQuery);
 }

@@ -1,10 +1,13 @@
 // World's queries: in terms of handles, about the boxes as they are now.
 #include <algorithm>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/world.hpp"
 
 namespace broadside {
@@ -15,10 +18,10 @@ using testing::IsEmpty;
 
 constexpr Box2 everywhere{{-1e6f, -1e6f}, {1e6f, 1e6f}};
 
-std::vector<Handle> overlapping(const World2& world, const Box2& box, const Filter* asker = nullptr) {
+std::vector<Handle> overlapping(const World2& world, const Box2& box, const Filter* query_filter = nullptr) {
   std::vector<Handle> found;
   world.overlapping(
-      box, [&found](Handle handle) { found.push_back(handle); }, asker);
+      box, [&found](Handle handle) { found.push_back(handle); }, query_filter);
   std::ranges::sort(found);
   return found;
 }
@@ -56,7 +59,7 @@ TEST(WorldQueries, CastAndHoldInTermsOfHandles) {
   int calls = 0;
   EXPECT_FALSE(world.hits(ray, [&calls](Handle, float) { return ++calls > 5; }));
   EXPECT_EQ(calls, 1);
-  EXPECT_FALSE(world.holding({5.5f, 0.5f}, [far](Handle handle) { return handle != far; }));
+  EXPECT_FALSE(world.containing({5.5f, 0.5f}, [far](Handle handle) { return handle != far; }));
 }
 
 TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
@@ -79,14 +82,58 @@ TEST(WorldQueries, HeedFiltersAndNotTheMargin) {
   const Handle b = world.add({{2, 0}, {3, 1}});
   world.update();
   EXPECT_THAT(overlapping(world, {{0, 0}, {1, 1}}), ElementsAre(a));
-  const Filter asker{.category = 2, .mask = 4};
-  EXPECT_THAT(overlapping(world, everywhere, &asker), IsEmpty());
+  const Filter query_filter{.category = 2, .mask = 4};
+  EXPECT_THAT(overlapping(world, everywhere, &query_filter), IsEmpty());
   world.set_filter(b, {.category = 4});
-  EXPECT_THAT(overlapping(world, everywhere, &asker), ElementsAre(b));
+  EXPECT_THAT(overlapping(world, everywhere, &query_filter), ElementsAre(b));
 }
 
-TEST(WorldQueries, FollowChurn) {
+TEST(WorldQueries, LeaveOutOneBox) {
   World2 world;
+  const Handle own = world.add({{0, 0}, {1, 1}});
+  const Handle other = world.add({{3, 0}, {4, 1}});
+  const Ray<2> ray{{0.5f, 0.5f}, {1, 0}};
+  EXPECT_EQ(world.first_hit(ray), (HandleHit<float>{own, 0}));
+  EXPECT_EQ(world.first_hit(ray, nullptr, own), (HandleHit<float>{other, 2.5f}));
+  std::vector<Handle> found;
+  const auto add = [&found](Handle handle) { found.push_back(handle); };
+  world.overlapping(everywhere, add, nullptr, own);
+  world.containing({3.5f, 0.5f}, add, nullptr, other);
+  world.hits(
+      ray, [&add](Handle handle, float) { add(handle); }, nullptr, own);
+  std::vector<HandleNeighbour<float>> nearest;
+  world.nearest({0, 0}, 1, nearest, nullptr, own);
+  found.push_back(nearest.front().handle);
+  EXPECT_THAT(found, ElementsAre(other, other, other));
+  world.remove(other);
+  EXPECT_EQ(world.first_hit(ray, nullptr, other), (HandleHit<float>{own, 0})) << "one that is gone";
+}
+
+TEST(WorldQueries, UseTheTrackersIndexWhereItHasOne) {
+  std::unique_ptr<PairTracker<2>> made = make_tracker<2>("bvh:update=reinsert");
+  const PairTracker<2>& tracker = *made;
+  World2 world(std::move(made));
+  const Handle a = world.add({{0, 0}, {1, 1}});
+  const Handle b = world.add({{5, 0}, {6, 1}}, {.filter = {.category = 4}});
+  world.update();
+  EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
+  const Filter query_filter{.mask = 4};
+  EXPECT_THAT(overlapping(world, everywhere, &query_filter), ElementsAre(b));
+  EXPECT_EQ(&world.box_index(), tracker.box_index());
+  world.move(a, {{8, 0}, {9, 1}});
+  EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a)) << "before the tracker knows of it";
+  EXPECT_NE(&world.box_index(), tracker.box_index());
+  world.update();
+  EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a));
+  EXPECT_EQ(&world.box_index(), tracker.box_index());
+}
+
+class WorldQueriesBy : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Algorithm, WorldQueriesBy, testing::Values("auto", "bvh", "bvh:update=reinsert"));
+
+TEST_P(WorldQueriesBy, FollowChurn) {
+  World2 world(GetParam());
   std::vector<Handle> handles;
   for (int i = 0; i < 3000; ++i) {
     const auto at = static_cast<float>(i);

@@ -1,4 +1,4 @@
-// A tree of boxes, sixteen to a node, and the join of the tree with itself.
+// A packed tree of bounds, level by level in arrays, and its join with itself.
 #pragma once
 
 #include <array>
@@ -8,11 +8,9 @@
 
 #include "broadside/pair.hpp"
 
-namespace broadside::kernels {
+#include "kernels/bvh.hpp"
 
-/// How many children a node has: so many bounds (or boxes, in a leaf) are compared at once. The same on every
-/// instruction set, since it fixes the order of the pairs.
-inline constexpr std::size_t fan_out = 16;
+namespace broadside::kernels {
 
 /// A tree over 2^32 boxes has no more levels.
 inline constexpr std::size_t most_levels = 9;
@@ -30,7 +28,7 @@ struct TreeLevel {
 /// Boxes in an order in which neighbours in the array are neighbours in space, and bounds over them. The
 /// topmost level has at most `fan_out` elements.
 template <int D>
-struct BoxTree {
+struct PackedBvh {
   std::array<TreeLevel<D>, most_levels> levels;
   std::size_t level_count;
   const BoxId* id;  ///< of the boxes on level 0
@@ -46,7 +44,7 @@ struct BoxTree {
 /// Sets the bounds on level `parent` > 0 from those on the level below, whose places beyond its size and
 /// without a box must be absent boxes (not yet NaN).
 template <int D>
-void set_bounds(const BoxTree<D>& tree, std::size_t parent);
+void set_bounds(const PackedBvh<D>& tree, std::size_t parent);
 
 /// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
 /// Comparing bounds counts as comparing boxes.
@@ -63,6 +61,6 @@ struct JoinWork {
 
 /// Reports the pairs of overlapping boxes, or those between the two sets, leaf by leaf.
 template <int D>
-JoinWork join(const BoxTree<D>& tree, const JoinLimit& limit, PairSink& pairs);
+JoinWork join(const PackedBvh<D>& tree, const JoinLimit& limit, PairSink& pairs);
 
 }  // namespace broadside::kernels

@@ -1,7 +1,7 @@
 // The bounds over packed leaves.
-#include "algorithms/bvh/levels.hpp"
+#include "algorithms/bvh/packed_levels.hpp"
 
-#include "kernels/nowhere.hpp"
+#include "core/nan_box.hpp"
 
 namespace broadside::own {
 namespace {
@@ -22,7 +22,7 @@ constexpr Box<D> none = absent_box<D>();
 }  // namespace
 
 template <int D>
-void BoxTreeLevels<D>::start(std::size_t places) {
+void PackedLevels<D>::start(std::size_t places) {
   resize(0, places);
   if (ids_.size() < places) ids_.resize(places);
   gaps_.clear();
@@ -30,7 +30,7 @@ void BoxTreeLevels<D>::start(std::size_t places) {
 }
 
 template <int D>
-void BoxTreeLevels<D>::build() {
+void PackedLevels<D>::build() {
   for (const Gap gap : gaps_) fill(0, gap, none<D>);
   tree_.id = ids_.data();
   tree_.level_count = 1;
@@ -40,19 +40,19 @@ void BoxTreeLevels<D>::build() {
     kernels::set_bounds(tree_, level);
     fill(level, gap_behind(level), none<D>);
   } while (tree_.levels[tree_.level_count - 1].size > fan_out);
-  for (const Gap gap : gaps_) fill(0, gap, kernels::nowhere<D>());
+  for (const Gap gap : gaps_) fill(0, gap, core::nan_box<D>());
   for (std::size_t level = 1; level < tree_.level_count; ++level)
-    fill(level, gap_behind(level), kernels::nowhere<D>());
+    fill(level, gap_behind(level), core::nan_box<D>());
 }
 
 template <int D>
-auto BoxTreeLevels<D>::gap_behind(std::size_t level) const -> Gap {
+auto PackedLevels<D>::gap_behind(std::size_t level) const -> Gap {
   const std::size_t size = tree_.levels[level].size;
   return {size, whole_leaves(size)};
 }
 
 template <int D>
-void BoxTreeLevels<D>::fill(std::size_t level, Gap gap, const Box<D>& box) {
+void PackedLevels<D>::fill(std::size_t level, Gap gap, const Box<D>& box) {
   for (std::size_t place = gap.begin; place < gap.end; ++place) {
     for (int axis = 0; axis < D; ++axis) {
       tree_.levels[level].min[axis][place] = box.min[axis];
@@ -64,7 +64,7 @@ void BoxTreeLevels<D>::fill(std::size_t level, Gap gap, const Box<D>& box) {
 
 /// Makes `size` the size of a level, whose elements are then to be set.
 template <int D>
-void BoxTreeLevels<D>::resize(std::size_t level, std::size_t size) {
+void PackedLevels<D>::resize(std::size_t level, std::size_t size) {
   LevelMemory& memory = memory_[level];
   for (int axis = 0; axis < D; ++axis) {
     tree_.levels[level].min[axis] = grown(memory.min[axis], whole_leaves(size));
@@ -75,7 +75,7 @@ void BoxTreeLevels<D>::resize(std::size_t level, std::size_t size) {
 }
 
 template <int D>
-std::size_t BoxTreeLevels<D>::bytes() const noexcept {
+std::size_t PackedLevels<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
   std::size_t bytes = held(gaps_) + held(ids_);
   for (const LevelMemory& level : memory_) {
@@ -85,7 +85,7 @@ std::size_t BoxTreeLevels<D>::bytes() const noexcept {
   return bytes;
 }
 
-template class BoxTreeLevels<2>;
-template class BoxTreeLevels<3>;
+template class PackedLevels<2>;
+template class PackedLevels<3>;
 
 }  // namespace broadside::own

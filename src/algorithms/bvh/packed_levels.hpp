@@ -11,7 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "kernels/box_tree.hpp"
+#include "kernels/bvh_join.hpp"
 
 namespace broadside::own {
 
@@ -22,11 +22,11 @@ constexpr std::size_t whole_leaves(std::size_t size) {
 
 /// Between start() and build() each place gets a box or is left.
 template <int D>
-class BoxTreeLevels {
+class PackedLevels {
  public:
-  BoxTreeLevels() = default;
-  BoxTreeLevels(const BoxTreeLevels&) = delete;
-  BoxTreeLevels& operator=(const BoxTreeLevels&) = delete;
+  PackedLevels() = default;
+  PackedLevels(const PackedLevels&) = delete;
+  PackedLevels& operator=(const PackedLevels&) = delete;
 
   /// Starts over with so many places, a multiple of `fan_out`. No allocation beyond growth.
   void start(std::size_t places);
@@ -48,7 +48,7 @@ class BoxTreeLevels {
   /// Sets the bounds over the leaves, level by level.
   void build();
 
-  const kernels::BoxTree<D>& tree() const noexcept { return tree_; }
+  const kernels::PackedBvh<D>& tree() const noexcept { return tree_; }
   std::span<BoxId> ids() noexcept { return {ids_.data(), tree_.levels[0].size}; }
   std::size_t bytes() const noexcept;
 
@@ -72,7 +72,7 @@ class BoxTreeLevels {
   std::vector<Gap> gaps_;
   std::array<LevelMemory, kernels::most_levels> memory_;
   std::vector<BoxId> ids_;
-  kernels::BoxTree<D> tree_{};
+  kernels::PackedBvh<D> tree_{};
 };
 
 }  // namespace broadside::own

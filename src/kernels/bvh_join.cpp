@@ -1,4 +1,4 @@
-// The join of a tree of boxes with itself, written once for every instruction set.
+// The join of a packed tree of bounds with itself, written once for every instruction set.
 //
 // A node's children are compared with those of all nodes that its bounds touch, sixteen at a time, so that
 // what is found on one level is looked at on the next and each two nodes meet once: the one that stands first
@@ -7,14 +7,15 @@
 // are written without branches: hits are compressed to the front, and the end of the list moves on by as
 // many.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/box_tree.cpp"
-#include "kernels/box_tree.hpp"
+#define HWY_TARGET_INCLUDE "kernels/bvh_join.cpp"
+#include "kernels/bvh_join.hpp"
 
 #include <algorithm>
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/broadcast_box.hpp"
 #include "kernels/compress.hpp"
 #include "kernels/pair_writer.hpp"
 
@@ -22,42 +23,26 @@ HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-using Floats = hn::CappedTag<float, fan_out>;
-using Numbers = hn::Rebind<std::uint32_t, Floats>;
-using FloatVector = hn::Vec<Floats>;
-using NumberVector = hn::Vec<Numbers>;
-using Hits = hn::Mask<Numbers>;
+using Hits = NumberMask;
 using Writer = PairWriter<Numbers>;
 static_assert(fan_out == Writer::at_once);
 
-/// The elements of a vector, sixteen of which are one or several.
-constexpr std::size_t lanes = hn::MaxLanes(Floats());
-
 /// One box or the bounds of one node, in every lane.
 template <int D>
-struct Query {
-  HWY_INLINE Query(const TreeLevel<D>& level, std::size_t place) {
-    for (int axis = 0; axis < D; ++axis) {
-      min[axis] = hn::Set(Floats(), level.min[axis][place]);
-      max[axis] = hn::Set(Floats(), level.max[axis][place]);
-    }
+HWY_INLINE BroadcastBox<D> broadcast(const TreeLevel<D>& level, std::size_t place) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = level.min[axis][place];
+    box.max[axis] = level.max[axis][place];
   }
+  return BroadcastBox<D>(box);
+}
 
-  /// Which of the boxes or bounds from `at` on it overlaps.
-  HWY_INLINE Hits touching(const TreeLevel<D>& level, std::size_t at) const {
-    const Floats floats;
-    auto hits = hn::Le(hn::LoadU(floats, level.min[0] + at), max[0]);
-    hits = hn::And(hits, hn::Le(min[0], hn::LoadU(floats, level.max[0] + at)));
-    for (int axis = 1; axis < D; ++axis) {
-      hits = hn::And(hits, hn::Le(hn::LoadU(floats, level.min[axis] + at), max[axis]));
-      hits = hn::And(hits, hn::Le(min[axis], hn::LoadU(floats, level.max[axis] + at)));
-    }
-    return hn::RebindMask(Numbers(), hits);
-  }
-
-  FloatVector min[D];
-  FloatVector max[D];
-};
+/// Which of the boxes or bounds from `at` on it overlaps.
+template <int D>
+HWY_INLINE Hits touching(const BroadcastBox<D>& query, const TreeLevel<D>& level, std::size_t at) {
+  return hn::RebindMask(Numbers(), query.overlaps(level, at));
+}
 
 /// The numbers from `begin` on, one a lane.
 HWY_INLINE NumberVector numbers_from(std::size_t begin) {
@@ -71,7 +56,7 @@ HWY_INLINE NumberVector all_lanes(std::size_t number) {
 template <int D>
 class Join {
  public:
-  Join(const BoxTree<D>& tree, const JoinLimit& limit, PairSink& sink)
+  Join(const PackedBvh<D>& tree, const JoinLimit& limit, PairSink& sink)
       : tree_(tree), limit_(limit), pairs_(sink) {}
 
   JoinWork run() {
@@ -98,14 +83,14 @@ class Join {
     const std::size_t end = std::min((node + 1) * fan_out, children.size);
     for (std::size_t child = node * fan_out; child < end; ++child) {
       if (tree_.left_size != 0 && child << (4 * level) >= tree_.left_size) break;  // no box of the left set
-      const Query<D> query(children, child);
+      const BroadcastBox<D> query = broadcast(children, child);
       const NumberVector first = all_lanes(std::max(child, border));
       std::size_t touched_count = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t begin = std::size_t{list[i]} * fan_out;
         for (std::size_t at = begin; at < begin + fan_out; at += lanes) {
           const NumberVector numbers = numbers_from(at);
-          const Hits hits = hn::AndNot(hn::Gt(first, numbers), query.touching(children, at));
+          const Hits hits = hn::AndNot(hn::Gt(first, numbers), touching(query, children, at));
           hn::StoreU(compress(Numbers(), numbers, hits), Numbers(), touched + touched_count);
           touched_count += hn::CountTrue(Numbers(), hits);
         }
@@ -129,10 +114,10 @@ class Join {
     const TreeLevel<D>& leaves = tree_.levels[1];
     std::size_t queried = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const Query<D> bounds(leaves, list[i]);
+      const BroadcastBox<D> bounds = broadcast(leaves, list[i]);
       const std::size_t other = std::size_t{list[i]} * fan_out;
       for (std::size_t at = 0; at < fan_out; at += lanes) {
-        const Hits hits = bounds.touching(boxes, begin + at);
+        const Hits hits = touching(bounds, boxes, begin + at);
         hn::StoreU(compress(Numbers(), numbers_from(other + at), hits), Numbers(), queries_ + queried);
         queried += hn::CountTrue(Numbers(), hits);
       }
@@ -147,12 +132,12 @@ class Join {
   /// Compares the boxes of the leaf that begins at `begin` with each other.
   HWY_INLINE void within(std::size_t begin) {
     for (std::size_t i = 0; i + 1 < fan_out; ++i) {
-      const Query<D> query(tree_.levels[0], begin + i);
+      const BroadcastBox<D> query = broadcast(tree_.levels[0], begin + i);
       const NumberVector id = all_lanes(index(tree_.id[begin + i]));
       for (std::size_t at = (i + 1) / lanes * lanes; at < fan_out; at += lanes) {
         const Hits later = hn::Gt(numbers_from(at), all_lanes(i));
         pairs_.room();
-        pairs_.write_of(id, ids(begin + at), hn::And(query.touching(tree_.levels[0], begin + at), later));
+        pairs_.write_of(id, ids(begin + at), hn::And(touching(query, tree_.levels[0], begin + at), later));
       }
     }
     tests_ += fan_out * (fan_out - 1) / 2;
@@ -163,11 +148,11 @@ class Join {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t place = begin + queries_[i] % fan_out;
       const std::size_t other = queries_[i] / fan_out * fan_out;
-      const Query<D> query(tree_.levels[0], place);
+      const BroadcastBox<D> query = broadcast(tree_.levels[0], place);
       const NumberVector id = all_lanes(index(tree_.id[place]));
       for (std::size_t at = other; at < other + fan_out; at += lanes) {
         pairs_.room();
-        pairs_.write_of(id, ids(at), query.touching(tree_.levels[0], at));
+        pairs_.write_of(id, ids(at), touching(query, tree_.levels[0], at));
       }
     }
     tests_ += count * fan_out;
@@ -179,7 +164,7 @@ class Join {
 
   static constexpr std::size_t most_queries = 1024;
 
-  const BoxTree<D>& tree_;
+  const PackedBvh<D>& tree_;
   JoinLimit limit_;
   Writer pairs_;
   std::uint64_t tests_ = 0;
@@ -190,7 +175,7 @@ class Join {
 };
 
 template <int D>
-void bound_level(const BoxTree<D>& tree, std::size_t parent) {
+void bound_level(const PackedBvh<D>& tree, std::size_t parent) {
   const Floats floats;
   const TreeLevel<D>& below = tree.levels[parent - 1];
   const TreeLevel<D>& level = tree.levels[parent];
@@ -213,14 +198,14 @@ void bound_level(const BoxTree<D>& tree, std::size_t parent) {
 }  // namespace
 
 // What the dispatch below can name: no templates.
-JoinWork join_2(const BoxTree<2>& tree, const JoinLimit& limit, PairSink& pairs) {
+JoinWork join_2(const PackedBvh<2>& tree, const JoinLimit& limit, PairSink& pairs) {
   return Join<2>(tree, limit, pairs).run();
 }
-JoinWork join_3(const BoxTree<3>& tree, const JoinLimit& limit, PairSink& pairs) {
+JoinWork join_3(const PackedBvh<3>& tree, const JoinLimit& limit, PairSink& pairs) {
   return Join<3>(tree, limit, pairs).run();
 }
-void set_bounds_2(const BoxTree<2>& tree, std::size_t parent) { bound_level(tree, parent); }
-void set_bounds_3(const BoxTree<3>& tree, std::size_t parent) { bound_level(tree, parent); }
+void set_bounds_2(const PackedBvh<2>& tree, std::size_t parent) { bound_level(tree, parent); }
+void set_bounds_3(const PackedBvh<3>& tree, std::size_t parent) { bound_level(tree, parent); }
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -234,22 +219,22 @@ HWY_EXPORT(set_bounds_2);
 HWY_EXPORT(set_bounds_3);
 
 template <>
-JoinWork join(const BoxTree<2>& tree, const JoinLimit& limit, PairSink& pairs) {
+JoinWork join(const PackedBvh<2>& tree, const JoinLimit& limit, PairSink& pairs) {
   return HWY_DYNAMIC_DISPATCH(join_2)(tree, limit, pairs);
 }
 
 template <>
-JoinWork join(const BoxTree<3>& tree, const JoinLimit& limit, PairSink& pairs) {
+JoinWork join(const PackedBvh<3>& tree, const JoinLimit& limit, PairSink& pairs) {
   return HWY_DYNAMIC_DISPATCH(join_3)(tree, limit, pairs);
 }
 
 template <>
-void set_bounds(const BoxTree<2>& tree, std::size_t parent) {
+void set_bounds(const PackedBvh<2>& tree, std::size_t parent) {
   HWY_DYNAMIC_DISPATCH(set_bounds_2)(tree, parent);
 }
 
 template <>
-void set_bounds(const BoxTree<3>& tree, std::size_t parent) {
+void set_bounds(const PackedBvh<3>& tree, std::size_t parent) {
   HWY_DYNAMIC_DISPATCH(set_bounds_3)(tree, parent);
 }
 

@@ -1,4 +1,4 @@
-// Doubles as floats that lie further outward, about an origin.
+// Conservative rounding: boxes of doubles as boxes of floats that contain them, about an origin.
 #pragma once
 
 #include <algorithm>
@@ -30,10 +30,9 @@ inline float rounded_down(double value) noexcept {
 /// The same to the other side.
 inline float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
-/// Boxes of doubles as boxes of floats that hold them, about an origin and scaled by a power of two, both of
-/// them chosen for each axis.
+/// Origin and power-of-two scale are chosen for each axis.
 template <int D>
-class Outward {
+class ConservativeRounding {
  public:
   /// Chooses origin and scale by a sample of the boxes.
   void fit(std::span<const Box<D, double>> boxes) { fit_ = core::fit_linear<D>(boxes); }

@@ -4,15 +4,14 @@
 // multiplications by an inverse and a margin above what these can be wrong by, so that no box is lost that
 // the definition, with divisions, lets be met.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/query_tree_casts.cpp"
+#define HWY_TARGET_INCLUDE "kernels/bvh_cast.cpp"
 #include <algorithm>
 
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "kernels/query_lanes.hpp"
-#include "kernels/query_tree.hpp"
+#include "kernels/bvh_lanes.hpp"
+#include "kernels/bvh_query.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -25,19 +24,12 @@ constexpr float least = 0x1p-126f;
 
 /// Appends as append() does, and to `entries_to` where these children are entered.
 template <int D>
-HWY_INLINE std::size_t append_entries(const QueryNode<D>& node, std::size_t at, FloatMask mask,
+HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, FloatMask mask,
                                       FloatVector entries, std::uint32_t* to, float* entries_to) {
   const auto hits = hn::RebindMask(Numbers(), mask);
   const auto bits = hn::BitCast(Numbers(), entries);
   hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), entries_to);
   return append(node, at, mask, to);
-}
-
-/// Brings a node that will be looked at into the cache, while others are looked at.
-template <int D>
-HWY_INLINE void fetch(const QueryNode<D>& node) {
-  for (std::size_t line = 0; line < sizeof(node); line += 64)
-    hwy::Prefetch(reinterpret_cast<const char*>(&node) + line);
 }
 
 /// A cast, in every lane.
@@ -51,13 +43,13 @@ struct Cast {
       near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
       far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
       inverse_[axis] = all(query.inverse[axis]);
-      near_bound_at_[axis] = (is_back ? D + axis : axis) * node_width;
-      far_bound_at_[axis] = (is_back ? axis : D + axis) * node_width;
+      near_bound_at_[axis] = (is_back ? D + axis : axis) * fan_out;
+      far_bound_at_[axis] = (is_back ? axis : D + axis) * fan_out;
     }
   }
 
-  /// Which children from `at` on may be met up to `furthest`, which is what `limit` is made of.
-  HWY_INLINE FloatMask may_meet(const QueryNode<D>& node, std::size_t at, FloatVector limit,
+  /// Which children from `at` on may be met up to `t_max`, which is what `limit` is made of.
+  HWY_INLINE FloatMask may_meet(const Block<D>& node, std::size_t at, FloatVector limit,
                                 FloatVector& enter) const {
     FloatVector leave = all(infinity);
     enter = hn::Zero(Floats());
@@ -74,10 +66,10 @@ struct Cast {
     return hn::And(hits, hn::Le(enter, hn::Min(leave, limit)));
   }
 
-  /// Which children from `at` on are met up to `furthest`, by the definition.
-  HWY_INLINE FloatMask meets(const QueryNode<D>& node, std::size_t at, FloatVector furthest,
+  /// Which children from `at` on are met up to `t_max`, by the definition.
+  HWY_INLINE FloatMask meets(const Block<D>& node, std::size_t at, FloatVector t_max,
                              FloatVector& enter) const {
-    FloatVector leave = furthest;
+    FloatVector leave = t_max;
     enter = hn::Zero(Floats());
     FloatMask hits = hn::Le(load(node.min[0], at), load(node.max[0], at));
     for (int axis = 0; axis < D; ++axis) {
@@ -93,33 +85,33 @@ struct Cast {
   }
 
   /// Appends the boxes of a leaf that are met (or may be, where the cast is not exact) to what was found.
-  HWY_INLINE void leaf(const QueryNode<D>& node, FoundBoxes& found, FloatVector limit) const {
-    const FloatVector furthest = all(found.furthest);
-    for (std::size_t at = 0; at < node_width; at += lanes) {
+  HWY_INLINE void leaf(const Block<D>& node, FoundBoxes& found, FloatVector limit) const {
+    const FloatVector t_max = all(found.t_max);
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector enter;
       FloatMask hits = may_meet(node, at, limit, enter);
       if (cast_.exact) {
         if (hn::AllFalse(Floats(), hits)) continue;
-        hits = meets(node, at, furthest, enter);
+        hits = meets(node, at, t_max, enter);
       }
       // What is -0.0 becomes 0.0.
       const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
       found.count += append_entries(node, at, hits, entries, found.ids.data() + found.count,
-                                    found.entries.data() + found.count);
+                                    found.t_enter.data() + found.count);
     }
   }
 
-  /// As far as bounds may count if boxes do up to `furthest`.
-  static HWY_INLINE FloatVector limit(float furthest) { return all(furthest * margin + least); }
+  /// As far as bounds may count if boxes do up to `t_max`.
+  static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + least); }
 
  private:
-  HWY_INLINE FloatVector near_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+  HWY_INLINE FloatVector near_bound(const Block<D>& node, int axis, std::size_t at) const {
     return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at_[axis] + at);
   }
-  HWY_INLINE FloatVector far_bound(const QueryNode<D>& node, int axis, std::size_t at) const {
+  HWY_INLINE FloatVector far_bound(const Block<D>& node, int axis, std::size_t at) const {
     return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at_[axis] + at);
   }
-  HWY_INLINE FloatMask overlaps(const QueryNode<D>& node, int axis, std::size_t at) const {
+  HWY_INLINE FloatMask overlaps(const Block<D>& node, int axis, std::size_t at) const {
     return hn::And(hn::Le(load(node.min[axis], at), near_side_[axis]),
                    hn::Le(far_side_[axis], load(node.max[axis], at)));
   }
@@ -135,21 +127,21 @@ struct Cast {
 };
 
 template <int D>
-bool met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+bool met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   const Cast<D> cast(query);
-  const FloatVector limit = Cast<D>::limit(found.furthest);
-  std::uint32_t waiting[(longest_path + 1) * node_width];
+  const FloatVector limit = Cast<D>::limit(found.t_max);
+  std::uint32_t waiting[(longest_path + 1) * fan_out];
   std::size_t count = 1;
   waiting[0] = tree.root;
   while (count > 0) {
     const std::uint32_t number = waiting[--count];
-    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    const Block<D>& node = tree.nodes[number & ~leaf_bit];
     if ((number & leaf_bit) != 0) {
       cast.leaf(node, found, limit);
       if (found.count >= found.full && !found.take()) return false;
       continue;
     }
-    for (std::size_t at = 0; at < node_width; at += lanes) {
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector enter;
       const FloatMask hits = cast.may_meet(node, at, limit, enter);
       count += append(node, at, hits, waiting + count);
@@ -189,28 +181,28 @@ HWY_INLINE void sort_descending(Waiting* list, std::size_t count) {
 }
 
 template <int D>
-void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   const Cast<D> cast(query);
-  FloatVector limit = Cast<D>::limit(found.furthest);
-  Waiting waiting[(longest_path + 1) * node_width];
-  std::uint32_t children[2 * node_width];
-  std::uint32_t entries[2 * node_width];
+  FloatVector limit = Cast<D>::limit(found.t_max);
+  Waiting waiting[(longest_path + 1) * fan_out];
+  std::uint32_t children[2 * fan_out];
+  std::uint32_t entries[2 * fan_out];
   std::size_t count = 1;
   waiting[0] = tree.root;
   while (count > 0) {
     --count;
     if (!(entry_of(waiting[count]) <= hn::GetLane(limit))) continue;
     const auto number = static_cast<std::uint32_t>(waiting[count]);
-    const QueryNode<D>& node = tree.nodes[number & ~leaf_bit];
+    const Block<D>& node = tree.nodes[number & ~leaf_bit];
     if ((number & leaf_bit) != 0) {
       cast.leaf(node, found, limit);
       if (found.count == 0) continue;
       found.take();
-      limit = Cast<D>::limit(found.furthest);
+      limit = Cast<D>::limit(found.t_max);
       continue;
     }
     std::size_t size = 0;
-    for (std::size_t at = 0; at < node_width; at += lanes) {
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector enter;
       const FloatMask mask = cast.may_meet(node, at, limit, enter);
       const auto hits = hn::RebindMask(Numbers(), mask);
@@ -220,7 +212,7 @@ void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& 
     }
     for (std::size_t i = 0; i < size; ++i) {
       waiting[count + i] = Waiting{entries[i]} << 32 | children[i];
-      fetch(tree.nodes[children[i] & ~leaf_bit]);
+      prefetch(tree.nodes[children[i] & ~leaf_bit]);
     }
     // The nearest one last, where it is taken from.
     sort_descending(waiting + count, size);
@@ -231,16 +223,16 @@ void first_met(const QueryTree<D>& tree, const CastQuery<D>& query, FoundBoxes& 
 }  // namespace
 
 // What the dispatch below can name: no templates.
-bool met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+bool met_2(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
   return met(tree, cast, found);
 }
-bool met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+bool met_3(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
   return met(tree, cast, found);
 }
-void first_met_2(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+void first_met_2(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
   first_met(tree, cast, found);
 }
-void first_met_3(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+void first_met_3(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
   first_met(tree, cast, found);
 }
 
@@ -256,19 +248,19 @@ HWY_EXPORT(first_met_2);
 HWY_EXPORT(first_met_3);
 
 template <>
-bool find_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+bool find_met(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
   return HWY_DYNAMIC_DISPATCH(met_2)(tree, cast, found);
 }
 template <>
-bool find_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+bool find_met(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
   return HWY_DYNAMIC_DISPATCH(met_3)(tree, cast, found);
 }
 template <>
-void find_first_met(const QueryTree<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
+void find_first_met(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
   HWY_DYNAMIC_DISPATCH(first_met_2)(tree, cast, found);
 }
 template <>
-void find_first_met(const QueryTree<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
+void find_first_met(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
   HWY_DYNAMIC_DISPATCH(first_met_3)(tree, cast, found);
 }
 

@@ -10,11 +10,11 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "algorithms/bvh/levels.hpp"
+#include "algorithms/bvh/packed_levels.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
-#include "kernels/box_tree.hpp"
+#include "kernels/bvh_join.hpp"
 
 namespace broadside::own {
 
@@ -24,11 +24,11 @@ namespace broadside::own {
 /// widen the bounds of every leaf they were in. Each class begins with a new leaf, so that up to fifteen
 /// places at its end hold nothing.
 template <int D>
-class BoxTreePacker {
+class BvhPacker {
  public:
-  BoxTreePacker() = default;
-  BoxTreePacker(const BoxTreePacker&) = delete;
-  BoxTreePacker& operator=(const BoxTreePacker&) = delete;
+  BvhPacker() = default;
+  BvhPacker(const BvhPacker&) = delete;
+  BvhPacker& operator=(const BvhPacker&) = delete;
 
   /// Builds the tree over `boxes`, all of which are present; there is at least one. A box's id is its place
   /// in the array. Where `left_count` is not 0, the boxes before it have leaves and nodes' children of their
@@ -36,8 +36,8 @@ class BoxTreePacker {
   /// beyond growth.
   void pack(std::span<const Box<D>> boxes, std::size_t left_count = 0);
 
-  /// The tree built last. Whoever changes what its levels hold keeps to what BoxTree says of them.
-  const kernels::BoxTree<D>& tree() const noexcept { return levels_.tree(); }
+  /// The tree built last. Whoever changes what its levels hold keeps to what PackedBvh says of them.
+  const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
 
   /// The ids on level 0, one for each of its places, to be renamed by who has other names; 0 where there is
   /// no box.
@@ -68,7 +68,7 @@ class BoxTreePacker {
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> order_;
   core::RadixSort radix_;
-  BoxTreeLevels<D> levels_;
+  PackedLevels<D> levels_;
 };
 
 }  // namespace broadside::own

@@ -6,7 +6,7 @@
 // are put in order by counting, in buckets of equal width: bounds are taken of what came out, so that a
 // bucket's disorder costs time, never a pair. Boxes far larger than most would widen the bounds of every leaf
 // they are in: they have leaves of their own, by classes of size, behind the others in the same tree.
-#include "algorithms/bvh/tree.hpp"
+#include "algorithms/bvh/packer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ constexpr std::size_t classes = class_borders.size() + 1;
 }  // namespace
 
 template <int D>
-void BoxTreePacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_count) {
+void BvhPacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_count) {
   sample_.take(boxes);
   partition(boxes, left_count);
   place_all();
@@ -37,7 +37,7 @@ void BoxTreePacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_coun
 
 /// Sorts the boxes into entries_: by set and class, and in these roughly along the first axis.
 template <int D>
-void BoxTreePacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
+void BvhPacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
   std::array<float, D> inverse;
   for (int axis = 0; axis < D; ++axis) {
     typical_[axis] = std::max(sample_[axis].extent, spacing(boxes.size(), axis) / 2);
@@ -77,7 +77,7 @@ void BoxTreePacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left
 
 /// The axis with the most cuts comes last, where order is finest.
 template <int D>
-void BoxTreePacker<D>::choose_axes(std::size_t boxes) {
+void BvhPacker<D>::choose_axes(std::size_t boxes) {
   std::iota(axes_.begin(), axes_.end(), 0);
   const std::array<double, D> parts = parts_of(whole_leaves(boxes) / fan_out, 1);
   // Not a stable sort, which takes memory.
@@ -86,7 +86,7 @@ void BoxTreePacker<D>::choose_axes(std::size_t boxes) {
 
 /// Buckets of which a few hold most boxes do not tell them apart.
 template <int D>
-void BoxTreePacker<D>::sort_heavy_buckets() {
+void BvhPacker<D>::sort_heavy_buckets() {
   std::uint32_t begin = 0;
   for (const std::uint32_t end : counts_) {
     if (end - begin > std::max<std::size_t>(1024, entries_.size() / 64)) {
@@ -102,7 +102,7 @@ void BoxTreePacker<D>::sort_heavy_buckets() {
 
 /// The distance of neighbours on an axis, were `count` boxes spread evenly.
 template <int D>
-float BoxTreePacker<D>::spacing(std::size_t count, int axis) const {
+float BvhPacker<D>::spacing(std::size_t count, int axis) const {
   const float range = sample_[axis].high - sample_[axis].low;
   return std::min(range, std::numeric_limits<float>::max()) /
          static_cast<float>(root(static_cast<double>(count), D));
@@ -110,7 +110,7 @@ float BoxTreePacker<D>::spacing(std::size_t count, int axis) const {
 
 /// Puts all boxes from entries_ into the tree's leaves.
 template <int D>
-void BoxTreePacker<D>::place_all() {
+void BvhPacker<D>::place_all() {
   std::size_t size = 0;
   std::size_t begin = 0;
   for (const std::size_t end : group_ends_) {
@@ -132,8 +132,8 @@ void BoxTreePacker<D>::place_all() {
 
 /// Puts the boxes of one class into leaves, the first of which is at `place`.
 template <int D>
-void BoxTreePacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
-                                   std::size_t size_class) {
+void BvhPacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
+                               std::size_t size_class) {
   if (begin == end) return;
   const std::size_t leaves = whole_leaves(end - begin) / fan_out;
   const float size = size_class == 0 ? 1 : class_borders[size_class - 1];
@@ -166,7 +166,7 @@ void BoxTreePacker<D>::place_group(std::size_t begin, std::size_t end, std::size
 /// Into how many parts each axis is cut, so that leaves have the shape of a box `size` times the typical
 /// one.
 template <int D>
-std::array<double, D> BoxTreePacker<D>::parts_of(std::size_t leaves, float size) const {
+std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) const {
   std::array<double, D> ratios;
   for (int axis = 0; axis < D; ++axis) {
     const double range = static_cast<double>(sample_[axis].high) - sample_[axis].low;
@@ -204,7 +204,7 @@ std::array<double, D> BoxTreePacker<D>::parts_of(std::size_t leaves, float size)
 /// order along an axis.
 template <int D>
 template <typename EntryOf, typename Put>
-void BoxTreePacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
+void BvhPacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
   for (std::size_t i = 0; i < count; ++i) {
@@ -237,13 +237,13 @@ void BoxTreePacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put
 }
 
 template <int D>
-std::size_t BoxTreePacker<D>::bytes() const noexcept {
+std::size_t BvhPacker<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
   return held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(order_) + radix_.bytes() +
          levels_.bytes();
 }
 
-template class BoxTreePacker<2>;
-template class BoxTreePacker<3>;
+template class BvhPacker<2>;
+template class BvhPacker<3>;
 
 }  // namespace broadside::own

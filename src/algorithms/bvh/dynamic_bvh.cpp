@@ -1,0 +1,288 @@
+// The dynamic bounding volume hierarchy that the tracker and BoxIndex search: sixteen children to a node.
+//
+// Maintained as A. Guttman's "R-trees: a dynamic index structure for spatial searching" (SIGMOD 1984) is,
+// measured by sums of extents as in N. Beckmann et al., "The R*-tree" (SIGMOD 1990), so that boxes without
+// area or with infinite extents are compared as well.
+#include "algorithms/bvh/dynamic_bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "interface/encloses.hpp"
+
+namespace broadside::own {
+
+using kernels::fan_out;
+using kernels::leaf_bit;
+using kernels::no_slot;
+
+namespace {
+
+/// Whether bounds that `box` was in may be smaller without it.
+template <int D>
+bool touches_border(const Box<D>& bounds, const Box<D>& box) {
+  bool touches = false;
+  for (int axis = 0; axis < D; ++axis)
+    touches |= bounds.min[axis] == box.min[axis] || bounds.max[axis] == box.max[axis];
+  return touches;
+}
+
+template <int D>
+Box<D> united(const Box<D>& a, const Box<D>& b) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = std::min(a.min[axis], b.min[axis]);
+    box.max[axis] = std::max(a.max[axis], b.max[axis]);
+  }
+  return box;
+}
+
+}  // namespace
+
+template <int D>
+void DynamicBvh<D>::build(std::span<const Box<D>> boxes) {
+  nodes_.clear();
+  info_.clear();
+  free_.clear();
+  slots_.assign(boxes.size(), no_slot);
+  root_ = no_slot;
+  insertions_ = 0;
+  packed_.clear();
+  ids_.clear();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_present(boxes[i])) continue;
+    packed_.push_back(boxes[i]);
+    ids_.push_back(static_cast<std::uint32_t>(i));
+  }
+  size_ = packed_.size();
+  if (size_ == 0) return;
+  // With room for what splits add until the next build.
+  const std::size_t leaves = size_ / fan_out;
+  nodes_.reserve(leaves + leaves / 3 + 16);
+  info_.reserve(nodes_.capacity());
+  add_leaves();
+  arrange<D>(children_);
+  while (children_.size() > 1) add_level();
+  root_ = children_.front().number;
+}
+
+/// Puts the boxes into leaves as they are packed.
+template <int D>
+void DynamicBvh<D>::add_leaves() {
+  packer_.pack(packed_);
+  const kernels::TreeLevel<D>& packed = packer_.tree().levels[0];
+  children_.clear();
+  for (std::size_t begin = 0; begin < packed.size; begin += fan_out) {
+    const std::uint32_t leaf = new_node(true);
+    std::size_t count = 0;
+    for (std::size_t at = begin; at < std::min(begin + fan_out, packed.size); ++at) {
+      if (!(packed.min[0][at] <= packed.max[0][at])) continue;  // no box
+      const std::size_t i = index(packer_.tree().id[at]);
+      write_child(leaf, count++, {packed_[i], ids_[i]});
+    }
+    info_[leaf].count = static_cast<std::uint8_t>(count);
+    children_.push_back({kernels::bounds_of(nodes_[leaf]), numbered(leaf)});
+  }
+}
+
+/// Puts each sixteen of children_ into a node; these are then the children.
+template <int D>
+void DynamicBvh<D>::add_level() {
+  std::size_t to = 0;
+  for (std::size_t begin = 0; begin < children_.size(); begin += fan_out) {
+    const std::uint32_t node = new_node(false);
+    const std::size_t count = std::min(fan_out, children_.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) write_child(node, i, children_[begin + i]);
+    info_[node].count = static_cast<std::uint8_t>(count);
+    children_[to++] = {kernels::bounds_of(nodes_[node]), numbered(node)};
+  }
+  children_.resize(to);
+}
+
+template <int D>
+void DynamicBvh<D>::set(BoxId id, const Box<D>& box) {
+  const std::uint32_t at = slot(id);
+  const bool is_there = is_present(box);
+  if (at == no_slot) {
+    if (is_there) insert(id, box);
+    return;
+  }
+  if (is_there) {
+    const std::uint32_t node = at / fan_out;
+    const std::uint32_t parent = info_[node].parent;
+    if (parent == no_slot) return write(at, box);
+    const Box<D> bounds = box_at(parent);
+    if (core::encloses(bounds, box)) {
+      const bool may_shrink = touches_border(bounds, box_at(at));
+      write(at, box);
+      if (may_shrink) refit_above(node);
+      return;
+    }
+  }
+  remove(id);
+  if (is_there) insert(id, box);
+}
+
+template <int D>
+void DynamicBvh<D>::insert(BoxId id, const Box<D>& box) {
+  if (index(id) >= slots_.size()) slots_.resize(index(id) + 1, no_slot);
+  ++size_;
+  ++insertions_;
+  if (root_ == no_slot) root_ = new_node(true) | leaf_bit;
+  std::uint32_t number = root_;
+  while ((number & leaf_bit) == 0) {
+    const std::size_t best = kernels::best_child(nodes_[number], info_[number].count, box);
+    const auto into = static_cast<std::uint32_t>(number * fan_out + best);
+    write(into, united(box_at(into), box));
+    number = nodes_[number].id[best];
+  }
+  add_child(number & ~leaf_bit, {box, index(id)});
+}
+
+template <int D>
+void DynamicBvh<D>::remove(BoxId id) {
+  const std::uint32_t at = std::exchange(slots_[index(id)], no_slot);
+  --size_;
+  remove_at(at);
+}
+
+template <int D>
+void DynamicBvh<D>::reinsert(BoxId id) {
+  const Box<D> box = box_at(slot(id));
+  remove(id);
+  insert(id, box);
+}
+
+template <int D>
+void DynamicBvh<D>::add_child(std::uint32_t node, const Child& child) {
+  if (info_[node].count == fan_out) return split(node, child);
+  write_child(node, info_[node].count++, child);
+}
+
+/// Adds a child to a full node: those that lie on one side of the axis along which they differ most remain,
+/// the others go into a new node beside it.
+template <int D>
+void DynamicBvh<D>::split(std::uint32_t node, const Child& added) {
+  std::array<Child, fan_out + 1> children;
+  for (std::uint32_t i = 0; i < fan_out; ++i) children[i] = {box_at(node * fan_out + i), nodes_[node].id[i]};
+  children.back() = added;
+  std::ranges::sort(children, BeforeAlong<D>{widest_axis<D>(children)});
+
+  const std::uint32_t other = new_node(info_[node].is_leaf);
+  constexpr std::size_t half = fan_out / 2;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    if (i < half)
+      write_child(node, i, children[i]);
+    else
+      write_child(other, i - half, children[i]);
+  }
+  info_[node].count = half;
+  info_[other].count = static_cast<std::uint8_t>(children.size() - half);
+  clear_from(node, half);
+
+  if (info_[node].parent == no_slot) {
+    const std::uint32_t root = new_node(false);
+    write_child(root, 0, {kernels::bounds_of(nodes_[node]), numbered(node)});
+    info_[root].count = 1;
+    root_ = root;
+  } else {
+    write(info_[node].parent, kernels::bounds_of(nodes_[node]));
+  }
+  add_child(info_[node].parent / fan_out, {kernels::bounds_of(nodes_[other]), numbered(other)});
+}
+
+/// Removes a child, and nodes that become empty.
+template <int D>
+void DynamicBvh<D>::remove_at(std::uint32_t slot) {
+  const std::uint32_t node = slot / fan_out;
+  const std::size_t last = --info_[node].count;
+  if (slot % fan_out != last) {
+    const auto from = static_cast<std::uint32_t>(node * fan_out + last);
+    write_child(node, slot % fan_out, {box_at(from), nodes_[node].id[last]});
+  }
+  clear_from(node, last);
+  if (last == 0) {
+    free_.push_back(node);
+    if (info_[node].parent == no_slot)
+      root_ = no_slot;
+    else
+      remove_at(info_[node].parent);
+    return;
+  }
+  if (last == 1 && info_[node].parent == no_slot && !info_[node].is_leaf) {
+    root_ = nodes_[node].id[0];
+    info_[root_ & ~leaf_bit].parent = no_slot;
+    free_.push_back(node);
+    return;
+  }
+  refit_above(node);
+}
+
+/// Sets the bounds of a node whose children changed, and of those above it.
+template <int D>
+void DynamicBvh<D>::refit_above(std::uint32_t node) {
+  for (std::uint32_t up = info_[node].parent; up != no_slot; up = info_[up / fan_out].parent) {
+    const Box<D> bounds = kernels::bounds_of(nodes_[node]);
+    if (bounds == box_at(up)) return;
+    write(up, bounds);
+    node = up / fan_out;
+  }
+}
+
+template <int D>
+std::uint32_t DynamicBvh<D>::new_node(bool is_leaf) {
+  std::uint32_t node;
+  if (free_.empty()) {
+    node = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    info_.emplace_back();
+  } else {
+    node = free_.back();
+    free_.pop_back();
+  }
+  info_[node] = {no_slot, 0, is_leaf};
+  clear_from(node, 0);
+  return node;
+}
+
+/// Writes a child, and notes where it is.
+template <int D>
+void DynamicBvh<D>::write_child(std::uint32_t node, std::size_t lane, const Child& child) noexcept {
+  const auto slot = static_cast<std::uint32_t>(node * fan_out + lane);
+  write(slot, child.box);
+  nodes_[node].id[lane] = child.number;
+  if (info_[node].is_leaf)
+    slots_[child.number] = slot;
+  else
+    info_[child.number & ~leaf_bit].parent = slot;
+}
+
+/// Empties the lanes from `count` on.
+template <int D>
+void DynamicBvh<D>::clear_from(std::uint32_t node, std::size_t count) noexcept {
+  for (std::size_t lane = count; lane < fan_out; ++lane) {
+    nodes_[node].set(lane, kernels::nan_box<D>());
+    nodes_[node].id[lane] = 0;
+  }
+}
+
+template <int D>
+kernels::WritableBvh<D> DynamicBvh<D>::writable() {
+  for (std::vector<std::uint32_t>& list : lists_) {
+    if (list.size() < nodes_.size() + 2 * fan_out) list.resize(nodes_.capacity() + 2 * fan_out);
+  }
+  return {nodes_.data(), info_.data(), root_, {lists_[0].data(), lists_[1].data()}};
+}
+
+template <int D>
+std::size_t DynamicBvh<D>::bytes() const noexcept {
+  const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
+  return packer_.bytes() + held(packed_) + held(ids_) + held(children_) + held(nodes_) + held(info_) +
+         held(free_) + held(slots_) + held(lists_[0]) + held(lists_[1]);
+}
+
+template class DynamicBvh<2>;
+template class DynamicBvh<3>;
+
+}  // namespace broadside::own

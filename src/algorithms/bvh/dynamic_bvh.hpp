@@ -1,0 +1,103 @@
+// The dynamic bounding volume hierarchy that the tracker and BoxIndex search: sixteen children to a node.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "algorithms/bvh/arrange.hpp"
+#include "algorithms/bvh/packer.hpp"
+#include "kernels/bvh.hpp"
+
+namespace broadside::own {
+
+/// Packed by BvhPacker, and maintained as an R-tree: a box that leaves its leaf is inserted where bounds grow
+/// least, full nodes are split, empty ones vanish. All leaves are equally deep.
+template <int D>
+class DynamicBvh {
+ public:
+  /// Starts over with these boxes, some of which may be absent; ids are places in the array.
+  void build(std::span<const Box<D>> boxes);
+
+  /// Moves a box, inserts one, or removes it if `box` is absent. Cost: a path from the root, a few times.
+  void set(BoxId id, const Box<D>& box);
+
+  /// The parts of set(), for a caller that moves many boxes between them.
+  void insert(BoxId id, const Box<D>& box);
+  void remove(BoxId id);
+
+  /// Makes the bounds around a box exact again, after follow() enlarged them.
+  void refit(BoxId id) { refit_above(slot(id) / kernels::fan_out); }
+
+  /// Removes a box and inserts it where bounds grow least.
+  void reinsert(BoxId id);
+
+  /// Where the box is: its node * fan_out + lane, or no_slot. Insertions and removals change it.
+  std::uint32_t slot(BoxId id) const noexcept {
+    return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
+  }
+
+  /// Whether so many boxes were inserted since the last build that another one pays.
+  bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + 1024; }
+
+  /// The number of boxes, and of nodes.
+  std::size_t size() const noexcept { return size_; }
+  std::size_t nodes() const noexcept { return nodes_.size() - free_.size(); }
+
+  /// For searches; only if there is a box.
+  kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
+
+  /// To move boxes in; until the next insertion.
+  kernels::WritableBvh<D> writable();
+
+  /// How many children the node has, in its first lanes.
+  std::size_t child_count(std::uint32_t node) const noexcept {
+    return info_[node & ~kernels::leaf_bit].count;
+  }
+
+  std::size_t bytes() const noexcept;
+
+ private:
+  using Child = NumberedBox<D>;  // a box or a node
+
+  void add_leaves();
+  void add_level();
+  std::uint32_t new_node(bool is_leaf);
+  std::uint32_t numbered(std::uint32_t node) const noexcept {
+    return info_[node].is_leaf ? node | kernels::leaf_bit : node;
+  }
+  Box<D> box_at(std::uint32_t slot) const noexcept {
+    return nodes_[slot / kernels::fan_out].box(slot % kernels::fan_out);
+  }
+  void write(std::uint32_t slot, const Box<D>& box) noexcept {
+    nodes_[slot / kernels::fan_out].set(slot % kernels::fan_out, box);
+  }
+  void write_child(std::uint32_t node, std::size_t lane, const Child& child) noexcept;
+  void clear_from(std::uint32_t node, std::size_t count) noexcept;
+  void add_child(std::uint32_t node, const Child& child);
+  void split(std::uint32_t node, const Child& added);
+  void remove_at(std::uint32_t slot);
+  void refit_above(std::uint32_t node);
+
+  BvhPacker<D> packer_;
+  // For building: the boxes and their ids, and what the next level's nodes hold.
+  std::vector<Box<D>> packed_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Child> children_;
+
+  std::vector<kernels::Block<D>> nodes_;
+  std::vector<kernels::BvhNodeInfo> info_;
+  std::vector<std::uint32_t> free_;   // nodes
+  std::vector<std::uint32_t> slots_;  // by id
+  std::uint32_t root_ = kernels::no_slot;
+  std::size_t size_ = 0;
+  std::size_t insertions_ = 0;  // since the last build
+  std::array<std::vector<std::uint32_t>, 2> lists_;
+};
+
+}  // namespace broadside::own

@@ -1,0 +1,48 @@
+// A node of a tree of bounds, several children at a time, for the files that Highway compiles for each
+// instruction set.
+//
+// Included once an instruction set, hence no #pragma once.
+#if defined(BROADSIDE_KERNELS_BVH_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef BROADSIDE_KERNELS_BVH_LANES
+#undef BROADSIDE_KERNELS_BVH_LANES
+#else
+#define BROADSIDE_KERNELS_BVH_LANES
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include "kernels/broadcast_box.hpp"
+#include "kernels/bvh.hpp"
+#include "kernels/compress.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
+HWY_INLINE FloatVector all(float value) { return hn::Set(Floats(), value); }
+
+/// Brings a node that will be read into the cache, while others are read.
+template <int D>
+HWY_INLINE void prefetch(const Block<D>& node) {
+  for (std::size_t line = 0; line < sizeof(node); line += 64)
+    hwy::Prefetch(reinterpret_cast<const char*>(&node) + line);
+}
+
+/// Appends the children from `at` on that are in `mask` to `to`, and returns how many.
+template <int D>
+HWY_INLINE std::size_t append(const Block<D>& node, std::size_t at, FloatMask mask, std::uint32_t* to) {
+  const auto hits = hn::RebindMask(Numbers(), mask);
+  hn::StoreU(compress(Numbers(), hn::Load(Numbers(), node.id.data() + at), hits), Numbers(), to);
+  return hn::CountTrue(Floats(), mask);
+}
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,104 @@
+// What overlaps a box and how far away children are, sixteen children at a time, written once for every
+// instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/bvh_query.cpp"
+#include "kernels/bvh_query.hpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/bvh_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace broadside::kernels::HWY_NAMESPACE {
+namespace {
+
+template <int D>
+bool overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found) {
+  const BroadcastBox<D> query(box);
+  std::uint32_t waiting[(longest_path + 1) * fan_out];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const Block<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) == 0) {
+      for (std::size_t at = 0; at < fan_out; at += lanes)
+        count += append(node, at, query.overlaps(node, at), waiting + count);
+      continue;
+    }
+    std::size_t hits = found.count;
+    for (std::size_t at = 0; at < fan_out; at += lanes)
+      hits += append(node, at, query.overlaps(node, at), found.ids.data() + hits);
+    found.count = hits;
+    if (hits >= found.full && !found.take()) return false;
+  }
+  return true;
+}
+
+template <int D>
+void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::array<float, fan_out>& result) {
+  for (std::size_t at = 0; at < fan_out; at += lanes) {
+    FloatVector sum = hn::Zero(Floats());
+    for (int axis = 0; axis < D; ++axis) {
+      const FloatVector min = load(node.min[axis], at);
+      const FloatVector max = load(node.max[axis], at);
+      const FloatVector low = all(query.point.min[axis]);
+      const FloatVector high = all(query.point.max[axis]);
+      // No infinity is subtracted from itself where it counts.
+      const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
+      const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
+      const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
+      sum = hn::Add(sum, hn::Mul(weighted, weighted));
+    }
+    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.most)), all(query.share)), all(query.allowance));
+    hn::StoreU(sum, Floats(), result.data() + at);
+  }
+}
+
+}  // namespace
+
+// What the dispatch below can name: no templates.
+bool overlapping_2(const BvhView<2>& tree, const Box<2>& box, FoundBoxes& found) {
+  return overlapping(tree, box, found);
+}
+bool overlapping_3(const BvhView<3>& tree, const Box<3>& box, FoundBoxes& found) {
+  return overlapping(tree, box, found);
+}
+void distances_2(const Block<2>& node, const DistanceQuery<2>& query, std::array<float, fan_out>& result) {
+  distances_of(node, query, result);
+}
+void distances_3(const Block<3>& node, const DistanceQuery<3>& query, std::array<float, fan_out>& result) {
+  distances_of(node, query, result);
+}
+
+}  // namespace broadside::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace broadside::kernels {
+
+HWY_EXPORT(overlapping_2);
+HWY_EXPORT(overlapping_3);
+HWY_EXPORT(distances_2);
+HWY_EXPORT(distances_3);
+
+template <>
+bool find_overlapping(const BvhView<2>& tree, const Box<2>& box, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(overlapping_2)(tree, box, found);
+}
+template <>
+bool find_overlapping(const BvhView<3>& tree, const Box<3>& box, FoundBoxes& found) {
+  return HWY_DYNAMIC_DISPATCH(overlapping_3)(tree, box, found);
+}
+template <>
+void distances(const Block<2>& node, const DistanceQuery<2>& query, std::array<float, fan_out>& result) {
+  HWY_DYNAMIC_DISPATCH(distances_2)(node, query, result);
+}
+template <>
+void distances(const Block<3>& node, const DistanceQuery<3>& query, std::array<float, fan_out>& result) {
+  HWY_DYNAMIC_DISPATCH(distances_3)(node, query, result);
+}
+
+}  // namespace broadside::kernels
+#endif  // HWY_ONCE

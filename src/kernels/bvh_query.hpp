@@ -1,0 +1,82 @@
+// Queries to a tree of bounds: what a box overlaps, what a cast box meets, and what is near a point.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "broadside/box.hpp"
+
+#include "kernels/bvh.hpp"
+
+namespace broadside::kernels {
+
+/// Where a search writes boxes: into arrays with room for a leaf beyond `full`. A derived class handles them
+/// in take().
+class FoundBoxes {
+ public:
+  static constexpr std::size_t most = 256;
+
+  /// Handles the first `count` of `ids` (and `t_enter`), sets `count` to 0 and says whether to go on. May
+  /// lower `t_max`.
+  virtual bool take() = 0;
+
+  std::size_t count = 0;
+  std::size_t full = fan_out;  ///< take() is called once there are as many
+  float t_max = 0;             ///< of a cast: the greatest parameter at which a box counts
+  alignas(64) std::array<std::uint32_t, most + 2 * fan_out> ids;
+  alignas(64) std::array<float, most + 2 * fan_out> t_enter;  ///< of an exact cast
+
+ protected:
+  FoundBoxes() = default;
+  ~FoundBoxes() = default;
+};
+
+/// How a cast goes along an axis.
+enum class Course : std::uint8_t {
+  forward,   ///< to greater coordinates
+  backward,  ///< to smaller ones
+  still,     ///< not at all: the box must overlap on this axis
+  unknown,   ///< the tree's bounds are not to be looked at on this axis
+};
+
+/// A box cast along a direction.
+template <int D>
+struct CastQuery {
+  Box<D> box;
+  std::array<float, D> direction;  ///< looked at where `exact`
+  std::array<float, D> inverse;    ///< of the direction, rounded, a normal number; on axes that are not still
+  std::array<Course, D> course;  ///< in the tree; in a leaf searched exactly, unknown axes are looked at too
+  bool exact;                    ///< whether boxes are tested by the definition, with divisions
+};
+
+/// A point, as a box that holds it, whose distances are asked for: each axis weighted, their squares' sum
+/// multiplied by `share`, less `allowance`, at most `most`.
+template <int D>
+struct DistanceQuery {
+  Box<D> point;
+  std::array<float, D> weight;
+  float share = 1;
+  float allowance = 0;
+  float most = 0;
+};
+
+/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; what is
+/// left below `full` at the end is still to be taken.
+template <int D>
+bool find_overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found);
+
+/// Writes the boxes that the cast meets up to `found.t_max`, in no order that means anything.
+template <int D>
+bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
+
+/// Writes those boxes that the cast meets before or at `found.t_max`, nearer ones about first, and has
+/// them taken leaf by leaf, so that `t_max` can be lowered.
+template <int D>
+void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
+
+/// Sets `distances` to those of the node's children: squared, 0 inside.
+template <int D>
+void distances(const Block<D>& node, const DistanceQuery<D>& query, std::array<float, fan_out>& distances);
+
+}  // namespace broadside::kernels
