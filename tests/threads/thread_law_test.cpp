@@ -213,12 +213,13 @@ TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
     EXPECT_EQ(make_finder<D>(algorithm(), threaded)->workers().threads, 2u);
     EXPECT_EQ((make_finder<D, double>(algorithm(), threaded)->workers().threads), 2u);
     EXPECT_EQ(make_tracker<D>(algorithm(), threaded)->workers().threads, 2u);
-    World<D> world(threaded.text());
+    const std::string spec = threaded.text();
+    World<D> world(spec);
     EXPECT_EQ(world.workers().threads, 2u);
     ReverseExecutor executor;
-    find_pairs(scattered_boxes<D>(60, 10), threaded.text(), &executor);
+    find_pairs(scattered_boxes<D>(60, 10), {.algorithm = spec, .executor = &executor});
     EXPECT_EQ(executor.runs, 0u);
-    find_pairs(scattered_boxes<D>(10'000, 300), threaded.text(), &executor);
+    find_pairs(scattered_boxes<D>(10'000, 300), {.algorithm = spec, .executor = &executor});
     EXPECT_GT(executor.runs, 0u);
   });
 }

@@ -1,8 +1,6 @@
 // World: its index for queries, the tracker's or one built when the first query is asked.
 #pragma once
 
-#include "broadside/queries.hpp"
-
 #include <limits>
 #include <mutex>
 #include <vector>
