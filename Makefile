@@ -7,7 +7,7 @@
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
 results := paper/results
-sources := find $(wildcard include src lab cli tests bench examples) -name '*.[ch]pp'
+sources := find $(wildcard include src paper lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
@@ -50,7 +50,7 @@ format: setup-ci ## Put every source file in the project's format
 
 lint: check-format build/clang/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
 	web/node_modules/.bin/tsc --noEmit --project web
-	find $(wildcard src lab cli examples) -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
+	find $(wildcard src paper lab cli examples) -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
 
 check-format: setup-ci
 	$(sources) | xargs clang-format --dry-run --Werror

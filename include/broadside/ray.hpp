@@ -23,7 +23,7 @@ struct Ray {
 /// A box moved along a direction: it stands at `box` + t * direction, 0 <= t <= t_max.
 template <int D, typename Real = float>
 struct BoxCast {
-  Box<D, Real> box;               ///< finite, min <= max
+  Box<D, Real> box;          ///< finite, min <= max
   Point<D, Real> direction;  ///< finite
   Real t_max = std::numeric_limits<Real>::infinity();
 };

@@ -60,8 +60,7 @@ std::vector<Table> measure(const Laboratory& laboratory) {
                               .boxes = boxes,
                               .moving = moving,
                               .frames = laboratory.either<std::size_t>(12, 4)});
-      const auto best =
-          std::ranges::min_element(costs.begin() + 1, costs.end(), {}, &MendingCost::frame_ms);
+      const auto best = std::ranges::min_element(costs.begin() + 1, costs.end(), {}, &MendingCost::frame_ms);
       const std::string& by = structure.updates[static_cast<std::size_t>(best - costs.begin()) - 1];
       const MendingCost& built = costs[0];
       table.add({structure.algorithm, 100 * moving, best->frame_ms, by, built.frame_ms,

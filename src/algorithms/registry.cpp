@@ -86,8 +86,7 @@ void register_algorithm(Algorithm algorithm) {
 
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {
   auto found = std::ranges::find(among, name, &Algorithm::name);
-  if (found == among.end())
-    found = std::ranges::find(among, core::current_algorithm(name), &Algorithm::name);
+  if (found == among.end()) found = std::ranges::find(among, core::current_algorithm(name), &Algorithm::name);
   return found == among.end() ? nullptr : &*found;
 }
 

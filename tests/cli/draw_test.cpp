@@ -49,10 +49,10 @@ TEST(DrawVerb, DrawsThreeDimensionsFromThreeSides) {
 TEST(DrawVerb, DrawsOfAGroupThoseThatLaySomethingOverBoxes) {
   const Ended flat = run({"draw", "uniform", "-n", "30", "--algorithm", "all", "-o", "-"});
   EXPECT_EQ(flat.status, 0) << flat.errors;
-  EXPECT_THAT(flat.output,
-              AllOf(HasSubstr(">auto</text>"), HasSubstr(">quadtree</text>"),
-                    HasSubstr(">paper_quadtree</text>"), Not(HasSubstr("\"t\" y=\"15\">brute_force<")),
-                    Not(HasSubstr("nothing laid over the boxes"))));
+  EXPECT_THAT(
+      flat.output,
+      AllOf(HasSubstr(">auto</text>"), HasSubstr(">quadtree</text>"), HasSubstr(">paper_quadtree</text>"),
+            Not(HasSubstr("\"t\" y=\"15\">brute_force<")), Not(HasSubstr("nothing laid over the boxes"))));
   const Ended deep =
       run({"draw", "uniform", "-n", "30", "--dimension", "3", "--algorithm", "paper,brute_force", "-o", "-"});
   EXPECT_EQ(deep.status, 0) << deep.errors;

@@ -40,7 +40,8 @@ std::unique_ptr<BoxIndex<2>> index_of(const std::vector<Box2>& boxes) {
   return index;
 }
 
-std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box, const Filter* query_filter = nullptr) {
+std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box,
+                               const Filter* query_filter = nullptr) {
   std::vector<BoxId> found;
   index.overlapping(
       box, [&found](BoxId id) { found.push_back(id); }, query_filter);
