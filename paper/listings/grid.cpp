@@ -1,10 +1,10 @@
 // The paper's grid as an algorithm: its finder, and its description.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <memory>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -59,10 +59,12 @@ class Grid final : public PairFinder<2>, public Outlined<2> {
         outline.levels[0].push_back({{left, top}, {right, bottom}});
       }
     }
-    std::ostringstream caption;
-    caption << columns << " x " << rows << (rows == 1 ? " cell of " : " cells of ") << std::setprecision(3)
-            << grid_.size();
-    outline.caption = caption.str();
+    // As a stream would write it, but for the rounding mode.
+    std::array<char, 32> size;
+    const auto end =
+        std::to_chars(size.data(), size.data() + size.size(), grid_.size(), std::chars_format::general, 3);
+    outline.caption = std::to_string(columns) + " x " + std::to_string(rows) +
+                      (rows == 1 ? " cell of " : " cells of ") + std::string(size.data(), end.ptr);
     return outline;
   }
 

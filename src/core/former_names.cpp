@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
+
+#include "broadside/spec.hpp"
 
 namespace broadside::core {
 namespace {
@@ -19,6 +23,17 @@ std::string_view current_algorithm(std::string_view name) noexcept {
   return name == "hierarchical_grid" ? "grid" : name;
 }
 
+std::string current_spec(std::string_view spec) {
+  Spec current = Spec::parse(spec);
+  current.name = current_algorithm(current.name);
+  if (current.name.starts_with("paper_")) return current.text();
+  std::erase_if(current.values, [](const std::pair<std::string, std::string>& given) {
+    const auto& [tunable, value] = given;
+    return !former_tunable(tunable).empty() || !former_value(tunable, value).empty();
+  });
+  return current.text();
+}
+
 std::string former_value(std::string_view tunable, std::string_view value) {
   if (tunable != "update" || std::ranges::find(former_ways, value) == former_ways.end()) return {};
   return "; each tracker follows in its one fastest way, and the paper's ways are those of "
@@ -28,6 +43,8 @@ std::string former_value(std::string_view tunable, std::string_view value) {
 std::string former_tunable(std::string_view tunable) {
   if (tunable == "way") return "; way=rebuild is update=rebuild now, and way=incremental update=follow";
   if (tunable == "span") return "; cells have levels by the sizes of boxes now, and need no span";
+  if (tunable == "margin" || tunable == "budget")
+    return "; bvh follows in one way, which needs neither margin nor budget";
   return {};
 }
 

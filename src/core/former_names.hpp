@@ -9,6 +9,10 @@ namespace broadside::core {
 /// What an algorithm of that name is called now; the name itself where it is no former one.
 std::string_view current_algorithm(std::string_view name) noexcept;
 
+/// A spec of an earlier version as this one understands it: renamed, and without the tunables and values that
+/// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
+std::string current_spec(std::string_view spec);
+
 /// What became of a value that a tunable once had, as the end of an error message; empty if it never had it.
 std::string former_value(std::string_view tunable, std::string_view value);
 

@@ -11,6 +11,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "core/former_names.hpp"
 #include "interface/encloses.hpp"
 #include "world/snapshot_check.hpp"
 #include "world/snapshot_format.hpp"
@@ -117,11 +118,11 @@ std::unique_ptr<typename World<D, Real>::State> World<D, Real>::State::get(ByteR
   options.keep_pairs = is_set(keeps_pairs);
   options.margin = in.get<double>();
   const std::string algorithm = in.text(in.count(1, "characters of a spec"));
-  if (is_set(has_own_tracker) && like.is_own_tracker) options.algorithm = algorithm;
   const Real margin = static_cast<Real>(options.margin);
   expect(margin >= 0 && std::isfinite(margin), "its margin is negative or no finite number");
   std::unique_ptr<State> state;
   try {
+    if (is_set(has_own_tracker) && like.is_own_tracker) options.algorithm = core::current_spec(algorithm);
     WorldOptions unshadowed = options;
     unshadowed.shadow = false;
     state = std::make_unique<State>(make_own_tracker(unshadowed), options, true);
