@@ -95,7 +95,7 @@ std::size_t GridListing::cell_of(double x, double begin, double count) const {
 }
 
 std::size_t GridListing::bytes() const noexcept {
-  std::size_t bytes = g_.capacity() * sizeof(g_[0]);
+  std::size_t bytes = g_.capacity() * sizeof(std::vector<BoxId>);
   for (const std::vector<BoxId>& cell : g_) bytes += cell.capacity() * sizeof(BoxId);
   return bytes;
 }

@@ -170,10 +170,9 @@ class QuadtreeTracker final : public CoherentTracker<2> {
 
   std::size_t structure_bytes() const noexcept override {
     std::size_t bytes =
-        tree_.nodes * sizeof(QuadTreeNode) + tree_.leaves.capacity() * sizeof(tree_.leaves[0]);
+        tree_.nodes * sizeof(QuadTreeNode) + tree_.leaves.capacity() * sizeof(std::vector<QuadTreeNode*>);
     // An entry in a leaf, and one in the list of leaves.
-    for (const auto& leaves : tree_.leaves)
-      bytes += leaves.capacity() * (sizeof(QuadTreeNode*) + sizeof(BoxId));
+    for (const auto& leaves : tree_.leaves) bytes += leaves.capacity() * (sizeof(void*) + sizeof(BoxId));
     return bytes;
   }
 

@@ -156,7 +156,7 @@ std::string AdaptiveTracker<D, Real>::explanation() const {
                          : ", and up to " + break_even + " that costs less than finding all pairs anew");
   }
   const std::string by = finder_->explanation();
-  const std::string found = "all pairs found anew" + (by.empty() ? "" : " by " + by);
+  std::string found = "all pairs found anew" + (by.empty() ? "" : " by " + by);
   if (is_asked_for) return found;
   return found + "; " + changed + ", and it pays to follow boxes up to " + break_even;
 }

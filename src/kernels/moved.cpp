@@ -177,7 +177,7 @@ class Search {
 
   static constexpr std::size_t most_listed = 128;
 
-  const BlocksView<D> blocks_;
+  BlocksView<D> blocks_;
   std::span<const MovedBox<D>> moved_;
   core::ChangeSinks sinks_;
   core::ChangeWork work_;

@@ -175,7 +175,7 @@ void expect_moves_to_toggle() {
     // Where a leaf touches both boxes of one that jumped, its pairs are found twice.
     const auto sorted = [](std::vector<Pair>& pairs) {
       std::ranges::sort(pairs);
-      pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
       return pairs;
     };
     EXPECT_EQ(sorted(found_begun), sorted(begun));
