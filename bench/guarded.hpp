@@ -21,7 +21,7 @@ int guarded(const char* program, int failure, Run run) {
   }
 }
 
-/// The argument at `place` as a number; `standard` where there are not so many.
+/// The argument at `place` as a number; `standard` where there are fewer arguments.
 inline std::size_t number_at(int count, char** arguments, int place, std::size_t standard) {
   return count > place ? std::stoul(arguments[place]) : standard;
 }

@@ -111,7 +111,7 @@ struct Trial {
   std::vector<std::string> values;
 };
 
-/// Cells so many times as long as the longest side that three quarters of the boxes do not exceed.
+/// Cell sizes to try: multiples of the upper quartile of the longest sides.
 std::vector<std::string> cells(const Signals& signals) {
   const double side = signals.sizes[3];
   std::vector<std::string> values;

@@ -22,7 +22,7 @@ namespace {
 using Writer = PairWriter<Numbers>;
 static_assert(fan_out == Writer::at_once);
 
-/// A leaf is prefetched so many boxes before its box's turn.
+/// How many boxes ahead of its own a leaf is prefetched.
 constexpr std::size_t ahead = 3;
 
 template <int D>

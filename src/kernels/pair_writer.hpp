@@ -29,7 +29,7 @@ class PairWriter {
   using Hits = hn::Mask<Ids>;
 
  public:
-  /// For so many pairs there must be room wherever a vector of them is written.
+  /// The room that must be left wherever a vector of pairs is written.
   static constexpr std::size_t at_once = 16;
 
   explicit PairWriter(PairSink& sink) : sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}

@@ -63,7 +63,7 @@ constexpr double tests_of_a_line = 16;
 constexpr double in_line = 0.5;
 constexpr std::size_t boxes_of_a_line = 800;
 
-/// Up to so many tests a box, a sweep along one axis needs no help.
+/// Up to this many tests a box, a sweep along one axis needs no help.
 constexpr double tests_of_a_good_axis = 4;
 
 /// From so many overlaps a box on, most of what a cell tests is a pair, and filing boxes in several cells

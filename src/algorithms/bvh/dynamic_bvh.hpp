@@ -42,7 +42,7 @@ class DynamicBvh {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
 
-  /// Whether so many boxes were inserted since the last build that another one pays.
+  /// Whether the insertions since the last build have made another build pay.
   bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + 1024; }
 
   /// The number of boxes, and of nodes.

@@ -28,7 +28,7 @@ class PackedLevels {
   PackedLevels(const PackedLevels&) = delete;
   PackedLevels& operator=(const PackedLevels&) = delete;
 
-  /// Starts over with so many places, a multiple of `fan_out`. No allocation beyond growth.
+  /// Starts over with `places` places, a multiple of `fan_out`. No allocation beyond growth.
   void start(std::size_t places);
 
   void put(std::size_t place, const Box<D>& box, BoxId id) {
@@ -42,7 +42,7 @@ class PackedLevels {
   /// The places from `begin` to before `end` hold nothing.
   void leave(std::size_t begin, std::size_t end) { gaps_.push_back({begin, end}); }
 
-  /// The first so many places hold the left set.
+  /// The places before `places` hold the left set.
   void set_left_size(std::size_t places) { tree_.left_size = places; }
 
   /// Sets the bounds over the leaves, level by level.

@@ -26,7 +26,7 @@ namespace {
 template <int D>
 constexpr double worthwhile = D == 2 ? 0.3 : 0.25;
 
-/// Of the boxes that leave the bounds of their leaf, one in so many is inserted anew; for the others the
+/// Of the boxes that leave the bounds of their leaf, one in this many is reinserted; for the others the
 /// bounds grow. Of 1, 2, 4, 8, 16 and 32, the greater were the faster for 20,000 drifting boxes (2D and 3D, 1
 /// to 25 % moving: 1 took some 1.3 times as long as 8), but they leave more to the next build.
 constexpr std::uint64_t departures_an_insertion = 8;
@@ -181,8 +181,8 @@ class BvhTracker final : public core::IncrementalTracker<D> {
 
   std::uint64_t judged_tests_ = 0;
   std::uint64_t judged_movers_ = 0;
-  std::uint64_t usual_tests_ = 0;   // after the last build,
-  std::uint64_t usual_movers_ = 0;  // of so many boxes
+  std::uint64_t usual_tests_ = 0;   // counted right after the last build ...
+  std::uint64_t usual_movers_ = 0;  // ... for this many movers
   std::size_t moves_ = 0;           // since then
   bool is_worse_ = false;
   std::uint64_t departures_ = 0;  // of boxes from their leaf, without a jump

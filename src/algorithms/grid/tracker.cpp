@@ -15,8 +15,8 @@
 namespace broadside::own {
 namespace {
 
-/// Boxes that are moved before they are searched for: so many that calling a kernel costs little, so few that
-/// what was written is still near.
+/// Boxes that are moved before the kernel searches for them: enough to make up for the call, and few enough
+/// that what was written is still in the cache.
 constexpr std::size_t batch = 64;
 
 /// Queries to average over before the cells are judged too slow.
@@ -70,7 +70,7 @@ Statistics GridTracker<D>::follow(const Change<D>& change, const core::ChangeSin
 template <int D>
 bool GridTracker<D>::needs_rebuild(const Change<D>& change) const {
   std::size_t boxes = cells_.boxes();
-  // Who came and went is counted where so many changed that it may matter.
+  // Arrivals and departures are counted only where enough boxes changed to matter.
   if (change.changed.size() > boxes / 4) {
     for (const BoxId id : change.changed) {
       const bool was = is_present(change.before[index(id)]);

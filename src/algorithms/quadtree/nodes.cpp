@@ -8,7 +8,7 @@
 namespace broadside::own {
 namespace {
 
-/// Splitting does not go beyond so many references a box.
+/// The most references a box that splitting may lead to.
 constexpr std::size_t most_references = 16;
 
 }  // namespace

@@ -36,7 +36,7 @@
 namespace broadside::own {
 namespace {
 
-/// Nodes are split by one thread until there are so many for each.
+/// One thread splits nodes until each thread has this many.
 constexpr std::size_t parts_per_lane = 3;
 
 /// Leaves of this many boxes: a sweep of so few costs about what a further split would.

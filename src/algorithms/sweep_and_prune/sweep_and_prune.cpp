@@ -39,7 +39,7 @@ constexpr double reference_cost = 64;
 
 constexpr std::size_t most_stripes = 256;
 
-/// Without stripes, so many boxes are swept by the same thread.
+/// Boxes that one thread sweeps at a time, where there are no stripes.
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>

@@ -18,7 +18,7 @@
 namespace broadside::own {
 namespace {
 
-/// So many tests, and so many a box, pay for another look at the axes.
+/// After this many tests, and this many a box, another look at the axes pays.
 constexpr std::uint64_t tests_between_looks = 1'000'000;
 constexpr std::uint64_t tests_of_a_box_between_looks = 64;
 

@@ -35,7 +35,7 @@ Real rounded(const double& number) noexcept {
   return result;
 }
 
-/// An enlarged box is replaced when it exceeds its box by more than so many margins: the box has shrunk.
+/// An enlarged box that exceeds its box by more margins than this is replaced: the box has shrunk.
 constexpr int most_margins = 4;
 
 WorldOptions with_algorithm(std::string_view spec) {
@@ -211,7 +211,7 @@ std::uint32_t World<D, Real>::State::next_slot() const noexcept {
   return free.empty() ? static_cast<std::uint32_t>(slots.size()) : free.lowest();
 }
 
-/// Makes all the room that adding so many boxes takes, so that it cannot fail half way.
+/// Reserves all that adding `count` boxes takes, so that it cannot fail half way.
 template <int D, typename Real>
 void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool with_user_data) {
   const std::size_t added = count > free.size() ? count - free.size() : 0;
