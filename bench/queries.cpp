@@ -32,38 +32,38 @@ namespace {
 using lab::peers::Answers;
 
 /// Somebody who answers a batch.
-struct Contestant {
+struct Participant {
   std::string name;
   std::function<Answers()> ask;
   std::vector<double> samples{};  // ns a query
 };
 
-void race(const std::string& what, std::vector<Contestant> contestants, std::size_t queries,
+void race(const std::string& what, std::vector<Participant> participants, std::size_t queries,
           std::size_t rounds) {
-  const Answers expected = contestants.front().ask();
-  for (const Contestant& contestant : contestants) {
-    const Answers found = contestant.ask();
+  const Answers expected = participants.front().ask();
+  for (const Participant& participant : participants) {
+    const Answers found = participant.ask();
     if (found != expected)
       throw std::runtime_error(fmt::format("{}: {} found {}; expected the {} that {} found, the same ones",
-                                           what, contestant.name, found.count, expected.count,
-                                           contestants.front().name));
+                                           what, participant.name, found.count, expected.count,
+                                           participants.front().name));
   }
   for (std::size_t round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-      Contestant& contestant = contestants[(i + round) % contestants.size()];
+    for (std::size_t i = 0; i < participants.size(); ++i) {
+      Participant& participant = participants[(i + round) % participants.size()];
       const lab::Stopwatch watch;
-      const Answers found = contestant.ask();
-      contestant.samples.push_back(watch.milliseconds() * 1e6 / static_cast<double>(queries));
-      if (found != expected) throw std::runtime_error(contestant.name + " changed its answer");
+      const Answers found = participant.ask();
+      participant.samples.push_back(watch.milliseconds() * 1e6 / static_cast<double>(queries));
+      if (found != expected) throw std::runtime_error(participant.name + " changed its answer");
     }
   }
-  const double own = lab::median(contestants.front().samples);
+  const double own = lab::median(participants.front().samples);
   const auto count = static_cast<double>(queries);
   fmt::print("{:<32}{:>9.1f}", what, static_cast<double>(expected.count) / count);
-  for (const Contestant& contestant : contestants) {
-    const double time = lab::median(contestant.samples);
-    fmt::print("  {} {:.0f}", contestant.name, time);
-    if (&contestant != &contestants.front()) fmt::print(" ({:.1f}x)", time / own);
+  for (const Participant& participant : participants) {
+    const double time = lab::median(participant.samples);
+    fmt::print("  {} {:.0f}", participant.name, time);
+    if (&participant != &participants.front()) fmt::print(" ({:.1f}x)", time / own);
   }
   fmt::print("\n");
   std::fflush(stdout);
@@ -95,8 +95,8 @@ class Queries {
     boxes("box, about 4 hits", 1);
     boxes("box, about 100 hits", D == 2 ? 9 : 5);
     const std::vector<Ray<D>> rays = make_rays();
-    std::vector<Contestant> first = {{"broadside", [&] { return own_first_hits(rays); }}};
-    std::vector<Contestant> all = {{"broadside", [&] { return own_all_hits(rays); }}};
+    std::vector<Participant> first = {{"broadside", [&] { return own_first_hits(rays); }}};
+    std::vector<Participant> all = {{"broadside", [&] { return own_all_hits(rays); }}};
     for (const auto& peer : peers_) {
       if (!peer->has_rays()) continue;
       first.push_back({peer->name(), [&rays, &peer] { return peer->first_hits(rays); }});
@@ -124,12 +124,12 @@ class Queries {
       for (int axis = 0; axis < D; ++axis)
         query.max[axis] = query.min[axis] + times * (like.max[axis] - like.min[axis]);
     }
-    std::vector<Contestant> contestants = {{"broadside", [&] { return own_overlapping(queries); }}};
+    std::vector<Participant> participants = {{"broadside", [&] { return own_overlapping(queries); }}};
     for (const auto& peer : peers_) {
       if (peer->has_boxes())
-        contestants.push_back({peer->name(), [&queries, &peer] { return peer->overlapping(queries); }});
+        participants.push_back({peer->name(), [&queries, &peer] { return peer->overlapping(queries); }});
     }
-    race(fmt::format("{}D {}", D, what), contestants, queries.size(), rounds_);
+    race(fmt::format("{}D {}", D, what), participants, queries.size(), rounds_);
   }
 
   /// From one place that is in no box to another place.

@@ -29,21 +29,21 @@ void measure(const lab::NamedScene& named, std::size_t boxes, const std::string&
   const lab::Catalogue catalogue;
   const auto count = static_cast<double>(input.boxes.size());
   std::uint64_t expected = 0;
-  for (const lab::Contender& contender : catalogue.select(algorithms)) {
+  for (const lab::Entry& entry : catalogue.select(algorithms)) {
     // It would compare each box with each.
-    if (algorithms == "own" && contender.spec.text() == "brute_force") continue;
+    if (algorithms == "own" && entry.spec.text() == "brute_force") continue;
     PairHasher pairs;
     const lab::AllocationMeter meter;
-    const auto finder = make_finder<D>(*contender.algorithm, contender.spec);
+    const auto finder = make_finder<D>(*entry.algorithm, entry.spec);
     const lab::Stopwatch watch;
     finder->find(input.boxes, pairs);
     const double milliseconds = watch.milliseconds();
     const auto memory = meter.read();
     if (expected != 0 && pairs.hash() != expected)
       throw std::runtime_error(fmt::format("{}: {} pairs; expected those that the algorithm before it found",
-                                           contender.spec.text(), pairs.count()));
+                                           entry.spec.text(), pairs.count()));
     expected = pairs.hash();
-    fmt::print("{}D  {:<20} {:>14} {:>8.2f} {:>9.1f} {:>12.1f} {:>7.1f}\n", D, contender.spec.text(),
+    fmt::print("{}D  {:<20} {:>14} {:>8.2f} {:>9.1f} {:>12.1f} {:>7.1f}\n", D, entry.spec.text(),
                lab::grouped(pairs.count()), milliseconds / 1e3, milliseconds * 1e6 / count,
                memory ? static_cast<double>(memory->kept) / count : 0,
                memory ? static_cast<double>(memory->peak) / count : 0);

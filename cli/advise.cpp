@@ -37,7 +37,7 @@ struct AdviseArguments {
   std::string frames;
   MotionOptions motion;
   std::optional<std::uint64_t> seed;
-  ContenderOptions contenders{.algorithms = "own"};
+  EntryOptions entries{.algorithms = "own"};
   std::optional<double> budget;
   std::string json;
 };
@@ -140,16 +140,14 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
   check_moves(verb, {&named, 1});
   ProgressLine progress;
   lab::AdviseOptions options;
-  options.algorithms = arguments.contenders.algorithms;
-  options.threads = threads_of(arguments.contenders);
+  options.algorithms = arguments.entries.algorithms;
+  options.threads = threads_of(arguments.entries);
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
-  check_threads(arguments.contenders, catalogue.select(options.algorithms));
+  check_threads(arguments.entries, catalogue.select(options.algorithms));
   // Refused before the file is read.
-  const auto is_peer = [](const lab::Contender& contender) {
-    return contender.algorithm->kind == AlgorithmKind::peer;
-  };
+  const auto is_peer = [](const lab::Entry& entry) { return entry.algorithm->kind == AlgorithmKind::peer; };
   if (std::ranges::all_of(catalogue.select(options.algorithms), is_peer))
     throw Unusable(fmt::format(
         "--algorithms is '{}'; expected one of Broadside's own among them: other libraries are never advised",
@@ -202,10 +200,10 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
   verb->add_option("--frames", arguments->frames, "Frames that they move (standard: 20)");
   add_motion_options(*verb, arguments->motion);
   verb->add_option("--seed", arguments->seed, "Seed of a scene (standard: 1)")->check(is_seed);
-  add_algorithms(*verb, arguments->contenders.algorithms,
+  add_algorithms(*verb, arguments->entries.algorithms,
                  "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
                  "Peers are shown, but never advised");
-  add_threads(*verb, arguments->contenders,
+  add_threads(*verb, arguments->entries,
               "Threads that a search may use besides one, 0 for as many as there are, or several such as "
               "2,4: tried with the best, and advised where they pay");
   verb->add_option("--budget", arguments->budget,

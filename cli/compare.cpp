@@ -33,7 +33,7 @@ namespace broadside::cli {
 namespace {
 
 struct CompareArguments {
-  ContenderOptions contenders{.algorithms = "all"};
+  EntryOptions entries{.algorithms = "all"};
   std::vector<std::string> scenes;
   InputOptions input;
   std::vector<std::string> boxes;
@@ -103,7 +103,7 @@ void check_applies(const CLI::App& verb, const CompareArguments& arguments, cons
     if (is_named) say(remark);
   }
   check_moves(verb, scenes);
-  check_threads(arguments.contenders, catalogue.select(arguments.contenders.algorithms));
+  check_threads(arguments.entries, catalogue.select(arguments.entries.algorithms));
 }
 
 /// Where to find what the lines leave out.
@@ -119,8 +119,8 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   check(arguments);
   ProgressLine progress;
   lab::CompareOptions options;
-  options.algorithms = arguments.contenders.algorithms;
-  options.threads = threads_of(arguments.contenders);
+  options.algorithms = arguments.entries.algorithms;
+  options.threads = threads_of(arguments.entries);
   options.find = lab::scene_finder(read_options(arguments.input));
   check_applies(verb, arguments, options.find, catalogue);
   options.plan = plan_of(arguments, options.find);
@@ -148,12 +148,11 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
     on_signal(OnSignal::end);
     const std::string json = lab::json_of(comparison, command);
     write(arguments.files, json, [&] {
-      return lab::PageContent{
-          .date = lab::today(),
-          .comparison = json,
-          .experiments = {},
-          .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
-                                       catalogue.select(arguments.contenders.algorithms))};
+      return lab::PageContent{.date = lab::today(),
+                              .comparison = json,
+                              .experiments = {},
+                              .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
+                                                           catalogue.select(arguments.entries.algorithms))};
     });
     if (comparison.stopped)
       say(fmt::format("stopped; wrote the {} that had ended to {}",
@@ -177,7 +176,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   add_scenes(*verb, "scenes", arguments->scenes,
              "Names, specs such as power_law:exponent=2, or files, - for standard input (standard: every "
              "generated scene)");
-  add_algorithms(*verb, arguments->contenders.algorithms);
+  add_algorithms(*verb, arguments->entries.algorithms);
   add_file_options(*verb, arguments->input);
   verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
       ->delimiter(',')
@@ -197,7 +196,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
   add_motion_options(*verb, arguments->motion);
-  add_threads(*verb, arguments->contenders,
+  add_threads(*verb, arguments->entries,
               "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
               "1,2, each. Our own use them, others are there once, with one thread");
   verb->add_option("--seed", arguments->seed,

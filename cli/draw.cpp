@@ -47,34 +47,33 @@ struct DrawArguments {
 };
 
 /// Of what is asked for by its own name, each; of a group, those that lay something over boxes.
-std::vector<lab::Contender> contenders(const lab::Catalogue& catalogue, const std::string& list,
-                                       int dimension) {
-  std::vector<lab::Contender> chosen;
+std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::string& list, int dimension) {
+  std::vector<lab::Entry> chosen;
   if (list.empty()) return chosen;
-  const auto choose = [&](const lab::Contender& contender) {
-    const auto same = [&](const lab::Contender& c) { return c.spec.text() == contender.spec.text(); };
-    if (std::ranges::none_of(chosen, same)) chosen.push_back(contender);
+  const auto choose = [&](const lab::Entry& entry) {
+    const auto same = [&](const lab::Entry& c) { return c.spec.text() == entry.spec.text(); };
+    if (std::ranges::none_of(chosen, same)) chosen.push_back(entry);
   };
   for (std::size_t begin = 0; begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string part = list.substr(begin, end - begin);
     begin = end + 1;
-    for (const lab::Contender& contender : catalogue.select(part)) {
-      const bool is_group = Spec::parse(part).name != contender.algorithm->name;
+    for (const lab::Entry& entry : catalogue.select(part)) {
+      const bool is_group = Spec::parse(part).name != entry.algorithm->name;
       if (is_group) {
-        if (lab::has_outline(contender, dimension)) choose(contender);
+        if (lab::has_outline(entry, dimension)) choose(entry);
         continue;
       }
-      if (!contender.algorithm->has_dimension(dimension))
+      if (!entry.algorithm->has_dimension(dimension))
         throw Unusable(fmt::format("--algorithms is '{}', which does not do {}D; expected --dimension {}",
-                                   contender.algorithm->name, dimension, 5 - dimension));
-      choose(contender);
+                                   entry.algorithm->name, dimension, 5 - dimension));
+      choose(entry);
     }
   }
   if (chosen.empty()) {
     std::vector<std::string> known;
-    for (const lab::Contender& contender : contenders(catalogue, "all", dimension))
-      known.push_back(contender.algorithm->name);
+    for (const lab::Entry& entry : entries(catalogue, "all", dimension))
+      known.push_back(entry.algorithm->name);
     throw Unusable(fmt::format(
         "--algorithms is '{}', but none of them lays anything over boxes in {}D; expected some of: {}", list,
         dimension, fmt::join(known, ", ")));
@@ -119,7 +118,7 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
     throw Unusable(fmt::format("-n is {}; expected at most {}, which is more than an eye tells apart", boxes,
                                most_boxes));
   const lab::Drawing drawing =
-      lab::draw_scene(named, dimension, 0, contenders(catalogue, arguments.algorithms, dimension), boxes,
+      lab::draw_scene(named, dimension, 0, entries(catalogue, arguments.algorithms, dimension), boxes,
                       arguments.seed.value_or(lab::SceneRequest{}.seed), frame_of(arguments, named.scene));
   const std::string picture = lab::svg_of(drawing);
   lab::write_file(arguments.output, [&picture](std::ostream& file) { file << picture; });

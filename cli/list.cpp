@@ -60,7 +60,7 @@ void print_wrapped(const std::string& begin, std::string_view text) {
 }
 
 /// An algorithm or a scene: a line for itself and one for each of its tunables.
-struct Entry {
+struct Listed {
   std::string name;
   std::string kind;
   std::string dimensions;
@@ -68,7 +68,7 @@ struct Entry {
   std::span<const Tunable> tunables;
 };
 
-Entry entry_of(const auto& described) {
+Listed listed(const auto& described) {
   const bool two = described.has_dimension(2);
   const bool three = described.has_dimension(3);
   return {described.name, std::string(name(described.kind)),
@@ -79,19 +79,19 @@ Entry entry_of(const auto& described) {
           described.summary, described.tunables};
 }
 
-void print_entries(std::string_view title, const std::vector<Entry>& entries) {
+void print_list(std::string_view title, const std::vector<Listed>& list) {
   std::size_t name_width = 0;
   std::size_t kind_width = 0;
-  for (const Entry& entry : entries) {
-    name_width = std::max(name_width, entry.name.size());
-    kind_width = std::max(kind_width, entry.kind.size());
+  for (const Listed& item : list) {
+    name_width = std::max(name_width, item.name.size());
+    kind_width = std::max(kind_width, item.kind.size());
   }
   print(fmt::format("{}\n", title));
-  for (const Entry& entry : entries) {
-    print_wrapped(fmt::format("  {:<{}}  {:<{}}  {:<5}  ", entry.name, name_width, entry.kind, kind_width,
-                              entry.dimensions),
-                  entry.summary);
-    for (const Tunable& tunable : entry.tunables) {
+  for (const Listed& item : list) {
+    print_wrapped(fmt::format("  {:<{}}  {:<{}}  {:<5}  ", item.name, name_width, item.kind, kind_width,
+                              item.dimensions),
+                  item.summary);
+    for (const Tunable& tunable : item.tunables) {
       print_wrapped(
           fmt::format("      :{}=  ", tunable.name),
           fmt::format("{} ({}; standard {})", tunable.summary, values_of(tunable), tunable.standard));
@@ -101,19 +101,19 @@ void print_entries(std::string_view title, const std::vector<Entry>& entries) {
 }
 
 Exit run(const lab::Catalogue& catalogue) {
-  std::vector<Entry> algorithms;
-  for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(entry_of(algorithm));
+  std::vector<Listed> algorithms;
+  for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(listed(algorithm));
   for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
     algorithms.push_back(
         {peer.name, std::string(name(AlgorithmKind::peer)), "", "not there: " + peer.reason, {}});
-  print_entries("Algorithms (tunables follow the name, each after a colon: grid:cell=2.5:threads=2)",
-                algorithms);
+  print_list("Algorithms (tunables follow the name, each after a colon: grid:cell=2.5:threads=2)",
+             algorithms);
 
-  std::vector<Entry> scenes;
-  for (const lab::Scene& scene : lab::scenes()) scenes.push_back(entry_of(scene));
+  std::vector<Listed> scenes;
+  for (const lab::Scene& scene : lab::scenes()) scenes.push_back(listed(scene));
   for (const lab::Scene& scene : lab::missing_scenes())
     scenes.push_back({scene.name, std::string(name(scene.kind)), "", "not there: " + scene.missing, {}});
-  print_entries("Scenes", scenes);
+  print_list("Scenes", scenes);
 
   print("File formats\n");
   for (const lab::Format& format : lab::formats()) {

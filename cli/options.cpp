@@ -21,7 +21,7 @@ CLI::Option* add_algorithms(CLI::App& verb, std::string& list, const std::string
       ->capture_default_str();
 }
 
-void add_threads(CLI::App& verb, ContenderOptions& options, const std::string& help) {
+void add_threads(CLI::App& verb, EntryOptions& options, const std::string& help) {
   verb.add_option("--threads", options.threads, help)
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -29,21 +29,21 @@ void add_threads(CLI::App& verb, ContenderOptions& options, const std::string& h
       ->default_str("1");
 }
 
-void check_threads(const ContenderOptions& options, std::span<const lab::Contender> contenders) {
+void check_threads(const EntryOptions& options, std::span<const lab::Entry> entries) {
   const std::vector<std::size_t> threads = threads_of(options);
-  const auto can_use = [&threads](const lab::Contender& contender) {
-    const std::vector<lab::Contender> with = lab::with_threads({contender}, threads);
-    return with.size() != 1 || with.front().spec.text() != contender.spec.text();
+  const auto can_use = [&threads](const lab::Entry& entry) {
+    const std::vector<lab::Entry> with = lab::with_threads({entry}, threads);
+    return with.size() != 1 || with.front().spec.text() != entry.spec.text();
   };
   const bool is_one = threads == std::vector<std::size_t>{1};
-  if (!is_one && std::ranges::none_of(contenders, can_use))
+  if (!is_one && std::ranges::none_of(entries, can_use))
     throw Unusable(
         fmt::format("--threads is '{}' with --algorithms {}; expected an algorithm that can use several "
                     "and does not say how many",
                     fmt::join(options.threads, ","), options.algorithms));
 }
 
-std::vector<std::size_t> threads_of(const ContenderOptions& options) {
+std::vector<std::size_t> threads_of(const EntryOptions& options) {
   std::vector<std::size_t> numbers;
   for (const std::string& text : options.threads) {
     const std::size_t threads = read_threads(text);

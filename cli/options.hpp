@@ -16,7 +16,7 @@
 namespace broadside::cli {
 
 /// What was given on the command line.
-struct ContenderOptions {
+struct EntryOptions {
   std::string algorithms;
   std::vector<std::string> threads = {"1"};
 };
@@ -28,13 +28,13 @@ CLI::Option* add_algorithms(
         "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between");
 
 /// Adds --threads, which takes several numbers; `help` says what for.
-void add_threads(CLI::App& verb, ContenderOptions& options, const std::string& help);
+void add_threads(CLI::App& verb, EntryOptions& options, const std::string& help);
 
-/// Throws Unusable if several threads are asked for and none of the contenders can use them.
-void check_threads(const ContenderOptions& options, std::span<const lab::Contender> contenders);
+/// Throws Unusable if several threads are asked for and none of the entries can use them.
+void check_threads(const EntryOptions& options, std::span<const lab::Entry> entries);
 
 /// The numbers of threads, each once. Throws Unusable as read_threads() does.
-std::vector<std::size_t> threads_of(const ContenderOptions& options);
+std::vector<std::size_t> threads_of(const EntryOptions& options);
 
 /// What was given on the command line; empty where nothing was.
 struct MotionOptions {

@@ -53,7 +53,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
 class Join {
  public:
   Join(const PairsArguments& arguments, const lab::Catalogue& catalogue)
-      : arguments_(arguments), contender_(contender_of(arguments, catalogue)) {
+      : arguments_(arguments), entry_(entry_of(arguments, catalogue)) {
     const lab::Stopwatch watch;
     if (arguments.is_swept) {
       sweep();
@@ -101,7 +101,7 @@ class Join {
     return fmt::format("{} in {}D: {}{}, {}; read in {}, joined by {} in {}", sets,
                        lab::dimension(sets_[0].boxes), lab::counted(pairs, "pair", "pairs"),
                        arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
-                       precision_text(), lab::duration(read_ms_ / 1e3), contender_.spec.text(),
+                       precision_text(), lab::duration(read_ms_ / 1e3), entry_.spec.text(),
                        lab::duration(join_ms_ / 1e3));
   }
 
@@ -144,19 +144,19 @@ class Join {
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
       if (is_between())
-        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, contender_, pairs);
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs);
       else
-        lab::join_within(sets_[0].boxes, distance, contender_, pairs);
+        lab::join_within(sets_[0].boxes, distance, entry_, pairs);
       return;
     }
     if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, contender_, pairs);
+      lab::join(sets_[0].boxes, sets_[1].boxes, entry_, pairs);
     else
-      lab::join(sets_[0].boxes, contender_, pairs);
+      lab::join(sets_[0].boxes, entry_, pairs);
   }
 
   const PairsArguments& arguments_;
-  lab::Contender contender_;
+  lab::Entry entry_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
   lab::Rounding rounding_;

@@ -69,14 +69,14 @@ double read_distance(const std::string& text) {
   return distance;
 }
 
-lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
-  const std::vector<lab::Contender> selected = catalogue.select(arguments.algorithm);
+lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
+  const std::vector<lab::Entry> selected = catalogue.select(arguments.algorithm);
   if (selected.size() != 1)
     throw Unusable(fmt::format("--algorithm is '{}', which is {} algorithms; expected one",
                                arguments.algorithm, selected.size()));
   const std::size_t threads = read_threads(arguments.threads);
   if (threads == 1) return selected[0];
-  lab::Contender threaded = lab::with_threads(selected, std::span(&threads, 1))[0];
+  lab::Entry threaded = lab::with_threads(selected, std::span(&threads, 1))[0];
   const std::string spec = threaded.spec.text();
   if (spec == selected[0].spec.text())
     throw Unusable(
@@ -97,7 +97,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // Known before the files are read.
-  contender_of(arguments, catalogue);
+  entry_of(arguments, catalogue);
   check_ids(arguments);
   if (arguments.counts) {
     if (arguments.output != "-" || !arguments.to.empty())

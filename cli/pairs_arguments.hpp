@@ -37,7 +37,7 @@ lab::MeshPart read_part(const std::string& option, const std::string& text);
 double read_distance(const std::string& text);
 
 /// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.
-lab::Contender contender_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
+lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 /// Throws Unusable if the arguments contradict each other, as far as that is known before a file is read.
 void check(const PairsArguments& arguments, const lab::Catalogue& catalogue);

@@ -37,26 +37,25 @@ const std::string* given_threads(const Spec& spec) {
 
 }  // namespace
 
-std::size_t threads_of(const Contender& contender) {
-  const std::string* const given = given_threads(contender.spec);
-  if (given == nullptr || !has_threads(*contender.algorithm)) return 1;
+std::size_t threads_of(const Entry& entry) {
+  const std::string* const given = given_threads(entry.spec);
+  if (given == nullptr || !has_threads(*entry.algorithm)) return 1;
   const Executor* const executor = standard_executor();
   if (executor == nullptr) return 1;
-  const Settings settings(contender.spec, contender.algorithm->tunables);
+  const Settings settings(entry.spec, entry.algorithm->tunables);
   const auto threads = static_cast<std::size_t>(settings.integer("threads"));
   return threads == 0 ? executor->threads() : threads;
 }
 
-std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
-                                    std::span<const std::size_t> threads) {
-  std::vector<Contender> all;
-  for (const Contender& contender : contenders) {
-    if (!has_threads(*contender.algorithm) || given_threads(contender.spec) != nullptr) {
-      all.push_back(contender);
+std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<const std::size_t> threads) {
+  std::vector<Entry> all;
+  for (const Entry& entry : entries) {
+    if (!has_threads(*entry.algorithm) || given_threads(entry.spec) != nullptr) {
+      all.push_back(entry);
       continue;
     }
     for (const std::size_t count : threads) {
-      all.push_back(contender);
+      all.push_back(entry);
       if (count != 1) all.back().spec.values.emplace_back("threads", std::to_string(count));
     }
   }
@@ -75,10 +74,10 @@ void Catalogue::add(Algorithm algorithm) {
   algorithms_.push_back(std::move(algorithm));
 }
 
-std::vector<Contender> Catalogue::select(std::string_view list) const {
-  std::vector<Contender> selected;
+std::vector<Entry> Catalogue::select(std::string_view list) const {
+  std::vector<Entry> selected;
   const auto select_once = [&selected](const Algorithm& algorithm, Spec spec) {
-    const auto same = [&](const Contender& other) { return other.spec.text() == spec.text(); };
+    const auto same = [&](const Entry& other) { return other.spec.text() == spec.text(); };
     if (std::ranges::none_of(selected, same)) selected.push_back({&algorithm, std::move(spec)});
   };
   for (std::size_t begin = 0; begin <= list.size();) {

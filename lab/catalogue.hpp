@@ -11,21 +11,20 @@
 namespace broadside::lab {
 
 /// An algorithm and the spec it was asked for under.
-struct Contender {
+struct Entry {
   const Algorithm* algorithm;
   Spec spec;
 };
 
-/// How many threads the contender searches with: what its spec says, 1 if nothing; of `threads=0`, how many
+/// How many threads the entry searches with: what its spec says, 1 if nothing; of `threads=0`, how many
 /// there are.
-std::size_t threads_of(const Contender& contender);
+std::size_t threads_of(const Entry& entry);
 
-/// Each contender with each number of threads in turn, as a spec with that many. One that cannot use several,
+/// Each entry with each number of threads in turn, as a spec with that many. One that cannot use several,
 /// or whose spec says how many, stays as it is, once.
-std::vector<Contender> with_threads(const std::vector<Contender>& contenders,
-                                    std::span<const std::size_t> threads);
+std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<const std::size_t> threads);
 
-/// A list of algorithms that can be searched by name, spec and group. Not to be changed while contenders
+/// A list of algorithms that can be searched by name, spec and group. Not to be changed while entries
 /// point into it.
 class Catalogue {
  public:
@@ -38,9 +37,9 @@ class Catalogue {
 
   std::span<const Algorithm> algorithms() const noexcept { return algorithms_; }
 
-  /// The contenders that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper,
+  /// The entries that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper,
   /// peers, all; each spec once, in the list's order. Throws InvalidSpec naming what there is.
-  std::vector<Contender> select(std::string_view list) const;
+  std::vector<Entry> select(std::string_view list) const;
 
  private:
   std::vector<Algorithm> algorithms_;

@@ -98,18 +98,18 @@ void match(FrameOfFile& left, FrameOfFile& right) {
   narrow = widened(narrow);
 }
 
-void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs) {
+void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        make_finder<D, Real>(*contender.algorithm, contender.spec)->find(list, pairs);
+        make_finder<D, Real>(*entry.algorithm, entry.spec)->find(list, pairs);
       },
       boxes);
 }
 
-void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs) {
+void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+        const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
         finder->find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs);
       },
       left);

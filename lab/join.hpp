@@ -46,21 +46,21 @@ Rounding round_to_float(AnyBoxes& boxes);
 /// one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);
 
-/// Writes every pair of overlapping boxes once, in the order in which the contender finds them. Throws as
-/// PairFinder::find() does, and InvalidSpec if the contender cannot search boxes of this dimension.
-void join(const AnyBoxes& boxes, const Contender& contender, PairSink& pairs);
+/// Writes every pair of overlapping boxes once, in the order in which the entry finds them. Throws as
+/// PairFinder::find() does, and InvalidSpec if the entry cannot search boxes of this dimension.
+void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs);
 
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.
-void join(const AnyBoxes& left, const AnyBoxes& right, const Contender& contender, PairSink& pairs);
+void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs);
 
 /// Writes every pair of boxes between which the gap on each axis, 0 where they overlap on it, is at most
 /// `distance`, which is finite and 0 or more. So it finds all pairs whose Euclidean distance is at most that,
 /// and a few more, past corners. Exact: the gap of two coordinates is compared with the distance as the real
 /// numbers that they are, unrounded. Otherwise as join.
-void join_within(const AnyBoxes& boxes, double distance, const Contender& contender, PairSink& pairs);
+void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs);
 
 /// Writes every such pair of a box of `left` and one of `right`, which match, likewise.
-void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Contender& contender,
+void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
                  PairSink& pairs);
 
 }  // namespace broadside::lab

@@ -76,23 +76,23 @@ class PairsWithin final : public PairSink {
 
 }  // namespace
 
-void join_within(const AnyBoxes& boxes, double distance, const Contender& contender, PairSink& pairs) {
+void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         PairsWithin<D, Real> within(list, list, distance, pairs);
-        join(enlarged(list, distance), contender, within);
+        join(enlarged(list, distance), entry, within);
       },
       boxes);
   pairs.flush();
 }
 
-void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Contender& contender,
+void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
                  PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         const auto& other = std::get<std::vector<Box<D, Real>>>(right);
         PairsWithin<D, Real> within(list, other, distance, pairs);
-        join(enlarged(list, distance), enlarged(other, distance), contender, within);
+        join(enlarged(list, distance), enlarged(other, distance), entry, within);
       },
       left);
   pairs.flush();

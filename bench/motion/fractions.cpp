@@ -62,11 +62,11 @@ void ways_in(int dimension, const std::string& scene, const Wishes& wishes, std:
   const Turns turns = wishes.turns(20, 3);
   const std::vector<double> fractions = wishes.moving.empty() ? ten_fractions() : wishes.moving;
   const lab::Catalogue catalogue;
-  const std::vector<lab::Contender> contenders = catalogue.select(algorithms);
+  const std::vector<lab::Entry> entries = catalogue.select(algorithms);
   print_heading(scene, dimension, boxes, turns);
-  lab::Columns columns(">>" + std::string(contenders.size(), '>') + "><");
+  lab::Columns columns(">>" + std::string(entries.size(), '>') + "><");
   std::vector<std::string> head = {"moving", "movers"};
-  for (const lab::Contender& contender : contenders) head.push_back(contender.spec.text());
+  for (const lab::Entry& entry : entries) head.push_back(entry.spec.text());
   head.insert(head.end(), {"over the best", "the last frame"});
   columns.add(head);
   for (const double moving : fractions) {

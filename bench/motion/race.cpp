@@ -31,8 +31,8 @@ struct Told {
 };
 
 template <int D>
-struct Seat {
-  const lab::Contender* contender;
+struct Participant {
+  const lab::Entry* entry;
   Runner* runner;
   std::unique_ptr<PairTracker<D>> tracker{};  // of this round
   std::vector<Box<D>> boxes{};                // its own, as an engine's are
@@ -43,10 +43,10 @@ struct Seat {
 template <int D>
 class Race {
  public:
-  Race(std::span<const lab::Contender> contenders, const Turns& turns) : turns_(turns) {
-    for (const lab::Contender& contender : contenders) outcome_.runners.push_back({contender.spec.text()});
-    for (std::size_t i = 0; i < contenders.size(); ++i)
-      seats_.push_back({&contenders[i], &outcome_.runners[i]});
+  Race(std::span<const lab::Entry> entries, const Turns& turns) : turns_(turns) {
+    for (const lab::Entry& entry : entries) outcome_.runners.push_back({entry.spec.text()});
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      participants_.push_back({&entries[i], &outcome_.runners[i]});
   }
 
   Outcome run(const StartMotion<D>& start) {
@@ -55,8 +55,8 @@ class Race {
       if (round == 0) let_in(motion.boxes);
       follow(motion, round);
     }
-    for (Seat<D>& seat : seats_) {
-      if (seat.tracker) seat.runner->explanation = seat.tracker->explanation();
+    for (Participant<D>& participant : participants_) {
+      if (participant.tracker) participant.runner->explanation = participant.tracker->explanation();
     }
     return std::move(outcome_);
   }
@@ -65,33 +65,33 @@ class Race {
   void let_in(std::span<const Box<D>> boxes) {
     lab::Extremes extremes;
     extremes.take<D>(boxes);
-    for (Seat<D>& seat : seats_) {
-      std::string& why = seat.runner->left_out;
-      why = lab::unfit(*seat.contender, D, extremes);
+    for (Participant<D>& participant : participants_) {
+      std::string& why = participant.runner->left_out;
+      why = lab::unfit(*participant.entry, D, extremes);
       // Some take quadratic time to put boxes in one by one.
       const auto seconds_for = [&](std::size_t count) {
         std::vector<Box<D>> some;
         for (const std::size_t i : lab::sample_of(boxes.size(), count)) some.push_back(boxes[i]);
-        make(seat);
-        return update(seat, {some, {}}) / 1e3;
+        make(participant);
+        return update(participant, {some, {}}) / 1e3;
       };
       if (why.empty()) {
         if (const auto estimate = lab::estimate_above(turns_.budget_seconds, boxes.size(), seconds_for))
           why = "first frame " + lab::text(*estimate);
       }
-      seat.done = !why.empty();
+      participant.done = !why.empty();
     }
   }
 
   void follow(Motion<D>& motion, std::size_t round) {
-    for (const std::size_t place : lab::turns(seats_.size(), round)) {
-      Seat<D>& seat = seats_[place];
-      if (seat.done) continue;
-      make(seat);
-      seat.boxes = motion.boxes;
-      const double milliseconds = update(seat, {seat.boxes, {}});
-      compare(seat, 0);
-      double& least = seat.runner->build_ms;
+    for (const std::size_t place : lab::turns(participants_.size(), round)) {
+      Participant<D>& participant = participants_[place];
+      if (participant.done) continue;
+      make(participant);
+      participant.boxes = motion.boxes;
+      const double milliseconds = update(participant, {participant.boxes, {}});
+      compare(participant, 0);
+      double& least = participant.runner->build_ms;
       least = least > 0 ? std::min(least, milliseconds) : milliseconds;
     }
     for (std::size_t frame = 0; frame < turns_.frames; frame += turns_.in_a_row) {
@@ -101,59 +101,59 @@ class Race {
       if (round == 0) {
         for (const lab::Step<D>& step : steps) outcome_.movers.push_back(step.changed.size());
       }
-      for (const std::size_t place : lab::turns(seats_.size(), round * turns_.frames + frame)) {
-        for (std::size_t i = 0; i < steps.size(); ++i) take(seats_[place], steps[i], frame + i);
+      for (const std::size_t place : lab::turns(participants_.size(), round * turns_.frames + frame)) {
+        for (std::size_t i = 0; i < steps.size(); ++i) take(participants_[place], steps[i], frame + i);
       }
     }
   }
 
-  void take(Seat<D>& seat, const lab::Step<D>& step, std::size_t frame) {
-    if (seat.done) return;
-    lab::apply(step, seat.boxes);
-    const double milliseconds = update(seat, {seat.boxes, step.changed});
-    compare(seat, frame + 1);
-    seat.spent_ms += milliseconds;
-    std::vector<double>& frames = seat.runner->frames_ms;
+  void take(Participant<D>& participant, const lab::Step<D>& step, std::size_t frame) {
+    if (participant.done) return;
+    lab::apply(step, participant.boxes);
+    const double milliseconds = update(participant, {participant.boxes, step.changed});
+    compare(participant, frame + 1);
+    participant.spent_ms += milliseconds;
+    std::vector<double>& frames = participant.runner->frames_ms;
     if (frame < frames.size())
       frames[frame] = std::min(frames[frame], milliseconds);
     else
       frames.push_back(milliseconds);
-    seat.done = frames.size() >= std::min(fewest_frames, turns_.frames) &&
-                seat.spent_ms > turns_.budget_seconds * 1e3;
+    participant.done = frames.size() >= std::min(fewest_frames, turns_.frames) &&
+                       participant.spent_ms > turns_.budget_seconds * 1e3;
   }
 
-  static void make(Seat<D>& seat) {
-    seat.tracker.reset();
-    seat.tracker = make_tracker<D>(*seat.contender->algorithm, seat.contender->spec);
+  static void make(Participant<D>& participant) {
+    participant.tracker.reset();
+    participant.tracker = make_tracker<D>(*participant.entry->algorithm, participant.entry->spec);
   }
 
-  double update(Seat<D>& seat, const Frame<D>& frame) {
+  double update(Participant<D>& participant, const Frame<D>& frame) {
     events_.begun.clear();
     events_.ended.clear();
     PairCollector begun(events_.begun);
     PairCollector ended(events_.ended);
     const lab::Stopwatch watch;
-    seat.tracker->update(frame, begun, ended);
+    participant.tracker->update(frame, begun, ended);
     return watch.milliseconds();
   }
 
-  void compare(const Seat<D>& seat, std::size_t frame) {
+  void compare(const Participant<D>& participant, std::size_t frame) {
     lab::EventHasher hasher;
     hasher.add(events_);
     if (frame == told_.size()) {
-      told_.push_back({hasher.hash(), seat.runner->algorithm});
+      told_.push_back({hasher.hash(), participant.runner->algorithm});
       if (frame > 0) outcome_.events += events_.begun.size() + events_.ended.size();
     }
     if (told_[frame].hash == hasher.hash()) return;
     throw std::runtime_error(fmt::format(
         "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
-        seat.runner->algorithm, lab::counted(events_.begun.size(), "pair as begun", "pairs as begun"),
+        participant.runner->algorithm, lab::counted(events_.begun.size(), "pair as begun", "pairs as begun"),
         events_.ended.size(), told_[frame].by));
   }
 
   const Turns& turns_;
   Outcome outcome_;
-  std::vector<Seat<D>> seats_;
+  std::vector<Participant<D>> participants_;
   std::vector<Told> told_;  // by frame, the first one too
   lab::Events events_;      // of the last update; its memory serves all
 };
@@ -167,8 +167,8 @@ double Outcome::mean_movers() const {
 }
 
 template <int D>
-Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns) {
-  return Race<D>(contenders, turns).run(start);
+Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns) {
+  return Race<D>(entries, turns).run(start);
 }
 
 void merge(Outcome& outcome, Outcome round) {
@@ -185,7 +185,7 @@ void merge(Outcome& outcome, Outcome round) {
   }
 }
 
-template Outcome race(std::span<const lab::Contender>, const StartMotion<2>&, const Turns&);
-template Outcome race(std::span<const lab::Contender>, const StartMotion<3>&, const Turns&);
+template Outcome race(std::span<const lab::Entry>, const StartMotion<2>&, const Turns&);
+template Outcome race(std::span<const lab::Entry>, const StartMotion<3>&, const Turns&);
 
 }  // namespace broadside::bench

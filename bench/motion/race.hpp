@@ -45,17 +45,17 @@ struct Runner {
 
 /// What a race came to.
 struct Outcome {
-  std::vector<Runner> runners;        ///< in the order of the contenders
+  std::vector<Runner> runners;        ///< in the order of the entries
   std::vector<std::size_t> movers{};  ///< boxes that changed in each frame
   std::uint64_t events = 0;           ///< begun and ended in all frames but the first
 
   double mean_movers() const;
 };
 
-/// Lets the contenders follow the motion. Between two frames nothing of theirs is timed: what is timed is an
+/// Lets the entries follow the motion. Between two frames nothing of theirs is timed: what is timed is an
 /// update() with its events. Throws std::runtime_error if two disagree on the events of a frame.
 template <int D>
-Outcome race(std::span<const lab::Contender> contenders, const StartMotion<D>& start, const Turns& turns);
+Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns);
 
 /// Adds a round of the same motion to what others came to: of each frame the least time remains.
 void merge(Outcome& outcome, Outcome round);

@@ -146,7 +146,7 @@ void rest_in(const Wishes& wishes) {
   Turns turns = wishes.turns(50, 5);
   const auto both = worlds<D>(scene_of(wishes), resting, around, movers, wishes.seed);
   const lab::Catalogue catalogue;
-  const std::vector<lab::Contender> contenders = catalogue.select(wishes.algorithms_or("auto"));
+  const std::vector<lab::Entry> entries = catalogue.select(wishes.algorithms_or("auto"));
   print_heading(fmt::format("boxes that rest, {}, {} and {} movers", scene_of(wishes),
                             lab::grouped(both[1].boxes.size() - both[1].movers.size()),
                             lab::grouped(both[0].movers.size())),
@@ -165,7 +165,7 @@ void rest_in(const Wishes& wishes) {
                   return step;
                 }};
       };
-      merge(outcomes[world], race<D>(contenders, start, turns));
+      merge(outcomes[world], race<D>(entries, start, turns));
     }
   }
   if (outcomes[0].events != outcomes[1].events)
@@ -177,7 +177,7 @@ void rest_in(const Wishes& wishes) {
   print_table(outcomes[0]);
   fmt::print("  {} boxes\n", lab::grouped(both[1].boxes.size()));
   print_table(outcomes[1]);
-  for (std::size_t i = 0; i < contenders.size(); ++i) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!outcomes[0].runners[i].ran() || !outcomes[1].runners[i].ran()) continue;
     fmt::print("  {}: the large world takes {:.2f} times as long\n", outcomes[0].runners[i].algorithm,
                lab::median(outcomes[0].runners[i].frames_ms) / lab::median(outcomes[1].runners[i].frames_ms));

@@ -34,10 +34,10 @@ bool is_above(const Finding& finding, const InputResult& result, const Bounds& b
 Hunter::Runs Hunter::run_all(const RunAlgorithm& run, bool is_uniform) const {
   Runs runs;
   double seconds = is_uniform ? uniform_seconds : hunt_.limit_seconds;
-  for (const lab::Contender& contender : hunt_.algorithms) {
-    runs.push_back(run(contender, seconds));
+  for (const lab::Entry& entry : hunt_.algorithms) {
+    runs.push_back(run(entry, seconds));
     if (runs.back().end == Run::End::too_many_pairs) break;
-    if (hunt_.judges_auto && !is_uniform && is_auto(contender.spec.text()) && runs.back().finished()) {
+    if (hunt_.judges_auto && !is_uniform && is_auto(entry.spec.text()) && runs.back().finished()) {
       const auto calls = static_cast<double>(hunt_.effort.rounds + 1);
       const double frames = runs.back().worst_milliseconds > runs.back().milliseconds
                                 ? static_cast<double>(hunt_.effort.frames) + 10
@@ -88,7 +88,7 @@ void Hunter::check(InputResult& result, const RunAlgorithm& run) const {
     if (finding.run.end == Run::End::failed)
       result.fault = fmt::format("{}: {}", finding.algorithm, finding.run.fault);
   }
-  for (const lab::Contender& reference : hunt_.references) {
+  for (const lab::Entry& reference : hunt_.references) {
     if (finished != 1) break;
     const std::string name = reference.spec.text();
     if (name == *by) continue;

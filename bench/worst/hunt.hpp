@@ -22,8 +22,8 @@ struct Bounds {
 
 /// What is hunted with.
 struct Hunt {
-  std::vector<lab::Contender> algorithms;
-  std::vector<lab::Contender> references{};  ///< asked in turn where only one algorithm finished
+  std::vector<lab::Entry> algorithms;
+  std::vector<lab::Entry> references{};  ///< asked in turn where only one algorithm finished
   Effort effort{};
   double limit_seconds = 10;      ///< for a run
   double reference_seconds = 30;  ///< for that of a reference

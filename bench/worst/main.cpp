@@ -92,10 +92,9 @@ class Source {
   std::size_t next_ = 0;
 };
 
-std::vector<lab::Contender> without_brute_force(std::vector<lab::Contender> contenders) {
-  std::erase_if(contenders,
-                [](const lab::Contender& contender) { return contender.spec.text() == "brute_force"; });
-  return contenders;
+std::vector<lab::Entry> without_brute_force(std::vector<lab::Entry> entries) {
+  std::erase_if(entries, [](const lab::Entry& entry) { return entry.spec.text() == "brute_force"; });
+  return entries;
 }
 
 std::vector<InputResult> hunt(const Arguments& arguments) {
@@ -141,7 +140,7 @@ int run(int count, char** values) {
   if (arguments.algorithms == "own") hunted.algorithms = without_brute_force(hunted.algorithms);
   // auto first, since how long the others may take depends on it.
   std::stable_partition(hunted.algorithms.begin(), hunted.algorithms.end(),
-                        [](const lab::Contender& contender) { return contender.spec.name == "auto"; });
+                        [](const lab::Entry& entry) { return entry.spec.name == "auto"; });
   if (arguments.judge && hunted.algorithms.front().spec.name != "auto")
     throw std::runtime_error("--judge without auto among --algorithms; expected auto");
   hunted.references = catalogue.select("bvh,quadtree,sweep_and_prune,grid");

@@ -63,15 +63,15 @@ class Measured {
         history_(lab::make_input<D, Real>(input, effort.boxes, effort.frames)),
         most_pairs_(effort.most_pairs * static_cast<double>(effort.boxes)) {}
 
-  Run run(const lab::Contender& contender) const {
+  Run run(const lab::Entry& entry) const {
     Run counted;
     try {
-      counted = once(contender, true);
+      counted = once(entry, true);
     } catch (const TooManyPairs&) {
       return {.end = Run::End::too_many_pairs};
     }
     for (std::size_t round = 0; round < effort_.rounds; ++round) {
-      const Run timed = once(contender, false);
+      const Run timed = once(entry, false);
       if (timed.pairs != counted.pairs || timed.hash != counted.hash)
         throw std::runtime_error("found other pairs in another call; expected the same");
       if (round == 0 || timed.milliseconds < counted.milliseconds) {
@@ -83,16 +83,16 @@ class Measured {
   }
 
  private:
-  Run once(const lab::Contender& contender, bool count) const {
-    return is_tracked_ ? track(contender, count) : find(contender, count);
+  Run once(const lab::Entry& entry, bool count) const {
+    return is_tracked_ ? track(entry, count) : find(entry, count);
   }
 
-  Run find(const lab::Contender& contender, bool count) const {
+  Run find(const lab::Entry& entry, bool count) const {
     LimitedHasher pairs(most_pairs_);
     std::optional<lab::AllocationMeter> meter;
     if (count) meter.emplace();
     const lab::Stopwatch watch;
-    const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+    const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
     if (left_count_ > 0)
       finder->find_between(history_.boxes, left_count_, pairs);
     else
@@ -106,14 +106,14 @@ class Measured {
             .peak_bytes = meter ? peak(*meter) : 0};
   }
 
-  Run track(const lab::Contender& contender, bool count) const {
+  Run track(const lab::Entry& entry, bool count) const {
     std::vector<Box<D, Real>> boxes = history_.boxes;
     Run run;
     std::vector<double> frames;
     std::vector<double> tests;
     std::optional<lab::AllocationMeter> meter;
     if (count) meter.emplace();
-    const auto tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
+    const auto tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
     std::int64_t held = 0;
     const auto update = [&](std::span<const BoxId> changed, bool is_first) {
       // A hundred movers may begin a pair each with a giant.
@@ -155,8 +155,8 @@ class Measured {
 template <int D, typename Real>
 RunAlgorithm prepare_in(const lab::HardInput& input, const Effort& effort) {
   const auto measured = std::make_shared<const Measured<D, Real>>(input, effort);
-  return [measured, most_bytes = effort.most_bytes](const lab::Contender& contender, double seconds) {
-    return in_child(seconds, most_bytes, [&] { return measured->run(contender); });
+  return [measured, most_bytes = effort.most_bytes](const lab::Entry& entry, double seconds) {
+    return in_child(seconds, most_bytes, [&] { return measured->run(entry); });
   };
 }
 

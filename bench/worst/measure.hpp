@@ -21,7 +21,7 @@ struct Effort {
 };
 
 /// A run of one algorithm of at most `seconds`, in a process of its own.
-using RunAlgorithm = std::function<Run(const lab::Contender& contender, double seconds)>;
+using RunAlgorithm = std::function<Run(const lab::Entry& entry, double seconds)>;
 
 /// Makes the boxes of `input` and returns what runs algorithms on them. A run makes one call in which tests,
 /// memory and pairs are counted, then `rounds` that are timed and whose pairs must be the same. A tracker

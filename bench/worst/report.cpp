@@ -70,13 +70,13 @@ std::string worst(std::vector<Line> lines, std::size_t most, const Key& key) {
 
 std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t most) {
   std::string text;
-  for (const lab::Contender& contender : hunt.algorithms) {
-    const std::string algorithm = contender.spec.text();
+  for (const lab::Entry& entry : hunt.algorithms) {
+    const std::string algorithm = entry.spec.text();
     const std::vector<Line> lines = lines_of(results, algorithm);
     if (lines.empty()) continue;
     text += algorithm + ", its worst over uniform boxes\n";
     text += worst(lines, most, [](const Line& line) { return line.finding->over_uniform; });
-    if (contender.spec.name == "auto") {
+    if (entry.spec.name == "auto") {
       text += algorithm + ", its worst over the best of all\n";
       text += worst(lines, most, [](const Line& line) { return line.finding->over_best; });
       text += algorithm + ", where it takes most memory\n";
@@ -115,21 +115,20 @@ std::string summary(std::span<const InputResult> results, const Hunt& hunt) {
     if (result.state == InputResult::State::unverified)
       text += fmt::format("  unverified: {}\n", result.input.text());
   }
-  for (const lab::Contender& contender : hunt.algorithms) {
+  for (const lab::Entry& entry : hunt.algorithms) {
     std::size_t above = 0;
     std::size_t unfinished = 0;
-    for (const Line& line : lines_of(results, contender.spec.text())) {
+    for (const Line& line : lines_of(results, entry.spec.text())) {
       above += is_above(*line.finding, *line.result, hunt.bounds) ? 1 : 0;
       unfinished += line.finding->run.finished() ? 0 : 1;
     }
-    text += fmt::format("  {:<20} {} above {}, {} not finished\n", contender.spec.text(),
-                        lab::counted(above, "input", "inputs"),
-                        contender.spec.name == "auto"
-                            ? fmt::format("{} times uniform, {} times the best or {} bytes a box",
-                                          hunt.bounds.auto_over_uniform, hunt.bounds.auto_over_best,
-                                          hunt.bounds.auto_bytes_a_box)
-                            : fmt::format("{} times uniform", hunt.bounds.over_uniform),
-                        unfinished);
+    text += fmt::format(
+        "  {:<20} {} above {}, {} not finished\n", entry.spec.text(), lab::counted(above, "input", "inputs"),
+        entry.spec.name == "auto" ? fmt::format("{} times uniform, {} times the best or {} bytes a box",
+                                                hunt.bounds.auto_over_uniform, hunt.bounds.auto_over_best,
+                                                hunt.bounds.auto_bytes_a_box)
+                                  : fmt::format("{} times uniform", hunt.bounds.over_uniform),
+        unfinished);
   }
   return text;
 }

@@ -132,10 +132,10 @@ class Adviser {
   }
 
   Advice run() {
-    const std::vector<Contender> plain = catalogue_.select(options_.algorithms);
+    const std::vector<Entry> plain = catalogue_.select(options_.algorithms);
     std::vector<Measurement> first = measure(plain, first_effort(plain.size()));
     std::vector<bool> variant;
-    const std::vector<Contender> finalists = finalists_of(plain, first, variant);
+    const std::vector<Entry> finalists = finalists_of(plain, first, variant);
     if (!finalists.empty()) {
       std::vector<Measurement> second = measure(finalists, final_effort(finalists.size()));
       for (std::size_t i = 0; i < second.size(); ++i) add(std::move(second[i]), variant[i], true);
@@ -166,11 +166,11 @@ class Adviser {
     advice_.ranking.push_back({std::move(measurement), milliseconds, is_variant, is_finalist});
   }
 
-  Effort first_effort(std::size_t contenders) const {
+  Effort first_effort(std::size_t entries) const {
     const double budget = options_.budget_seconds;
     return {.budget_seconds = budget / 12,
             .history_seconds = budget / 3,
-            .share_seconds = 0.3 * budget / static_cast<double>(contenders),
+            .share_seconds = 0.3 * budget / static_cast<double>(entries),
             .least_rounds = advice_.mode == Mode::find ? std::size_t{6} : std::size_t{2},
             .most_rounds = 64,
             .slow_seconds = budget / 20,
@@ -180,11 +180,11 @@ class Adviser {
             .case_seconds = 0.4 * budget};
   }
 
-  Effort final_effort(std::size_t contenders) const {
+  Effort final_effort(std::size_t entries) const {
     const double budget = options_.budget_seconds;
     return {.budget_seconds = budget,
             .history_seconds = budget,
-            .share_seconds = 0.6 * budget / static_cast<double>(contenders),
+            .share_seconds = 0.6 * budget / static_cast<double>(entries),
             .least_rounds = advice_.mode == Mode::find ? std::size_t{9} : std::size_t{3},
             .most_rounds = 400,
             .slow_seconds = budget / 8,
@@ -194,8 +194,8 @@ class Adviser {
             .case_seconds = std::max(budget - watch_.milliseconds() / 1e3, 0.0)};
   }
 
-  std::vector<Measurement> measure(std::span<const Contender> contenders, const Effort& effort) {
-    const Benchmark benchmark{contenders, catalogue_.algorithms(), effort, options_.watch};
+  std::vector<Measurement> measure(std::span<const Entry> entries, const Effort& effort) {
+    const Benchmark benchmark{entries, catalogue_.algorithms(), effort, options_.watch};
     if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, benchmark);
     CaseResult result = measure_find<D, Real>(case_, images_, benchmark);
     if (!result.floor_ms.empty()) advice_.floor_ms = median(result.floor_ms);
@@ -203,8 +203,8 @@ class Adviser {
   }
 
   /// The best, auto, and variants of the best; for each, whether it is a variant.
-  std::vector<Contender> finalists_of(const std::vector<Contender>& plain,
-                                      const std::vector<Measurement>& first, std::vector<bool>& variant) {
+  std::vector<Entry> finalists_of(const std::vector<Entry>& plain, const std::vector<Measurement>& first,
+                                  std::vector<bool>& variant) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < first.size(); ++i) {
       if (first[i].outcome == Outcome::verified) order.push_back(i);
@@ -214,8 +214,8 @@ class Adviser {
     const auto is_peer = [&](std::size_t i) { return plain[i].algorithm->kind == AlgorithmKind::peer; };
     const auto best = std::ranges::find_if_not(order, is_peer);
     if (best == order.end()) return {};
-    std::vector<Contender> finalists;
-    std::vector<Contender> tried;
+    std::vector<Entry> finalists;
+    std::vector<Entry> tried;
     std::size_t ours = 0;
     std::size_t with_variants = 0;
     for (const std::size_t i : order) {
@@ -226,26 +226,26 @@ class Adviser {
       if (!is_peer(i)) add_threads(plain[i], tried);
       if (is_auto(i) || (!is_peer(i) && with_variants++ < most_with_variants)) add_variants(plain[i], tried);
     }
-    std::erase_if(tried, [&](const Contender& contender) {
-      return std::ranges::any_of(
-          plain, [&](const Contender& other) { return other.spec.text() == contender.spec.text(); });
+    std::erase_if(tried, [&](const Entry& entry) {
+      return std::ranges::any_of(plain,
+                                 [&](const Entry& other) { return other.spec.text() == entry.spec.text(); });
     });
     variant.assign(finalists.size(), false);
-    for (Contender& contender : tried) {
-      finalists.push_back(std::move(contender));
+    for (Entry& entry : tried) {
+      finalists.push_back(std::move(entry));
       variant.push_back(true);
     }
     return finalists;
   }
 
-  void add_variants(const Contender& contender, std::vector<Contender>& tried) const {
-    for (Contender& other : variants_of(contender, advice_.signals)) tried.push_back(std::move(other));
+  void add_variants(const Entry& entry, std::vector<Entry>& tried) const {
+    for (Entry& other : variants_of(entry, advice_.signals)) tried.push_back(std::move(other));
   }
 
   /// With more threads than one, where the user named none in its spec.
-  void add_threads(const Contender& contender, std::vector<Contender>& tried) const {
-    for (Contender& other : with_threads({contender}, options_.threads)) {
-      if (other.spec.text() != contender.spec.text()) tried.push_back(std::move(other));
+  void add_threads(const Entry& entry, std::vector<Entry>& tried) const {
+    for (Entry& other : with_threads({entry}, options_.threads)) {
+      if (other.spec.text() != entry.spec.text()) tried.push_back(std::move(other));
     }
   }
 

@@ -145,17 +145,17 @@ std::vector<Trial> trials_of(std::string_view algorithm, const Signals& signals)
 
 }  // namespace
 
-std::vector<Contender> variants_of(const Contender& contender, const Signals& signals) {
-  std::vector<Contender> variants;
-  if (contender.algorithm->kind != AlgorithmKind::own) return variants;
-  for (const Trial& trial : trials_of(contender.algorithm->name, signals)) {
+std::vector<Entry> variants_of(const Entry& entry, const Signals& signals) {
+  std::vector<Entry> variants;
+  if (entry.algorithm->kind != AlgorithmKind::own) return variants;
+  for (const Trial& trial : trials_of(entry.algorithm->name, signals)) {
     const auto is_it = [&](const auto& value) { return value.first == trial.tunable; };
     const auto has_it = [&](const Tunable& tunable) { return tunable.name == trial.tunable; };
-    if (std::ranges::any_of(contender.spec.values, is_it) ||
-        std::ranges::none_of(contender.algorithm->tunables, has_it))
+    if (std::ranges::any_of(entry.spec.values, is_it) ||
+        std::ranges::none_of(entry.algorithm->tunables, has_it))
       continue;
     for (const std::string& value : trial.values) {
-      variants.push_back(contender);
+      variants.push_back(entry);
       variants.back().spec.values.emplace_back(trial.tunable, value);
     }
   }

@@ -67,8 +67,8 @@ double part_of_rounds(const Measurement& a, const Measurement& b);
 std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time = true);
 
 /// The settings that are worth a try: cells of some multiples of the boxes' size, capacities, axes, and where
-/// boxes move each way to follow them. The contender's own values stay as they are, so that there are none
+/// boxes move each way to follow them. The entry's own values stay as they are, so that there are none
 /// where it has them all; none either for algorithms that have no such tunables.
-std::vector<Contender> variants_of(const Contender& contender, const Signals& signals);
+std::vector<Entry> variants_of(const Entry& entry, const Signals& signals);
 
 }  // namespace broadside::lab

@@ -18,13 +18,13 @@ void Watch::at(std::string_view what) const {
   if (progress) progress(what);
 }
 
-Measurement measurement_of(const Contender& contender) {
-  const Algorithm& algorithm = *contender.algorithm;
+Measurement measurement_of(const Entry& entry) {
+  const Algorithm& algorithm = *entry.algorithm;
   Measurement measurement;
-  measurement.algorithm = contender.spec.text();
+  measurement.algorithm = entry.spec.text();
   measurement.version = algorithm.version.empty() ? BROADSIDE_VERSION : algorithm.version;
   measurement.kind = algorithm.kind;
-  measurement.threads = threads_of(contender);
+  measurement.threads = threads_of(entry);
   return measurement;
 }
 
@@ -59,8 +59,8 @@ void count_memory(Measurement& measurement, const Algorithm& algorithm,
   measurement.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(allocation->peak, 0));
 }
 
-std::string unfit(const Contender& contender, int dimension, const Extremes& extremes) {
-  const Algorithm& algorithm = *contender.algorithm;
+std::string unfit(const Entry& entry, int dimension, const Extremes& extremes) {
+  const Algorithm& algorithm = *entry.algorithm;
   if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
   if (extremes.infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
   if (extremes.largest > algorithm.largest_coordinate)
@@ -69,8 +69,8 @@ std::string unfit(const Contender& contender, int dimension, const Extremes& ext
     return fmt::format("does not take more than {} boxes", grouped(algorithm.most_boxes));
   try {
     // A value may make sense in one dimension only, such as an axis.
-    dimension == 2 ? void(make_finder<2>(algorithm, contender.spec))
-                   : void(make_finder<3>(algorithm, contender.spec));
+    dimension == 2 ? void(make_finder<2>(algorithm, entry.spec))
+                   : void(make_finder<3>(algorithm, entry.spec));
   } catch (const InvalidSpec& unusable) {
     return unusable.what();
   }

@@ -37,7 +37,7 @@ struct Watch {
 
 /// What a case is measured with, but for its boxes.
 struct Benchmark {
-  std::span<const Contender> contenders;
+  std::span<const Entry> entries;
   std::span<const Algorithm> known;  ///< where references are taken from
   Effort effort;
   Watch watch;
@@ -56,7 +56,7 @@ class Stopwatch {
 };
 
 /// A measurement with the algorithm's name in it and nothing measured.
-Measurement measurement_of(const Contender& contender);
+Measurement measurement_of(const Entry& entry);
 
 /// Runs `run`, which calls the algorithm and returns what is wrong with its result: returns that, or what the
 /// algorithm threw; empty if nothing is wrong. Lets Stopped through.
@@ -84,7 +84,7 @@ struct Extremes {
   void take(std::type_identity_t<std::span<const Box<D, Real>>> some);
 };
 
-/// Why the contender cannot take boxes of this dimension and with these extremes; empty if it can.
-std::string unfit(const Contender& contender, int dimension, const Extremes& extremes);
+/// Why the entry cannot take boxes of this dimension and with these extremes; empty if it can.
+std::string unfit(const Entry& entry, int dimension, const Extremes& extremes);
 
 }  // namespace broadside::lab

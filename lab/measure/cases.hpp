@@ -49,7 +49,7 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
 /// Times one whole find() an entry and round, into a vector whose memory is there already. A round is on the
 /// boxes that one input (one a seed of the case) begins with, and the inputs take turns; each entry takes
 /// part in the first rounds, as many as the effort says, and every result is checked. One measurement a
-/// contender, in their order. Where boxes are of floats, the floor takes part in every round.
+/// entry, in their order. Where boxes are of floats, the floor takes part in every round.
 ///
 /// Throws Stopped. What an algorithm throws is its failure and no error.
 template <int D, typename Real = float>
@@ -58,7 +58,7 @@ CaseResult measure_find(const Case& measured, Histories<D, Real> inputs, const B
 /// Times each update() of a history but for the first, in which all is new and which is timed apart. A round
 /// is a pass over one input (one a seed of the case), and the inputs take turns; each entry takes part in the
 /// first rounds, as many as the effort says. In a round the entries take turns frame by frame, and all events
-/// are checked. One measurement a contender, in their order.
+/// are checked. One measurement an entry, in their order.
 ///
 /// Throws Stopped. What an algorithm throws is its failure and no error.
 template <int D, typename Real = float>

@@ -64,7 +64,7 @@ class Runner {
   Runner(const Catalogue& catalogue, const CompareOptions& options)
       : catalogue_(catalogue),
         options_(options),
-        contenders_(with_threads(catalogue.select(options.algorithms), options.threads)) {}
+        entries_(with_threads(catalogue.select(options.algorithms), options.threads)) {}
 
   Comparison run() {
     for (const CaseRequest& request : options_.plan) resolve(request);
@@ -120,7 +120,7 @@ class Runner {
       comparison_.not_compared.push_back({request, thrown.what()});
       return;
     }
-    const Benchmark benchmark{contenders_, catalogue_.algorithms(), options_.effort, watch};
+    const Benchmark benchmark{entries_, catalogue_.algorithms(), options_.effort, watch};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
                                     : CaseResult{of, measure_track<D>(of, inputs, benchmark)});
@@ -164,7 +164,7 @@ class Runner {
 
   const Catalogue& catalogue_;
   const CompareOptions& options_;
-  std::vector<Contender> contenders_;
+  std::vector<Entry> entries_;
   std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty where there is none
   std::string place_;                              // of the case that is going on, in the plan
   Comparison comparison_;

@@ -40,8 +40,8 @@ struct ExpectedPairs {
 
 /// An algorithm that takes part.
 template <int D, typename Real>
-struct FindEntry {
-  const Contender* contender;
+struct FindParticipant {
+  const Entry* entry;
   Measurement* measurement;
   std::unique_ptr<PairFinder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
@@ -58,15 +58,14 @@ class FindCase {
 
   CaseResult run() {
     keep_freed_memory();
-    for (const Contender& contender : benchmark_.contenders)
-      measurements_.push_back(measurement_of(contender));
+    for (const Entry& entry : benchmark_.entries) measurements_.push_back(measurement_of(entry));
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
-      if (is_eligible(benchmark_.contenders[i], measurements_[i]))
-        entries_.push_back({&benchmark_.contenders[i], &measurements_[i]});
+      if (is_eligible(benchmark_.entries[i], measurements_[i]))
+        participants_.push_back({&benchmark_.entries[i], &measurements_[i]});
     }
-    for (FindEntry<D, Real>& entry : entries_) warm_up(entry);
+    for (FindParticipant<D, Real>& participant : participants_) warm_up(participant);
     has_floor_ =
-        std::is_same_v<Real, float> && !entries_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
+        std::is_same_v<Real, float> && !participants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
@@ -77,16 +76,16 @@ class FindCase {
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
-  /// Fills in why not, if the contender cannot take part.
-  bool is_eligible(const Contender& contender, Measurement& measurement) {
-    measurement.reason = unfit(contender, D, extremes_);
+  /// Fills in why not, if the entry cannot take part.
+  bool is_eligible(const Entry& entry, Measurement& measurement) {
+    measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
     const double budget = benchmark_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
-      const auto finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
+      const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
       const double first = call(*finder, some);
       // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
       // call takes memory.
@@ -95,7 +94,7 @@ class FindCase {
     };
     const std::string fault = fault_of(measurement, [&]() -> std::string {
       benchmark_.watch.at(measurement.algorithm + ", making the reference");
-      touch(expectation(*contender.algorithm, 0).count);
+      touch(expectation(*entry.algorithm, 0).count);
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
         skip(measurement, *estimate, 1, budget);
       return {};
@@ -112,36 +111,38 @@ class FindCase {
   }
 
   /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
-  void warm_up(FindEntry<D, Real>& entry) {
-    Measurement& measurement = *entry.measurement;
+  void warm_up(FindParticipant<D, Real>& participant) {
+    Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
-    measurement.verified_by = expectation(*entry.contender->algorithm, 0).reference.text();
-    entry.compared.resize(inputs_.size());
-    settle(entry, fault_of(measurement, [&] {
+    measurement.verified_by = expectation(*participant.entry->algorithm, 0).reference.text();
+    participant.compared.resize(inputs_.size());
+    settle(participant, fault_of(measurement, [&] {
              const AllocationMeter meter;
-             entry.finder = make_finder<D, Real>(*entry.contender->algorithm, entry.contender->spec);
-             call(*entry.finder, boxes_of(0));
-             count_memory(measurement, *entry.contender->algorithm, meter.read());
+             participant.finder =
+                 make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+             call(*participant.finder, boxes_of(0));
+             count_memory(measurement, *participant.entry->algorithm, meter.read());
              measurement.pairs = pairs_.size();
              measurement.pair_hash = hash_of(pairs_);
-             measurement.statistics = entry.finder->statistics();
-             measurement.explanation = entry.finder->explanation();
-             return check(entry, 0);
+             measurement.statistics = participant.finder->statistics();
+             measurement.explanation = participant.finder->explanation();
+             return check(participant, 0);
            }));
   }
 
-  /// One timed call of each entry that takes part in this round, all on the same boxes; false where none
-  /// does. The floor comes behind the last entry in the list of turns, and takes part in every round.
+  /// One timed call of each participant that takes part in this round, all on the same boxes; false where
+  /// none does. The floor comes behind the last participant in the list of turns, and takes part in every
+  /// round.
   bool play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
-    std::vector<FindEntry<D, Real>*> players;
-    for (FindEntry<D, Real>& entry : entries_) {
-      if (has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds))
-        players.push_back(&entry);
+    std::vector<FindParticipant<D, Real>*> players;
+    for (FindParticipant<D, Real>& participant : participants_) {
+      if (has_another_round(*participant.measurement, benchmark_.effort, participant.most_rounds))
+        players.push_back(&participant);
     }
     if (players.empty()) return false;
-    for (const FindEntry<D, Real>* const entry : players)
-      touch(expectation(*entry->contender->algorithm, input).count);
+    for (const FindParticipant<D, Real>* const participant : players)
+      touch(expectation(*participant->entry->algorithm, input).count);
     for (const std::size_t turn : turns(players.size() + (has_floor_ ? 1 : 0), round)) {
       if (turn < players.size()) {
         sample(*players[turn], input, round);
@@ -151,25 +152,25 @@ class FindCase {
       }
     }
     if (round > 0) return true;
-    for (FindEntry<D, Real>& entry : entries_) {
-      entry.most_rounds =
-          round_limit(*entry.measurement, measurements_, benchmark_.effort, benchmark_.effort.slow_seconds);
+    for (FindParticipant<D, Real>& participant : participants_) {
+      participant.most_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
+                                            benchmark_.effort.slow_seconds);
     }
     return true;
   }
 
-  void sample(FindEntry<D, Real>& entry, std::size_t input, std::size_t round) {
-    Measurement& measurement = *entry.measurement;
+  void sample(FindParticipant<D, Real>& participant, std::size_t input, std::size_t round) {
+    Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
-    settle(entry, fault_of(measurement, [&] {
-             measurement.samples_ms.push_back(call(*entry.finder, boxes_of(input)));
-             return check(entry, input);
+    settle(participant, fault_of(measurement, [&] {
+             measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
+             return check(participant, input);
            }));
   }
 
   /// Milliseconds for the floor's work, with as many pairs as a search must give.
   double call_floor(std::size_t input) {
-    pairs_.resize(expectation(*entries_[0].contender->algorithm, input).count);
+    pairs_.resize(expectation(*participants_[0].entry->algorithm, input).count);
     caches_.settle(std::as_bytes(boxes_of(input)));
     const Stopwatch watch;
     floor_.run(boxes_of(input), pairs_);
@@ -186,31 +187,31 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  void settle(FindEntry<D, Real>& entry, const std::string& fault) {
-    entry.measurement->outcome = Outcome::verified;
-    if (!fault.empty()) fail(*entry.measurement, fault);
+  void settle(FindParticipant<D, Real>& participant, const std::string& fault) {
+    participant.measurement->outcome = Outcome::verified;
+    if (!fault.empty()) fail(*participant.measurement, fault);
   }
 
   /// What is wrong with pairs_; empty if nothing is.
-  std::string check(FindEntry<D, Real>& entry, std::size_t input) {
-    const ExpectedPairs& expected = expectation(*entry.contender->algorithm, input);
+  std::string check(FindParticipant<D, Real>& participant, std::size_t input) {
+    const ExpectedPairs& expected = expectation(*participant.entry->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;
     const bool equal = pairs_.size() == expected.count && hash_of(pairs_) == expected.hash;
     const bool kept = expected.pairs.size() == expected.count;
-    if (equal && (entry.compared[input] || !kept)) return {};
-    entry.compared[input] = true;
+    if (equal && (participant.compared[input] || !kept)) return {};
+    participant.compared[input] = true;
     auto divergence =
         kept ? compare_pairs(pairs_, expected.pairs)
              : compare_pairs(pairs_, expected.reference.template pairs<D, Real>(boxes_of(input)));
     if (!divergence) return {};
-    return explained<D, Real>(*std::move(divergence), entry.measurement->algorithm,
+    return explained<D, Real>(*std::move(divergence), participant.measurement->algorithm,
                               fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
         .text;
   }
 
-  /// What the contender must find in the input; computed when first asked for.
-  const ExpectedPairs& expectation(const Algorithm& contender, std::size_t input) {
-    const Reference reference(contender, benchmark_.known, boxes_of(0).size(), most_boxes_by_definition);
+  /// What the entry must find in the input; computed when first asked for.
+  const ExpectedPairs& expectation(const Algorithm& entry, std::size_t input) {
+    const Reference reference(entry, benchmark_.known, boxes_of(0).size(), most_boxes_by_definition);
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
@@ -231,8 +232,8 @@ class FindCase {
   Histories<D, Real> inputs_;
   const Benchmark& benchmark_;
   Extremes extremes_;
-  std::vector<Measurement> measurements_;  // of the contenders, in their order
-  std::vector<FindEntry<D, Real>> entries_;
+  std::vector<Measurement> measurements_;  // of the entries, in their order
+  std::vector<FindParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<ExpectedPairs>> expectations_;
   std::vector<Pair> pairs_;  // of the last call; its memory serves all
   std::size_t touched_ = 0;  // how many pairs of that memory were written to

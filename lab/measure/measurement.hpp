@@ -83,7 +83,7 @@ struct Measurement {
   std::optional<PairedRatio> to_fastest_peer{};  ///< and of the fastest other library
 };
 
-/// A case and its measurements, in the order of the contenders.
+/// A case and its measurements, in the order of the entries.
 struct CaseResult {
   Case of;
   std::vector<Measurement> measurements;

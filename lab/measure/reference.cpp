@@ -14,12 +14,12 @@
 
 namespace broadside::lab {
 
-Reference::Reference(const Algorithm& contender, std::span<const Algorithm> known, std::size_t boxes,
+Reference::Reference(const Algorithm& entry, std::span<const Algorithm> known, std::size_t boxes,
                      std::size_t most_by_definition) {
   if (boxes <= most_by_definition) return;
   constexpr std::array<std::string_view, 3> names = {"quadtree", "sweep_and_prune", "grid"};
   for (const std::string_view name : names) {
-    if (contender.name.find(name) != std::string::npos) continue;
+    if (entry.name.find(name) != std::string::npos) continue;
     algorithm_ = find_algorithm(name, known);
     if (algorithm_ != nullptr) return;
   }

@@ -26,10 +26,10 @@ inline constexpr std::size_t sampled_boxes = 200;
 /// Where expected pairs come from.
 class Reference {
  public:
-  /// For pairs of `contender` on at most `boxes` boxes: the definition if these are at most
+  /// For pairs of `entry` on at most `boxes` boxes: the definition if these are at most
   /// `most_by_definition`; otherwise the first among quadtree, sweep_and_prune and grid that is in `known`,
-  /// and whose name is no part of the contender's name; if there is none, the definition again.
-  Reference(const Algorithm& contender, std::span<const Algorithm> known, std::size_t boxes,
+  /// and whose name is no part of the entry's name; if there is none, the definition again.
+  Reference(const Algorithm& entry, std::span<const Algorithm> known, std::size_t boxes,
             std::size_t most_by_definition);
 
   /// "the definition", or as in "quadtree + 200 sampled boxes".

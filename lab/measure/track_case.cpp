@@ -26,8 +26,8 @@ struct InputEvents {
 
 /// An algorithm that takes part.
 template <int D, typename Real>
-struct TrackEntry {
-  const Contender* contender;
+struct TrackParticipant {
+  const Entry* entry;
   Measurement* measurement;
   std::unique_ptr<PairTracker<D, Real>> tracker{};  // of this pass
   const ExpectedEvents* expected = nullptr;         // of this pass
@@ -58,12 +58,11 @@ class TrackCase {
 
   std::vector<Measurement> run() {
     keep_freed_memory();
-    for (const Contender& contender : benchmark_.contenders)
-      measurements_.push_back(measurement_of(contender));
+    for (const Entry& entry : benchmark_.entries) measurements_.push_back(measurement_of(entry));
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       measurements_[i].samples_a_round = inputs_[0].steps.size();
-      if (is_eligible(benchmark_.contenders[i], measurements_[i]))
-        entries_.push_back({&benchmark_.contenders[i], &measurements_[i]});
+      if (is_eligible(benchmark_.entries[i], measurements_[i]))
+        participants_.push_back({&benchmark_.entries[i], &measurements_[i]});
     }
     warm_up();
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
@@ -73,15 +72,15 @@ class TrackCase {
   }
 
  private:
-  /// Fills in why not, if the contender cannot take part.
-  bool is_eligible(const Contender& contender, Measurement& measurement) {
+  /// Fills in why not, if the entry cannot take part.
+  bool is_eligible(const Entry& entry, Measurement& measurement) {
     const History<D, Real>& history = inputs_[0];
-    measurement.reason = unfit(contender, D, extremes_);
+    measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
     const double budget = benchmark_.effort.history_seconds;
     const auto history_seconds = [&](std::size_t count) {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
-      return seconds_of(contender, thinned(history, count, 2));
+      return seconds_of(entry, thinned(history, count, 2));
     };
     const std::string fault = fault_of(measurement, [&]() -> std::string {
       // A history cannot be left half way, so that its frames share the budget.
@@ -95,12 +94,12 @@ class TrackCase {
 
   /// Seconds for as many frames as the case has, by a history's first frame and the mean of its others; of
   /// two tries the shorter one where they are short, since those are easily disturbed.
-  double seconds_of(const Contender& contender, const History<D, Real>& history) {
+  double seconds_of(const Entry& entry, const History<D, Real>& history) {
     constexpr double is_short = 0.02;  // for all frames
     double least = INFINITY;
     for (int attempt = 0; attempt < 3; ++attempt) {
       if (attempt > 0 && least > is_short) break;
-      const auto tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
+      const auto tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
       std::vector<Box<D, Real>> boxes = history.boxes;
       const double first = update(*tracker, {boxes, {}});
       double others = 0;
@@ -127,86 +126,89 @@ class TrackCase {
     return watch.milliseconds();
   }
 
-  /// Lets every entry follow the first input once, untimed: memory is taken, and how much that is shows.
+  /// Lets every participant follow the first input once, untimed: memory is taken, and how much that is
+  /// shows.
   void warm_up() {
-    for (TrackEntry<D, Real>& entry : entries_) entry.plays = true;
+    for (TrackParticipant<D, Real>& participant : participants_) participant.plays = true;
     pass(0, 0, true);
-    for (TrackEntry<D, Real>& entry : entries_) {
-      if (!entry.plays) continue;
-      Measurement& measurement = *entry.measurement;
+    for (TrackParticipant<D, Real>& participant : participants_) {
+      if (!participant.plays) continue;
+      Measurement& measurement = *participant.measurement;
       measurement.outcome = Outcome::verified;
-      measurement.pairs = static_cast<std::uint64_t>(entry.pairs);
-      measurement.pair_hash = entry.hasher.hash();
-      measurement.explanation = entry.tracker->explanation();
-      entry.builds_ms.clear();
+      measurement.pairs = static_cast<std::uint64_t>(participant.pairs);
+      measurement.pair_hash = participant.hasher.hash();
+      measurement.explanation = participant.tracker->explanation();
+      participant.builds_ms.clear();
     }
   }
 
-  /// Lets every entry that takes part in this round follow the same input; false where none does.
+  /// Lets every participant that takes part in this round follow the same input; false where none does.
   bool play(std::size_t round) {
-    for (TrackEntry<D, Real>& entry : entries_)
-      entry.plays = has_another_round(*entry.measurement, benchmark_.effort, entry.most_rounds);
-    if (std::ranges::none_of(entries_, &TrackEntry<D, Real>::plays)) return false;
+    for (TrackParticipant<D, Real>& participant : participants_)
+      participant.plays =
+          has_another_round(*participant.measurement, benchmark_.effort, participant.most_rounds);
+    if (std::ranges::none_of(participants_, &TrackParticipant<D, Real>::plays)) return false;
     pass(round % inputs_.size(), round + 1, false);
-    for (TrackEntry<D, Real>& entry : entries_) {
-      if (!entry.plays) continue;
-      Measurement& measurement = *entry.measurement;
-      measurement.samples_ms.insert(measurement.samples_ms.end(), entry.frames_ms.begin(),
-                                    entry.frames_ms.end());
-      measurement.build_ms = median(entry.builds_ms);
+    for (TrackParticipant<D, Real>& participant : participants_) {
+      if (!participant.plays) continue;
+      Measurement& measurement = *participant.measurement;
+      measurement.samples_ms.insert(measurement.samples_ms.end(), participant.frames_ms.begin(),
+                                    participant.frames_ms.end());
+      measurement.build_ms = median(participant.builds_ms);
     }
     if (round > 0) return true;
-    for (TrackEntry<D, Real>& entry : entries_) {
-      entry.most_rounds = round_limit(*entry.measurement, measurements_, benchmark_.effort,
-                                      benchmark_.effort.slow_history_seconds);
+    for (TrackParticipant<D, Real>& participant : participants_) {
+      participant.most_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
+                                            benchmark_.effort.slow_history_seconds);
     }
     return true;
   }
 
-  /// Lets the entries that play follow an input from its first frame to its last, frame by frame in turns.
-  /// `number` is the pass's, by which turns are drawn.
+  /// Lets the participants that play follow an input from its first frame to its last, frame by frame in
+  /// turns. `number` is the pass's, by which turns are drawn.
   void pass(std::size_t input, std::size_t number, bool counts_memory) {
     const History<D, Real>& history = inputs_[input];
     std::vector<Box<D, Real>> boxes = history.boxes;
-    for (TrackEntry<D, Real>& entry : entries_) {
-      if (!entry.plays) continue;
-      benchmark_.watch.at(entry.measurement->algorithm + ", checking");
-      entry.expected = &expectation(entry, input);
-      entry.tracker.reset();
-      entry.frames_ms.clear();
+    for (TrackParticipant<D, Real>& participant : participants_) {
+      if (!participant.plays) continue;
+      benchmark_.watch.at(participant.measurement->algorithm + ", checking");
+      participant.expected = &expectation(participant, input);
+      participant.tracker.reset();
+      participant.frames_ms.clear();
     }
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
       const Frame<D, Real> now{boxes,
                                frame == 0 ? std::span<const BoxId>() : history.steps[frame - 1].changed};
-      for (const std::size_t turn : turns(entries_.size(), number * (history.steps.size() + 1) + frame)) {
-        TrackEntry<D, Real>& entry = entries_[turn];
-        if (!entry.plays) continue;
-        benchmark_.watch.at(fmt::format("{}, frame {}", entry.measurement->algorithm, frame));
+      for (const std::size_t turn :
+           turns(participants_.size(), number * (history.steps.size() + 1) + frame)) {
+        TrackParticipant<D, Real>& participant = participants_[turn];
+        if (!participant.plays) continue;
+        benchmark_.watch.at(fmt::format("{}, frame {}", participant.measurement->algorithm, frame));
         const std::string fault =
-            fault_of(*entry.measurement, [&] { return take(entry, now, frame, counts_memory); });
+            fault_of(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
         if (fault.empty()) continue;
-        fail(*entry.measurement, fault);
-        entry.plays = false;
+        fail(*participant.measurement, fault);
+        participant.plays = false;
       }
     }
   }
 
-  /// One frame of one entry; what is wrong with its events.
-  std::string take(TrackEntry<D, Real>& entry, const Frame<D, Real>& now, std::size_t frame,
+  /// One frame of one participant; what is wrong with its events.
+  std::string take(TrackParticipant<D, Real>& participant, const Frame<D, Real>& now, std::size_t frame,
                    bool counts_memory) {
-    const ExpectedEvents& expected = *entry.expected;
+    const ExpectedEvents& expected = *participant.expected;
     if (!expected.fault.empty()) return expected.fault;
     touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
     const auto make_and_update = [&] {
-      if (!entry.tracker)
-        entry.tracker = make_tracker<D, Real>(*entry.contender->algorithm, entry.contender->spec);
-      return update(*entry.tracker, now);
+      if (!participant.tracker)
+        participant.tracker = make_tracker<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+      return update(*participant.tracker, now);
     };
-    const double milliseconds = counts_memory ? counted(entry, make_and_update) : make_and_update();
-    (frame > 0 ? entry.frames_ms : entry.builds_ms).push_back(milliseconds);
-    if (counts_memory) note(entry, frame);
-    return difference<D, Real>(events_, expected.frames[frame], entry.measurement->algorithm, frame,
+    const double milliseconds = counts_memory ? counted(participant, make_and_update) : make_and_update();
+    (frame > 0 ? participant.frames_ms : participant.builds_ms).push_back(milliseconds);
+    if (counts_memory) note(participant, frame);
+    return difference<D, Real>(events_, expected.frames[frame], participant.measurement->algorithm, frame,
                                now.boxes);
   }
 
@@ -218,37 +220,38 @@ class TrackCase {
     events_.ended.resize(touched_);
   }
 
-  /// Runs one frame and adds the memory it takes to the entry's.
+  /// Runs one frame and adds the memory it takes to the participant's.
   template <typename Run>
-  double counted(TrackEntry<D, Real>& entry, const Run& run) {
+  double counted(TrackParticipant<D, Real>& participant, const Run& run) {
     const AllocationMeter meter;
     const double milliseconds = run();
     if (const auto allocation = meter.read()) {
-      Allocation& memory = entry.memory;
+      Allocation& memory = participant.memory;
       memory.peak = std::max(memory.peak, memory.kept + allocation->peak);
       memory.kept += allocation->kept;
-      count_memory(*entry.measurement, *entry.contender->algorithm, memory);
+      count_memory(*participant.measurement, *participant.entry->algorithm, memory);
     }
     return milliseconds;
   }
 
   /// Notes what is counted while warming up.
-  void note(TrackEntry<D, Real>& entry, std::size_t frame) {
-    entry.hasher.add(events_);
-    entry.pairs +=
+  void note(TrackParticipant<D, Real>& participant, std::size_t frame) {
+    participant.hasher.add(events_);
+    participant.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
-    const auto& statistics = entry.tracker->statistics();
+    const auto& statistics = participant.tracker->statistics();
     if (frame == 0 || !statistics) return;
-    entry.tests += statistics->tests;
-    entry.references += statistics->references;
-    entry.measurement->statistics = Statistics{entry.tests / frame, entry.references / frame};
+    participant.tests += statistics->tests;
+    participant.references += statistics->references;
+    participant.measurement->statistics =
+        Statistics{participant.tests / frame, participant.references / frame};
   }
 
-  /// What the entry must report on the input; computed when first asked for.
-  const ExpectedEvents& expectation(TrackEntry<D, Real>& entry, std::size_t input) {
-    const Reference reference(*entry.contender->algorithm, benchmark_.known, case_.boxes,
+  /// What the participant must report on the input; computed when first asked for.
+  const ExpectedEvents& expectation(TrackParticipant<D, Real>& participant, std::size_t input) {
+    const Reference reference(*participant.entry->algorithm, benchmark_.known, case_.boxes,
                               most_tracked_boxes_by_definition);
-    entry.measurement->verified_by = reference.text();
+    participant.measurement->verified_by = reference.text();
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
@@ -261,8 +264,8 @@ class TrackCase {
   Histories<D, Real> inputs_;
   const Benchmark& benchmark_;
   Extremes extremes_;
-  std::vector<Measurement> measurements_;  // of the contenders, in their order
-  std::vector<TrackEntry<D, Real>> entries_;
+  std::vector<Measurement> measurements_;  // of the entries, in their order
+  std::vector<TrackParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<InputEvents>> expectations_;
   Events events_;            // of the last update; its memory serves all
   std::size_t touched_ = 0;  // how many events of that memory were written to

@@ -136,15 +136,15 @@ std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most) {
 
 template <int D>
 Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_t of,
-             std::span<const Contender> contenders) {
+             std::span<const Entry> entries) {
   std::vector<Box<D>> present;
   std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
   const std::span<const Box<D>> drawn = present;
   Drawing drawing{scene, D, drawn.size(), of, {}};
-  std::vector<std::pair<const Contender*, Outline<D>>> outlines;
-  for (const Contender& contender : contenders) {
-    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*contender.algorithm, contender.spec);
-    outlines.emplace_back(&contender, outline(*finder, drawn));
+  std::vector<std::pair<const Entry*, Outline<D>>> outlines;
+  for (const Entry& entry : entries) {
+    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*entry.algorithm, entry.spec);
+    outlines.emplace_back(&entry, outline(*finder, drawn));
   }
   const std::vector<bool> touches = touching(drawn);
   for (const Axes& axes : views_of<D>()) {
@@ -156,9 +156,9 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
     view.height = window.height;
     for (std::size_t i = 0; i < rectangles.size(); ++i)
       append_rectangle(touches[i] ? view.touching : view.alone, rectangles[i], window);
-    for (const auto& [contender, outline] : outlines) {
+    for (const auto& [entry, outline] : outlines) {
       DrawingLayer& layer = view.layers.emplace_back();
-      layer.algorithm = contender->spec.text();
+      layer.algorithm = entry->spec.text();
       layer.caption = outline.caption;
       Edges edges(window);
       for (const std::vector<Box<D>>& level : outline.levels)
@@ -170,21 +170,20 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
   return drawing;
 }
 
-bool has_outline(const Contender& contender, int dimension) {
-  if (!contender.algorithm->has_dimension(dimension)) return false;
+bool has_outline(const Entry& entry, int dimension) {
+  if (!entry.algorithm->has_dimension(dimension)) return false;
   const auto in_dimension = [&]<int D>() {
-    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*contender.algorithm, contender.spec);
+    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*entry.algorithm, entry.spec);
     return finder->outlined() != nullptr;
   };
   return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
 }
 
-Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of,
-                   std::span<const Contender> contenders, std::size_t most, std::uint64_t seed,
-                   std::size_t frame) {
-  std::vector<Contender> able;
-  for (const Contender& contender : contenders) {
-    if (contender.algorithm->has_dimension(dimension)) able.push_back(contender);
+Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of, std::span<const Entry> entries,
+                   std::size_t most, std::uint64_t seed, std::size_t frame) {
+  std::vector<Entry> able;
+  for (const Entry& entry : entries) {
+    if (entry.algorithm->has_dimension(dimension)) able.push_back(entry);
   }
   const auto in_dimension = [&]<int D>() {
     SceneRequest request;
@@ -224,7 +223,7 @@ nlohmann::json json_of(const Drawing& drawing) {
 
 template std::vector<Box<2>> thinned(std::span<const Box<2>>, std::size_t);
 template std::vector<Box<3>> thinned(std::span<const Box<3>>, std::size_t);
-template Drawing draw(const std::string&, std::span<const Box<2>>, std::size_t, std::span<const Contender>);
-template Drawing draw(const std::string&, std::span<const Box<3>>, std::size_t, std::span<const Contender>);
+template Drawing draw(const std::string&, std::span<const Box<2>>, std::size_t, std::span<const Entry>);
+template Drawing draw(const std::string&, std::span<const Box<3>>, std::size_t, std::span<const Entry>);
 
 }  // namespace broadside::lab

@@ -53,24 +53,23 @@ inline constexpr std::size_t most_drawn = 600;
 template <int D>
 std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most = most_drawn);
 
-/// Draws these boxes and each contender's layer over them: of those that are Outlined in D dimensions, which
+/// Draws these boxes and each entry's layer over them: of those that are Outlined in D dimensions, which
 /// are searched for as make_finder() makes them. A view holds all boxes but for far outliers; what reaches
 /// beyond it is clipped. Absent boxes are not there. `of` is what Drawing::of is to be.
 template <int D>
 Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_t of,
-             std::span<const Contender> contenders);
+             std::span<const Entry> entries);
 
-/// Whether the contender lays anything over boxes in this dimension.
-bool has_outline(const Contender& contender, int dimension);
+/// Whether the entry lays anything over boxes in this dimension.
+bool has_outline(const Entry& entry, int dimension);
 
 /// Draws a frame of a scene, counted from 0, in a dimension that it has: made with `most` boxes, which have
 /// the density of more, or, where their number is the scene's own, thinned() to that. `of` is how many boxes
-/// the scene is said to have; for a number of its own, that is told instead. Contenders that do not do the
+/// the scene is said to have; for a number of its own, that is told instead. Entries that do not do the
 /// dimension are left out. Throws InvalidSpec if there are not so many frames; boxes that do not move by
 /// themselves have one.
-Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of,
-                   std::span<const Contender> contenders, std::size_t most = most_drawn,
-                   std::uint64_t seed = 1, std::size_t frame = 0);
+Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of, std::span<const Entry> entries,
+                   std::size_t most = most_drawn, std::uint64_t seed = 1, std::size_t frame = 0);
 
 /// {"scene", "dimension", "boxes", "of", "views": [{"axes", "width", "height", "boxes", "layers":
 /// [{"algorithm", "caption", "levels": [...]}]}]}: all boxes in one path, a sweep's line a level of its own.

@@ -47,10 +47,10 @@ std::vector<SceneToDraw> scenes_of_experiments() {
 }
 
 std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& find,
-                        std::span<const Contender> contenders) {
-  std::vector<Contender> shown;
-  std::ranges::copy_if(contenders, std::back_inserter(shown), [](const Contender& contender) {
-    return contender.algorithm->kind != AlgorithmKind::peer && contender.algorithm->name != "auto";
+                        std::span<const Entry> entries) {
+  std::vector<Entry> shown;
+  std::ranges::copy_if(entries, std::back_inserter(shown), [](const Entry& entry) {
+    return entry.algorithm->kind != AlgorithmKind::peer && entry.algorithm->name != "auto";
   });
   std::string text;
   for (const SceneToDraw& scene : scenes) {

@@ -26,10 +26,10 @@ std::vector<SceneToDraw> scenes_of(const Comparison& comparison);
 std::vector<SceneToDraw> scenes_of_experiments();
 
 /// A list of scenes as JSON, as lab/report/drawing.hpp draws them, in some milliseconds each. Layers are
-/// those of the contenders that are our own or the paper's and lay something over the boxes. Scenes that
+/// those of the entries that are our own or the paper's and lay something over the boxes. Scenes that
 /// cannot be made are left out; so are those that come when the list has grown to some 1.2 MB, that pages
 /// stay small.
 std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& find,
-                        std::span<const Contender> contenders);
+                        std::span<const Entry> entries);
 
 }  // namespace broadside::lab

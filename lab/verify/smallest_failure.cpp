@@ -35,16 +35,15 @@ std::string fault_of(const std::string& algorithm, const std::function<std::stri
 }
 
 template <int D, typename Real>
-std::string fault_on(const History<D, Real>& history, const Contender& contender,
-                     std::span<const Algorithm> known) {
-  const Algorithm& algorithm = *contender.algorithm;
-  const std::string name = contender.spec.text();
+std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known) {
+  const Algorithm& algorithm = *entry.algorithm;
+  const std::string name = entry.spec.text();
   const auto expected = [&](std::span<const Box<D, Real>> boxes) {
     const Reference reference(algorithm, known, boxes.size(), most_boxes_made_smaller_by_definition);
     return reference.pairs<D, Real>(boxes);
   };
   return fault_of(name, [&]() -> std::string {
-    const auto finder = make_finder<D, Real>(algorithm, contender.spec);
+    const auto finder = make_finder<D, Real>(algorithm, entry.spec);
     std::vector<Box<D, Real>> boxes = history.boxes;
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) lab::apply(history.steps[frame - 1], boxes);
@@ -52,7 +51,7 @@ std::string fault_on(const History<D, Real>& history, const Contender& contender
         return divergence->text;
     }
     if (history.steps.empty()) return {};
-    const auto tracker = make_tracker<D, Real>(algorithm, contender.spec);
+    const auto tracker = make_tracker<D, Real>(algorithm, entry.spec);
     const auto divergence = check_tracker<D, Real>(*tracker, history, name, expected);
     return divergence ? divergence->text : "";
   });
@@ -60,12 +59,12 @@ std::string fault_on(const History<D, Real>& history, const Contender& contender
 
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history, std::size_t frame,
-                                                 const Contender& contender, std::span<const Algorithm> known,
+                                                 const Entry& entry, std::span<const Algorithm> known,
                                                  const VerifyOptions& options) {
   const auto fails = [&](const History<D, Real>& some) {
-    options.watch.at(fmt::format("{}, making the failure smaller: {} frames", contender.spec.text(),
-                                 some.steps.size() + 1));
-    return !fault_on<D, Real>(some, contender, known).empty();
+    options.watch.at(
+        fmt::format("{}, making the failure smaller: {} frames", entry.spec.text(), some.steps.size() + 1));
+    return !fault_on<D, Real>(some, entry, known).empty();
   };
   const Stopwatch watch;
   const auto stop = [&] { return watch.milliseconds() > options.budget_seconds * 1e3; };
@@ -87,21 +86,21 @@ std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history
   return all;
 }
 
-template std::string fault_on(const History<2, float>&, const Contender&, std::span<const Algorithm>);
+template std::string fault_on(const History<2, float>&, const Entry&, std::span<const Algorithm>);
 template std::optional<History<2, float>> smallest_failure(const History<2, float>&, std::size_t,
-                                                           const Contender&, std::span<const Algorithm>,
+                                                           const Entry&, std::span<const Algorithm>,
                                                            const VerifyOptions&);
-template std::string fault_on(const History<2, double>&, const Contender&, std::span<const Algorithm>);
+template std::string fault_on(const History<2, double>&, const Entry&, std::span<const Algorithm>);
 template std::optional<History<2, double>> smallest_failure(const History<2, double>&, std::size_t,
-                                                            const Contender&, std::span<const Algorithm>,
+                                                            const Entry&, std::span<const Algorithm>,
                                                             const VerifyOptions&);
-template std::string fault_on(const History<3, float>&, const Contender&, std::span<const Algorithm>);
+template std::string fault_on(const History<3, float>&, const Entry&, std::span<const Algorithm>);
 template std::optional<History<3, float>> smallest_failure(const History<3, float>&, std::size_t,
-                                                           const Contender&, std::span<const Algorithm>,
+                                                           const Entry&, std::span<const Algorithm>,
                                                            const VerifyOptions&);
-template std::string fault_on(const History<3, double>&, const Contender&, std::span<const Algorithm>);
+template std::string fault_on(const History<3, double>&, const Entry&, std::span<const Algorithm>);
 template std::optional<History<3, double>> smallest_failure(const History<3, double>&, std::size_t,
-                                                            const Contender&, std::span<const Algorithm>,
+                                                            const Entry&, std::span<const Algorithm>,
                                                             const VerifyOptions&);
 
 }  // namespace broadside::lab

@@ -20,15 +20,14 @@ std::string fault_of(const std::string& algorithm, const std::function<std::stri
 /// What is wrong with an algorithm on a history; empty if nothing is. `known` is where the expected pairs of
 /// many boxes come from.
 template <int D, typename Real>
-std::string fault_on(const History<D, Real>& history, const Contender& contender,
-                     std::span<const Algorithm> known);
+std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known);
 
-/// The smallest history found, in about the budget, on which the contender fails, given one whose frame
+/// The smallest history found, in about the budget, on which the entry fails, given one whose frame
 /// `frame` is the first on which it does: of a single frame if it fails there from nothing. Empty if it fails
 /// on none.
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history, std::size_t frame,
-                                                 const Contender& contender, std::span<const Algorithm> known,
+                                                 const Entry& entry, std::span<const Algorithm> known,
                                                  const VerifyOptions& options);
 
 }  // namespace broadside::lab

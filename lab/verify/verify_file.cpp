@@ -16,11 +16,11 @@
 namespace broadside::lab {
 namespace {
 
-/// What is wrong with the contender on the boxes of a file; empty if nothing is.
+/// What is wrong with the entry on the boxes of a file; empty if nothing is.
 template <int D, typename Real>
-std::string fault_in(BoxFile file, const Contender& contender, std::span<const Algorithm> known) {
+std::string fault_in(BoxFile file, const Entry& entry, std::span<const Algorithm> known) {
   auto& frames = std::get<std::unique_ptr<FrameReader<D, Real>>>(file.frames);
-  return fault_on<D, Real>(read_all(*frames), contender, known);
+  return fault_on<D, Real>(read_all(*frames), entry, known);
 }
 
 /// A name that no file in the current folder has: what is there may be the very file that was verified.
@@ -32,11 +32,11 @@ std::filesystem::path free_name(std::string_view extension) {
 }
 
 template <int D, typename Real>
-Counterexample write(const History<D, Real>& smallest, const Contender& contender, const Catalogue& catalogue,
+Counterexample write(const History<D, Real>& smallest, const Entry& entry, const Catalogue& catalogue,
                      std::filesystem::path path) {
   if (path.empty()) path = free_name(smallest.steps.empty() ? ".csv" : ".btrace");
   write_scene(smallest, path);
-  Counterexample written{contender.spec.text(), path, places_of(smallest), smallest.steps.size() + 1, {}, {}};
+  Counterexample written{entry.spec.text(), path, places_of(smallest), smallest.steps.size() + 1, {}, {}};
   written.command = fmt::format("verify {} --algorithms {}", path.string(), written.algorithm);
   ReadOptions options;
   // What the file does not say of itself.
@@ -50,7 +50,7 @@ Counterexample write(const History<D, Real>& smallest, const Contender& contende
     options.dimension = D;
     add(fmt::format("--dimension {}", D));
   }
-  written.fault = fault_in<D, Real>(open_file(path, options), contender, catalogue.algorithms());
+  written.fault = fault_in<D, Real>(open_file(path, options), entry, catalogue.algorithms());
   return written;
 }
 
@@ -61,17 +61,17 @@ void verify(Verification& verification, FrameReader<D, Real>& frames, const Cata
   verification.warning = frames.warning();
   verification.boxes = places_of(history);
   verification.frames = history.steps.size() + 1;
-  std::vector<Contender> contenders = catalogue.select(options.algorithms);
+  std::vector<Entry> entries = catalogue.select(options.algorithms);
   const std::span<const Algorithm> known = catalogue.algorithms();
-  HistoryVerdicts checked = verify_history<D, Real>(history, contenders, known, options);
+  HistoryVerdicts checked = verify_history<D, Real>(history, entries, known, options);
   verification.verdicts = std::move(checked.verdicts);
   verification.pairs = checked.pairs;
   const auto failed = std::ranges::find(verification.verdicts, Outcome::failed, &Verdict::outcome);
   if (failed == verification.verdicts.end()) return;
-  const Contender contender = catalogue.select(failed->algorithm).front();
-  const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, contender, known, options);
+  const Entry entry = catalogue.select(failed->algorithm).front();
+  const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, entry, known, options);
   if (smallest)
-    verification.counterexample = write<D, Real>(*smallest, contender, catalogue, options.counterexample);
+    verification.counterexample = write<D, Real>(*smallest, entry, catalogue, options.counterexample);
 }
 
 std::string text_of(const Counterexample& counterexample, std::string_view program) {

@@ -25,7 +25,7 @@ constexpr double most_tests_by_definition = 4e9;
 /// In how many frames a reference is sampled.
 constexpr std::size_t sampled_frames = 20;
 
-/// The pairs that are expected of some contenders in the frame that is being looked at.
+/// The pairs that are expected of some entries in the frame that is being looked at.
 struct Expectation {
   Reference reference;
   std::vector<Pair> before{};  // sorted
@@ -34,8 +34,8 @@ struct Expectation {
 };
 
 template <int D, typename Real>
-struct Contestant {
-  const Contender* contender;
+struct Participant {
+  const Entry* entry;
   std::size_t verdict;  // its place in the list
   Expectation* expected;
   std::unique_ptr<PairFinder<D, Real>> finder{};
@@ -47,18 +47,18 @@ struct Contestant {
 template <int D, typename Real>
 class HistoryCheck {
  public:
-  HistoryCheck(const History<D, Real>& history, std::span<const Contender> contenders,
+  HistoryCheck(const History<D, Real>& history, std::span<const Entry> entries,
                std::span<const Algorithm> known, const VerifyOptions& options)
       : history_(history), known_(known), options_(options) {
     look_through();
-    for (const Contender& contender : contenders) let_in(contender);
+    for (const Entry& entry : entries) let_in(entry);
   }
 
   HistoryVerdicts run() {
     std::vector<Box<D, Real>> boxes = history_.boxes;
     for (std::size_t frame = 0; frame <= history_.steps.size(); ++frame) {
       if (frame > 0) lab::apply(history_.steps[frame - 1], boxes);
-      if (std::ranges::all_of(contestants_, &Contestant<D, Real>::done)) break;
+      if (std::ranges::all_of(participants_, &Participant<D, Real>::done)) break;
       check_frame(boxes, frame);
     }
     for (const auto& expected : expectations_) {
@@ -82,34 +82,33 @@ class HistoryCheck {
     }
   }
 
-  void let_in(const Contender& contender) {
-    Verdict verdict{.algorithm = contender.spec.text()};
-    verdict.reason = unfit(contender, D, extremes_);
-    if (verdict.reason.empty()) verdict.reason = too_slow(contender);
+  void let_in(const Entry& entry) {
+    Verdict verdict{.algorithm = entry.spec.text()};
+    verdict.reason = unfit(entry, D, extremes_);
+    if (verdict.reason.empty()) verdict.reason = too_slow(entry);
     if (!verdict.reason.empty()) {
       verdict.outcome = Outcome::skipped;
     } else {
-      Expectation& expected = expectation_for(*contender.algorithm);
+      Expectation& expected = expectation_for(*entry.algorithm);
       verdict.verified_by = expected.reference.text();
-      Contestant<D, Real> contestant{&contender, result_.verdicts.size(), &expected};
-      contestant.finder = make_finder<D, Real>(*contender.algorithm, contender.spec);
-      if (!history_.steps.empty())
-        contestant.tracker = make_tracker<D, Real>(*contender.algorithm, contender.spec);
-      contestants_.push_back(std::move(contestant));
+      Participant<D, Real> participant{&entry, result_.verdicts.size(), &expected};
+      participant.finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
+      if (!history_.steps.empty()) participant.tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
+      participants_.push_back(std::move(participant));
     }
     result_.verdicts.push_back(std::move(verdict));
   }
 
   /// Why the budget does not do for one search of the fullest frame; empty if it does.
-  std::string too_slow(const Contender& contender) {
-    const std::string name = contender.spec.text();
+  std::string too_slow(const Entry& entry) {
+    const std::string name = entry.spec.text();
     const auto seconds_for = [&](std::size_t count) {
       options_.watch.at(fmt::format("{}, trying {} boxes", name, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(fullest_.size(), count)) some.push_back(fullest_[i]);
       PairCounter counter;
       const Stopwatch watch;
-      make_finder<D, Real>(*contender.algorithm, contender.spec)->find(some, counter);
+      make_finder<D, Real>(*entry.algorithm, entry.spec)->find(some, counter);
       return watch.milliseconds() / 1e3;
     };
     std::string reason;
@@ -141,25 +140,25 @@ class HistoryCheck {
       check_reference(*expected, boxes, frame);
       if (frame == history_.steps.size()) result_.pairs = expected->now.size();
     }
-    for (Contestant<D, Real>& contestant : contestants_) {
-      if (contestant.done) continue;
-      Verdict& verdict = result_.verdicts[contestant.verdict];
+    for (Participant<D, Real>& participant : participants_) {
+      if (participant.done) continue;
+      Verdict& verdict = result_.verdicts[participant.verdict];
       options_.watch.at(fmt::format("{}, frame {}", verdict.algorithm, frame));
       verdict.frames = frame + 1;
-      const std::string fault = fault_of(verdict.algorithm, [&] { return check(contestant, boxes, frame); });
+      const std::string fault = fault_of(verdict.algorithm, [&] { return check(participant, boxes, frame); });
       const bool is_last = frame == history_.steps.size();
       if (!fault.empty()) {
         verdict.outcome = Outcome::failed;
         verdict.reason = fault;
-        contestant.done = true;
-      } else if (!contestant.expected->fault.algorithm.empty()) {
+        participant.done = true;
+      } else if (!participant.expected->fault.algorithm.empty()) {
         verdict.outcome = Outcome::skipped;
-        verdict.reason = contestant.expected->fault.algorithm + ", which it was compared with, failed";
-        contestant.done = true;
-      } else if (!is_last && contestant.spent_ms > options_.budget_seconds * 1e3) {
+        verdict.reason = participant.expected->fault.algorithm + ", which it was compared with, failed";
+        participant.done = true;
+      } else if (!is_last && participant.spent_ms > options_.budget_seconds * 1e3) {
         verdict.reason = fmt::format("frames 0 to {} of {}; budget {:g} s", frame, history_.steps.size(),
                                      options_.budget_seconds);
-        contestant.done = true;
+        participant.done = true;
       }
     }
   }
@@ -184,7 +183,7 @@ class HistoryCheck {
                       .frames = frame + 1};
   }
 
-  /// Adds what is wrong with a reference, unless it has failed as a contender already.
+  /// Adds what is wrong with a reference, unless it has failed as an entry already.
   void add_fault(const Verdict& fault) {
     const auto same = [&](const Verdict& other) {
       return other.algorithm == fault.algorithm && other.outcome == Outcome::failed;
@@ -193,15 +192,16 @@ class HistoryCheck {
       result_.verdicts.push_back(fault);
   }
 
-  /// What is wrong with one frame of a contestant's.
-  std::string check(Contestant<D, Real>& contestant, std::span<const Box<D, Real>> boxes, std::size_t frame) {
-    const std::string name = contestant.contender->spec.text();
-    Expectation& expected = *contestant.expected;
+  /// What is wrong with one frame of a participant's.
+  std::string check(Participant<D, Real>& participant, std::span<const Box<D, Real>> boxes,
+                    std::size_t frame) {
+    const std::string name = participant.entry->spec.text();
+    Expectation& expected = *participant.expected;
     std::vector<Pair> found;
     PairCollector collector(found);
     const Stopwatch search;
-    contestant.finder->find(boxes, collector);
-    contestant.spent_ms += search.milliseconds();
+    participant.finder->find(boxes, collector);
+    participant.spent_ms += search.milliseconds();
     if (auto divergence = compare_pairs(std::move(found), expected.now)) {
       if (is_right_about(*divergence, boxes)) {
         blame_reference(expected, swapped(*divergence), boxes, frame);
@@ -209,22 +209,22 @@ class HistoryCheck {
       }
       return explained<D, Real>(*std::move(divergence), name, "search:", frame, boxes).text;
     }
-    if (!contestant.tracker) return {};
+    if (!participant.tracker) return {};
     std::vector<Pair> begun;
     std::vector<Pair> ended;
     PairCollector begun_pairs(begun);
     PairCollector ended_pairs(ended);
     const Stopwatch update;
-    contestant.tracker->update(
+    participant.tracker->update(
         {boxes, frame == 0 ? std::span<const BoxId>() : history_.steps[frame - 1].changed}, begun_pairs,
         ended_pairs);
-    contestant.spent_ms += update.milliseconds();
+    participant.spent_ms += update.milliseconds();
     const auto divergence =
         check_events<D, Real>(begun, ended, expected.before, expected.now, name, frame, boxes);
     return divergence ? divergence->text : "";
   }
 
-  /// Whether, by the definition, the contestant is right and what was expected of it wrong.
+  /// Whether, by the definition, the participant is right and what was expected of it wrong.
   static bool is_right_about(const Divergence& divergence, std::span<const Box<D, Real>> boxes) {
     const std::size_t first = index(divergence.pair.first);
     const std::size_t second = index(divergence.pair.second);
@@ -249,25 +249,25 @@ class HistoryCheck {
   std::vector<Box<D, Real>> fullest_;  // the boxes of the frame with the most places
   Extremes extremes_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
-  std::vector<Contestant<D, Real>> contestants_;
+  std::vector<Participant<D, Real>> participants_;
   HistoryVerdicts result_;
 };
 
 }  // namespace
 
 template <int D, typename Real>
-HistoryVerdicts verify_history(const History<D, Real>& history, std::span<const Contender> contenders,
+HistoryVerdicts verify_history(const History<D, Real>& history, std::span<const Entry> entries,
                                std::span<const Algorithm> known, const VerifyOptions& options) {
-  return HistoryCheck<D, Real>(history, contenders, known, options).run();
+  return HistoryCheck<D, Real>(history, entries, known, options).run();
 }
 
-template HistoryVerdicts verify_history(const History<2, float>&, std::span<const Contender>,
+template HistoryVerdicts verify_history(const History<2, float>&, std::span<const Entry>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template HistoryVerdicts verify_history(const History<2, double>&, std::span<const Contender>,
+template HistoryVerdicts verify_history(const History<2, double>&, std::span<const Entry>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template HistoryVerdicts verify_history(const History<3, float>&, std::span<const Contender>,
+template HistoryVerdicts verify_history(const History<3, float>&, std::span<const Entry>,
                                         std::span<const Algorithm>, const VerifyOptions&);
-template HistoryVerdicts verify_history(const History<3, double>&, std::span<const Contender>,
+template HistoryVerdicts verify_history(const History<3, double>&, std::span<const Entry>,
                                         std::span<const Algorithm>, const VerifyOptions&);
 
 }  // namespace broadside::lab

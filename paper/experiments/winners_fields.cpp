@@ -49,7 +49,7 @@ std::string scene_of(const Map& map, double value) {
 
 /// Ours that can win with so many boxes: quadratic search has lost from some thousands on, and costs the
 /// most.
-std::string contenders(std::size_t boxes) {
+std::string entries(std::size_t boxes) {
   std::string list = "auto";
   for (const std::string& name : single_algorithms()) {
     if (name != "brute_force" || boxes <= 2'000) list += "," + name;
@@ -174,7 +174,7 @@ Table measure_fields(const Laboratory& laboratory) {
                                   .boxes = boxes,
                                   .moving = moves ? value : 0,
                                   .frames = moves ? laboratory.either<std::size_t>(12, 6) : 0};
-        const CaseResult ours = laboratory.measure(contenders(boxes), request, effort_of_ours(laboratory));
+        const CaseResult ours = laboratory.measure(entries(boxes), request, effort_of_ours(laboratory));
         std::optional<CaseResult> peers;
         if (has_peers(map)) {
           peers = laboratory.measure(rivals, request, effort_of_peers(laboratory));

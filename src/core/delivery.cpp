@@ -10,7 +10,7 @@ namespace {
 /// From here on no piece is begun, so that those being searched have room to end.
 constexpr std::size_t nearly_full = PairBlocks::most / 2;
 
-/// Below this, lanes that found no room may come back.
+/// Below this, workers that found no room may come back.
 constexpr std::size_t nearly_empty = PairBlocks::most / 8;
 
 }  // namespace

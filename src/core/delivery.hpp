@@ -17,8 +17,8 @@ namespace broadside::core {
 /// the delivery: the caller's. That thread searches straight into the sink where nothing waits before its
 /// piece; all other pieces keep their pairs in blocks until it comes to deliver them.
 ///
-/// No lane waits for another. One that finds no room takes no further piece, and a piece that outgrows the
-/// room is given up, to be searched again. So a search goes by rounds of all lanes; a round after which
+/// No worker waits for another. One that finds no room takes no further piece, and a piece that outgrows the
+/// room is given up, to be searched again. So a search goes by rounds of all workers; a round after which
 /// nothing could be delivered was stopped by the first piece, which is then for the caller's thread to
 /// search.
 class Delivery {
@@ -40,7 +40,7 @@ class Delivery {
 
   void begin_round();
 
-  /// The next piece for a lane; none if there is no other, or no room for one, or if the round is to end.
+  /// The next piece for a worker; none if there is no other, or no room for one, or if the round is to end.
   std::optional<Piece> take();
 
   /// Says that a piece has ended, and takes the pairs of one that is not direct.

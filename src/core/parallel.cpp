@@ -56,7 +56,7 @@ std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   return filters;
 }
 
-/// Filters of a lane's own, like those given, onto a target of its own.
+/// Filters of a worker's own, like those given, onto a target of its own.
 class FilterChain {
  public:
   FilterChain(const std::vector<const FilterSink*>& filters, PairSink& target) : front_(&target) {
@@ -115,17 +115,17 @@ class Parallel::Errors {
   std::atomic<bool> any_ = false;
 };
 
-/// A search that is cut into pieces of consecutive parts, each of which one lane searches.
+/// A search that is cut into pieces of consecutive parts, each of which one worker searches.
 class Parallel::SharedSearch {
  public:
   SharedSearch(Parallel& parallel, std::size_t parts, PairSink& pairs, const Search& search)
       : parallel_(parallel),
         search_(search),
         parts_(parts),
-        pieces_(std::min(parts, pieces_per_lane * parallel.lanes_)),
+        pieces_(std::min(parts, pieces_per_worker * parallel.workers_)),
         filters_(filters_before(pairs)),
         target_(filters_.empty() ? pairs : filters_.back()->target()),
-        done_(parallel.lanes_) {}
+        done_(parallel.workers_) {}
 
   Statistics run() {
     if (std::unique_ptr<PairSink> clone = target_.empty_clone())
@@ -133,38 +133,38 @@ class Parallel::SharedSearch {
     else
       deliver();
     Statistics all;
-    for (const Statistics& of_lane : done_) {
-      all.tests += of_lane.tests;
-      all.references += of_lane.references;
+    for (const Statistics& of_worker : done_) {
+      all.tests += of_worker.tests;
+      all.references += of_worker.references;
     }
     return all;
   }
 
  private:
-  Statistics search_piece(std::size_t piece, std::size_t lane, FilterChain& chain) {
+  Statistics search_piece(std::size_t piece, std::size_t worker, FilterChain& chain) {
     const auto begin = [&](std::size_t i) { return parts_ / pieces_ * i + std::min(i, parts_ % pieces_); };
-    const Statistics statistics = search_({begin(piece), begin(piece + 1)}, lane, chain.front());
+    const Statistics statistics = search_({begin(piece), begin(piece + 1)}, worker, chain.front());
     chain.flush();
     return statistics;
   }
 
-  void add(std::size_t lane, const Statistics& more) {
-    done_[lane].tests += more.tests;
-    done_[lane].references += more.references;
+  void add(std::size_t worker, const Statistics& more) {
+    done_[worker].tests += more.tests;
+    done_[worker].references += more.references;
   }
 
   void fill_clones(std::unique_ptr<PairSink> first) {
     std::vector<std::unique_ptr<PairSink>> clones;
     clones.push_back(std::move(first));
-    while (clones.size() < parallel_.lanes_) clones.push_back(target_.empty_clone());
+    while (clones.size() < parallel_.workers_) clones.push_back(target_.empty_clone());
     std::atomic<std::size_t> next = 0;
-    parallel_.run_lanes([&](std::size_t lane) {
+    parallel_.run_workers([&](std::size_t worker) {
       std::size_t piece = 0;
       try {
-        FilterChain chain(filters_, *clones[lane]);
+        FilterChain chain(filters_, *clones[worker]);
         while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
-          add(lane, search_piece(piece, lane, chain));
-        clones[lane]->flush();
+          add(worker, search_piece(piece, worker, chain));
+        clones[worker]->flush();
       } catch (...) {
         errors_.note(piece);
       }
@@ -178,7 +178,7 @@ class Parallel::SharedSearch {
     while (!delivery.is_complete()) {
       const std::size_t delivered = delivery.delivered();
       delivery.begin_round();
-      parallel_.run_lanes([&](std::size_t lane) { search_pieces(delivery, lane, false); });
+      parallel_.run_workers([&](std::size_t worker) { search_pieces(delivery, worker, false); });
       errors_.rethrow();
       while (delivery.deliver_next()) {
       }
@@ -190,7 +190,7 @@ class Parallel::SharedSearch {
   }
 
   /// Searches pieces, or only one, until the delivery has no other or something goes wrong.
-  void search_pieces(Delivery& delivery, std::size_t lane, bool only_one) noexcept {
+  void search_pieces(Delivery& delivery, std::size_t worker, bool only_one) noexcept {
     std::size_t at = 0;
     try {
       BufferSink buffer(parallel_.blocks_);
@@ -206,9 +206,9 @@ class Parallel::SharedSearch {
         if (!piece) return;
         at = piece->number;
         try {
-          const Statistics more = search_piece(at, lane, piece->is_direct ? direct : buffered);
+          const Statistics more = search_piece(at, worker, piece->is_direct ? direct : buffered);
           delivery.end(*piece, buffer.take());
-          add(lane, more);
+          add(worker, more);
         } catch (const NoRoom&) {
           buffer.clear();
           delivery.give_up(*piece);
@@ -226,7 +226,7 @@ class Parallel::SharedSearch {
   std::size_t pieces_;
   std::vector<const FilterSink*> filters_;
   PairSink& target_;
-  std::vector<Statistics> done_;  // by lane
+  std::vector<Statistics> done_;  // by worker
   Errors errors_;
 };
 
@@ -234,14 +234,14 @@ Parallel::Parallel() = default;
 Parallel::~Parallel() = default;
 
 void Parallel::start(const Workers& workers, std::size_t boxes) {
-  lanes_ = 1;
+  workers_ = 1;
   if (workers.threads == 1) return;
   const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
   if (executor_ == nullptr) return;
   const std::size_t threads = workers.threads == 0 ? executor_->threads() : workers.threads;
   const std::size_t worth = boxes / std::max<std::size_t>(workers.boxes_per_thread, 1);
-  lanes_ = std::clamp<std::size_t>(worth, 1, std::max<std::size_t>(threads, 1));
+  workers_ = std::clamp<std::size_t>(worth, 1, std::max<std::size_t>(threads, 1));
 }
 
 Range Parallel::range(std::size_t number, std::size_t count) const noexcept {
@@ -253,12 +253,12 @@ Range Parallel::range(std::size_t number, std::size_t count) const noexcept {
 void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
   std::atomic<std::size_t> next = 0;
   Errors errors;
-  run_lanes([&](std::size_t lane) {
+  run_workers([&](std::size_t worker) {
     while (!errors.any()) {
       const std::size_t number = next.fetch_add(1, std::memory_order_relaxed);
       if (number >= range_count()) return;
       try {
-        body(number, range(number, count), lane);
+        body(number, range(number, count), worker);
       } catch (...) {
         errors.note(number);
       }
@@ -271,7 +271,7 @@ Statistics Parallel::share_search(std::size_t parts, PairSink& pairs, const Sear
   return SharedSearch(*this, parts, pairs, search).run();
 }
 
-void Parallel::run_lanes(const std::function<void(std::size_t)>& body) {
+void Parallel::run_workers(const std::function<void(std::size_t)>& body) {
   // An executor brings the tasks' writes to this thread by means of its own, which need not be of a kind that
   // a thread sanitizer sees. These two are.
   std::atomic<bool> begun = false;
@@ -280,15 +280,15 @@ void Parallel::run_lanes(const std::function<void(std::size_t)>& body) {
   // oneTBB's threads have the environment in which it was called first, and in a task this one has as well.
   const FloatControl control = CallersEnvironment::control();
   const CallersEnvironment callers;
-  executor_->run(lanes_, [&](std::size_t lane) {
+  executor_->run(workers_, [&](std::size_t worker) {
     const DefaultEnvironment environment(control);
     static_cast<void>(begun.load(std::memory_order_acquire));
-    body(lane);
+    body(worker);
     ended.fetch_add(1, std::memory_order_release);
   });
-  if (const std::size_t count = ended.load(std::memory_order_acquire); count != lanes_)
+  if (const std::size_t count = ended.load(std::memory_order_acquire); count != workers_)
     throw std::logic_error("the executor returned after " + std::to_string(count) + " of " +
-                           std::to_string(lanes_) + " tasks; expected all of them");
+                           std::to_string(workers_) + " tasks; expected all of them");
 }
 
 }  // namespace broadside::core

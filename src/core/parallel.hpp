@@ -22,11 +22,11 @@ struct Range {
   std::size_t end;
 };
 
-/// Shares work among lanes. A lane is one task of the executor, which takes piece after piece; it runs in one
-/// thread, so scratch memory by lane needs no lock. With one lane everything runs in the calling thread, as
-/// if this class were not there.
+/// Shares work among workers. A worker is one task of the executor, which takes piece after piece; it runs in
+/// one thread, so scratch memory by worker needs no lock. With one worker everything runs in the calling
+/// thread, as if this class were not there.
 ///
-/// Pieces must depend on the boxes alone, never on the number of lanes. Keeps its memory. One thread at a
+/// Pieces must depend on the boxes alone, never on the number of workers. Keeps its memory. One thread at a
 /// time.
 class Parallel {
  public:
@@ -35,53 +35,53 @@ class Parallel {
   Parallel(const Parallel&) = delete;
   Parallel& operator=(const Parallel&) = delete;
 
-  /// Sets the number of lanes for a search whose work is that of looking at so many boxes.
+  /// Sets the number of workers for a search whose work is that of looking at so many boxes.
   void start(const Workers& workers, std::size_t boxes);
 
-  std::size_t lanes() const noexcept { return lanes_; }
+  std::size_t workers() const noexcept { return workers_; }
 
-  /// Calls body(range, lane) for ranges that together are [0, count), several at the same time. Throws what a
-  /// body throws, of several the first in order.
+  /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Throws what
+  /// a body throws, of several the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
-    if (lanes_ == 1)
+    if (workers_ == 1)
       body(Range{0, count}, std::size_t{0});
     else
-      share_ranges(count, [&body](std::size_t, Range range, std::size_t lane) { body(range, lane); });
+      share_ranges(count, [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
   }
 
   /// How many ranges for_numbered_ranges() makes.
-  std::size_t range_count() const noexcept { return lanes_ == 1 ? 1 : ranges_per_lane * lanes_; }
+  std::size_t range_count() const noexcept { return workers_ == 1 ? 1 : ranges_per_worker * workers_; }
 
   /// The range of a number below range_count(): the same at every call between two of start().
   Range range(std::size_t number, std::size_t count) const noexcept;
 
-  /// Calls body(number, range, lane) for each range of a number.
+  /// Calls body(number, range, worker) for each range of a number.
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
-    if (lanes_ == 1)
+    if (workers_ == 1)
       body(std::size_t{0}, Range{0, count}, std::size_t{0});
     else
       share_ranges(count, std::cref(body));
   }
 
-  /// Searches [0, parts) for pairs: search(range, lane, sink) writes those of a few consecutive parts, and
+  /// Searches [0, parts) for pairs: search(range, worker, sink) writes those of a few consecutive parts, and
   /// returns what it did. `pairs` gets them part by part in order, in this thread, while others still search;
-  /// unless it can be cloned, then each lane fills a clone. Returns the sum of what was done.
+  /// unless it can be cloned, then each worker fills a clone. Returns the sum of what was done.
   ///
-  /// Keeps at most 64 MiB of pairs that wait for those before them. A lane that finds no room drops what it
+  /// Keeps at most 64 MiB of pairs that wait for those before them. A worker that finds no room drops what it
   /// found of its parts, and they are searched again: `search` must bear to be left by an exception of its
   /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
-    if (lanes_ == 1) return search(Range{0, parts}, std::size_t{0}, pairs);
+    if (workers_ == 1) return search(Range{0, parts}, std::size_t{0}, pairs);
     return share_search(parts, pairs, std::cref(search));
   }
 
  private:
-  /// Fine enough that no lane waits long for the last one, coarse enough that taking one costs nothing.
-  static constexpr std::size_t ranges_per_lane = 4;
-  static constexpr std::size_t pieces_per_lane = 32;
+  /// Fine enough that no worker waits long for the last one, coarse enough that taking one costs nothing.
+  static constexpr std::size_t ranges_per_worker = 4;
+  static constexpr std::size_t pieces_per_worker = 32;
 
   using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
   using Search = std::function<Statistics(Range, std::size_t, PairSink&)>;
@@ -92,11 +92,11 @@ class Parallel {
   void share_ranges(std::size_t count, const RangeBody& body);
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
 
-  /// Runs body(lane) on every lane and returns when all have ended. `body` must not throw.
-  void run_lanes(const std::function<void(std::size_t)>& body);
+  /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw.
+  void run_workers(const std::function<void(std::size_t)>& body);
 
   Executor* executor_ = nullptr;
-  std::size_t lanes_ = 1;
+  std::size_t workers_ = 1;
   PairBlocks blocks_;
 };
 

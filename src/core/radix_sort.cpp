@@ -43,7 +43,7 @@ std::span<const KeyedPlace> RadixSort::sort() {
 }
 
 std::span<const KeyedPlace> RadixSort::sort(Parallel& parallel) {
-  if (parallel.lanes() == 1) return sort();
+  if (parallel.workers() == 1) return sort();
   for (int at = 0; at < digits; ++at) sort_by_ranges(parallel, at);
   return places_;
 }
@@ -52,7 +52,7 @@ void RadixSort::sort_by_ranges(Parallel& parallel, int at) {
   const std::size_t ranges = parallel.range_count();
   counts_.resize(ranges * buckets);
   parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
-    std::array<std::uint32_t, buckets> counts{};  // no other lane's cache line
+    std::array<std::uint32_t, buckets> counts{};  // no other worker's cache line
     for (std::size_t i = range.begin; i < range.end; ++i) ++counts[digit(places_[i].key, at)];
     std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * buckets));
   });

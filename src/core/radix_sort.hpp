@@ -33,7 +33,7 @@ class RadixSort {
   /// Sorts what was filled in. The result is valid until the next call of places().
   std::span<const KeyedPlace> sort();
 
-  /// The same by several lanes.
+  /// The same by several workers.
   std::span<const KeyedPlace> sort(Parallel& parallel);
 
   /// The bytes held.

@@ -10,31 +10,31 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
-#include "dice.hpp"
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
 
 template <int D, typename Real>
-Box<D, Real> any_box(Dice& dice) {
+Box<D, Real> any_box(Rng& rng) {
   Box<D, Real> box;
   for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = dice.between(0, 8);
-    box.max[axis] = box.min[axis] + dice.between(0, 2);
+    box.min[axis] = rng.between(0, 8);
+    box.max[axis] = box.min[axis] + rng.between(0, 2);
   }
   return box;
 }
 
 /// One that is wrong on one axis, in one of the ways there are.
 template <int D, typename Real>
-Box<D, Real> wrong_box(Dice& dice) {
+Box<D, Real> wrong_box(Rng& rng) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
   constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
-  Box<D, Real> box = any_box<D, Real>(dice);
-  const int axis = dice.whole(0, D - 1);
-  switch (dice.below(7)) {
+  Box<D, Real> box = any_box<D, Real>(rng);
+  const int axis = rng.whole(0, D - 1);
+  switch (rng.below(7)) {
     case 0:
       box.min[axis] = nan;
       break;
@@ -83,12 +83,12 @@ Boxes<D, Real> without_wrong(Boxes<D, Real> boxes) {
 }
 
 template <int D, typename Real>
-Boxes<D, Real> some_boxes(Dice& dice, std::size_t count) {
+Boxes<D, Real> some_boxes(Rng& rng, std::size_t count) {
   Boxes<D, Real> boxes;
   for (std::size_t i = 0; i < count; ++i) {
-    boxes.push_back(dice.one_in(12)  ? absent_box<D, Real>()
-                    : dice.one_in(6) ? wrong_box<D, Real>(dice)
-                                     : any_box<D, Real>(dice));
+    boxes.push_back(rng.one_in(12)  ? absent_box<D, Real>()
+                    : rng.one_in(6) ? wrong_box<D, Real>(rng)
+                                    : any_box<D, Real>(rng));
   }
   return boxes;
 }
@@ -116,9 +116,9 @@ TEST_P(BadInputLaw, AFinderPairsNothingWithWhatItQuarantines) {
   in_dimension_and_precision([&]<int D, typename Real>() {
     const auto finder = make_finder<D, Real>(algorithm(), spec());
     finder->set_bad_input(BadInput::quarantine);
-    Dice dice(31);
+    Rng rng(31);
     for (const std::size_t count : {0, 1, 5, 60, 400}) {
-      const auto boxes = some_boxes<D, Real>(dice, count);
+      const auto boxes = some_boxes<D, Real>(rng, count);
       std::vector<Pair> pairs;
       PairCollector collector(pairs);
       finder->find(boxes, collector);
@@ -129,7 +129,7 @@ TEST_P(BadInputLaw, AFinderPairsNothingWithWhatItQuarantines) {
     PairCounter counter;
     finder->find(right, counter);
     EXPECT_TRUE(finder->quarantined().empty());
-    const Boxes<D, Real> wrong = {wrong_box<D, Real>(dice)};
+    const Boxes<D, Real> wrong = {wrong_box<D, Real>(rng)};
     finder->set_bad_input(BadInput::reject);
     EXPECT_THROW(finder->find(wrong, counter), InvalidInput);
   });
@@ -139,8 +139,8 @@ TEST_P(BadInputLaw, AJoinPairsNothingWithWhatItQuarantines) {
   in_dimension_and_precision([&]<int D, typename Real>() {
     const auto finder = make_finder<D, Real>(algorithm(), spec());
     finder->set_bad_input(BadInput::quarantine);
-    Dice dice(32);
-    const auto boxes = some_boxes<D, Real>(dice, 120);
+    Rng rng(32);
+    const auto boxes = some_boxes<D, Real>(rng, 120);
     std::vector<Pair> expected;
     for (const Pair pair : lab::reference_pairs<D, Real>(without_wrong<D, Real>(boxes))) {
       if (index(pair.first) < 50 && index(pair.second) >= 50)
@@ -158,8 +158,8 @@ TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
   in_dimension_and_precision([&]<int D, typename Real>() {
     const auto tracker = make_tracker<D, Real>(algorithm(), spec());
     tracker->set_bad_input(BadInput::quarantine);
-    Dice dice(33);
-    Boxes<D, Real> boxes = some_boxes<D, Real>(dice, 80);
+    Rng rng(33);
+    Boxes<D, Real> boxes = some_boxes<D, Real>(rng, 80);
     std::vector<Pair> held;
     std::vector<BoxId> changed;
     std::vector<BoxId> quarantined;
@@ -169,7 +169,7 @@ TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
       PairCollector begun_pairs(begun);
       PairCollector ended_pairs(ended);
       bool taken = true;
-      if (dice.one_in(5)) {
+      if (rng.one_in(5)) {
         FailingSink failing;
         try {
           tracker->update({boxes, changed}, failing, failing);
@@ -191,10 +191,10 @@ TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
 
       changed.clear();
       const std::size_t known = boxes.size();
-      if (dice.one_in(4)) boxes.resize(dice.below(100), wrong_box<D, Real>(dice));
-      for (std::size_t count = boxes.empty() ? 0 : dice.below(30); count > 0; --count) {
-        const std::size_t place = dice.below(boxes.size());
-        boxes[place] = some_boxes<D, Real>(dice, 1)[0];
+      if (rng.one_in(4)) boxes.resize(rng.below(100), wrong_box<D, Real>(rng));
+      for (std::size_t count = boxes.empty() ? 0 : rng.below(30); count > 0; --count) {
+        const std::size_t place = rng.below(boxes.size());
+        boxes[place] = some_boxes<D, Real>(rng, 1)[0];
         if (place < known) changed.push_back(BoxId(place));
       }
     }

@@ -9,9 +9,9 @@
 #include "broadside/find_pairs.hpp"
 #include "broadside/sinks.hpp"
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -42,12 +42,12 @@ class BetweenLaw : public Law {};
 
 TEST_P(BetweenLaw, FindsEachPairAcrossOnceAndNoneWithin) {
   in_dimension([&]<int D>() {
-    Dice dice(11);
+    Rng rng(11);
     const auto finder = make_finder<D>(algorithm(), spec());
     for (const Input<D>& input : hard_inputs<D>(algorithm())) {
       std::vector<Box<D>> left;
       std::vector<Box<D>> right;
-      for (const Box<D>& box : input.boxes) (dice.one_in(3) ? left : right).push_back(box);
+      for (const Box<D>& box : input.boxes) (rng.one_in(3) ? left : right).push_back(box);
       EXPECT_EQ(found<D>(*finder, left, right), reference<D>(left, right)) << input.name;
       EXPECT_EQ(found<D>(*finder, input.boxes, input.boxes), reference<D>(input.boxes, input.boxes))
           << input.name << ", against itself";

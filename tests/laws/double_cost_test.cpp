@@ -14,8 +14,8 @@
 #include "broadside/world.hpp"
 
 #include "core/sample.hpp"
-#include "dice.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -25,12 +25,12 @@ constexpr std::size_t box_count = 20'000;
 /// Boxes of up to `extent` anywhere in a cube of `side`, both in units by axis.
 template <int D>
 DoubleBoxes<D> uniform(double side, double extent, const std::array<double, 3>& units) {
-  Dice dice(1);
+  Rng rng(1);
   DoubleBoxes<D> boxes(box_count);
   for (Box<D, double>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = side * dice.unit() * units[axis];
-      box.max[axis] = box.min[axis] + extent * dice.unit() * units[axis];
+      box.min[axis] = side * rng.unit() * units[axis];
+      box.max[axis] = box.min[axis] + extent * rng.unit() * units[axis];
     }
   }
   return boxes;
@@ -51,12 +51,12 @@ DoubleBoxes<3> lines() {
 /// Some 200 clusters of clusters of clusters: floats about one origin tell only the greatest apart.
 template <int D>
 DoubleBoxes<D> nested() {
-  Dice dice(2);
+  Rng rng(2);
   DoubleBoxes<D> boxes = uniform<D>(1e-12, 1e-14, {1, 1, 1});
   constexpr int last = D == 2 ? 3 : 1;
   for (Box<D, double>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
-      const double site = dice.whole(0, last) + 1e-6 * dice.whole(0, last) + 1e-10 * dice.whole(0, last);
+      const double site = rng.whole(0, last) + 1e-6 * rng.whole(0, last) + 1e-10 * rng.whole(0, last);
       box.min[axis] += site;
       box.max[axis] += site;
     }
@@ -138,11 +138,11 @@ TEST(DoubleCost, IsLowWhereASampleAtKnownPlacesIsFooled) {
   std::vector<bool> is_known(box_count);
   for (std::uint32_t i = 0; i < 512; ++i) is_known[core::sampled_place(i, box_count)] = true;
   DoubleBoxes<2> boxes = uniform<2>({1, 1, 1});
-  Dice dice(3);
+  Rng rng(3);
   for (std::size_t i = 0; i < box_count; ++i) {
     for (int axis = 0; axis < 2 && !is_known[i]; ++axis) {
-      boxes[i].min[axis] = 1e6 + 1e-6 * dice.unit();
-      boxes[i].max[axis] = boxes[i].min[axis] + 1e-9 * dice.unit();
+      boxes[i].min[axis] = 1e6 + 1e-6 * rng.unit();
+      boxes[i].max[axis] = boxes[i].min[axis] + 1e-9 * rng.unit();
     }
   }
   EXPECT_LE(tests<2>("bvh", boxes), 100 * box_count);
@@ -156,13 +156,13 @@ std::uint64_t tests_of_frames(double unit) {
   PairCounter ended;
   tracker->update({boxes, {}}, begun, ended);
   std::uint64_t tests = 0;
-  Dice dice(4);
+  Rng rng(4);
   for (int frame = 0; frame < 4; ++frame) {
     std::vector<BoxId> changed;
     for (std::size_t i = frame; i < box_count; i += box_count / 100) {
       changed.push_back(BoxId(i));
       for (int axis = 0; axis < D; ++axis) {
-        const double step = unit * dice.unit();
+        const double step = unit * rng.unit();
         boxes[i].min[axis] += step;
         boxes[i].max[axis] += step;
       }

@@ -14,9 +14,9 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -41,16 +41,16 @@ struct DoubleInput {
 
 /// Boxes of about `extent` whose centres lie within `range` of one of `sites`, on every axis.
 template <int D>
-DoubleBoxes<D> boxes_at(Dice& dice, std::size_t count, const std::vector<double>& sites, double range,
+DoubleBoxes<D> boxes_at(Rng& rng, std::size_t count, const std::vector<double>& sites, double range,
                         double extent) {
   DoubleBoxes<D> boxes(count);
   for (Box<D, double>& box : boxes) {
-    const double site = sites[dice.below(sites.size())];
+    const double site = sites[rng.below(sites.size())];
     for (int axis = 0; axis < D; ++axis) {
       // 24 random bits and, far below them, others: more than a float holds.
-      const double centre = site + range * (dice.unit() + dice.unit() * 0x1p-24);
-      box.min[axis] = centre - extent * (dice.unit() + dice.unit() * 0x1p-24);
-      box.max[axis] = centre + extent * (dice.unit() + dice.unit() * 0x1p-24);
+      const double centre = site + range * (rng.unit() + rng.unit() * 0x1p-24);
+      box.min[axis] = centre - extent * (rng.unit() + rng.unit() * 0x1p-24);
+      box.max[axis] = centre + extent * (rng.unit() + rng.unit() * 0x1p-24);
     }
   }
   return boxes;
@@ -59,15 +59,15 @@ DoubleBoxes<D> boxes_at(Dice& dice, std::size_t count, const std::vector<double>
 /// A row of boxes at each of `sites`, several at each place, that touch their neighbours, or overlap or miss
 /// them by the last bit of a double: as floats they all touch.
 template <int D>
-DoubleBoxes<D> lattice(Dice& dice, std::size_t count, const std::vector<double>& sites) {
-  const auto nearly = [&dice](double at) {
-    return std::array{std::nextafter(at, -1e10), at, std::nextafter(at, 1e10)}[dice.below(3)];
+DoubleBoxes<D> lattice(Rng& rng, std::size_t count, const std::vector<double>& sites) {
+  const auto nearly = [&rng](double at) {
+    return std::array{std::nextafter(at, -1e10), at, std::nextafter(at, 1e10)}[rng.below(3)];
   };
   DoubleBoxes<D> boxes(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double site = sites[i % sites.size()];
     for (int axis = 0; axis < D; ++axis) {
-      const auto step = static_cast<double>(axis == 0 ? i / sites.size() / 24 : dice.below(3));
+      const auto step = static_cast<double>(axis == 0 ? i / sites.size() / 24 : rng.below(3));
       boxes[i].min[axis] = nearly(site + step * 0.1);
       boxes[i].max[axis] = nearly(site + (step + 1) * 0.1);
     }
@@ -89,11 +89,11 @@ DoubleBoxes<D> scaled(DoubleBoxes<D> boxes, const std::array<double, 3>& units) 
 
 /// Boxes for which one scale does not serve, since floats about one origin hold only some of them.
 template <int D>
-void add_scales(Dice& dice, std::size_t count, std::vector<DoubleInput<D>>& inputs) {
+void add_scales(Rng& rng, std::size_t count, std::vector<DoubleInput<D>>& inputs) {
   constexpr double largest = std::numeric_limits<double>::max();
   constexpr double smallest = std::numeric_limits<double>::denorm_min();
   const double side = std::pow(static_cast<double>(count), 1.0 / D);
-  const auto near = [&] { return boxes_at<D>(dice, count, {0}, side, 0.6); };
+  const auto near = [&] { return boxes_at<D>(rng, count, {0}, side, 0.6); };
   inputs.push_back({"axes of different units", scaled<D>(near(), {1e60, 1e-60, 1})});
   inputs.push_back({"up to the greatest double", scaled<D>(near(), std::array{largest, largest, largest})});
   DoubleBoxes<D> denormals = near();
@@ -107,9 +107,9 @@ void add_scales(Dice& dice, std::size_t count, std::vector<DoubleInput<D>>& inpu
   DoubleBoxes<D> powers(count);
   for (Box<D, double>& box : powers) {
     for (int axis = 0; axis < D; ++axis) {
-      const double at = std::pow(10, 60 * dice.unit() - 30);
-      box.min[axis] = dice.one_in(2) ? at : -at;
-      box.max[axis] = box.min[axis] + (dice.one_in(2) ? at : 1e-3 * at) * dice.unit();
+      const double at = std::pow(10, 60 * rng.unit() - 30);
+      box.min[axis] = rng.one_in(2) ? at : -at;
+      box.max[axis] = box.min[axis] + (rng.one_in(2) ? at : 1e-3 * at) * rng.unit();
     }
   }
   inputs.push_back({"sixty orders of magnitude", powers});
@@ -119,10 +119,10 @@ void add_scales(Dice& dice, std::size_t count, std::vector<DoubleInput<D>>& inpu
     together.insert(together.end(), others.begin(), others.end());
   }
   inputs.push_back({"units of 1e60, 1e-60 and 1 together", together});
-  DoubleBoxes<D> nested = boxes_at<D>(dice, count, {0}, 1e-12 * side, 0.6e-12);
+  DoubleBoxes<D> nested = boxes_at<D>(rng, count, {0}, 1e-12 * side, 0.6e-12);
   for (Box<D, double>& box : nested) {
     for (int axis = 0; axis < D; ++axis) {
-      const double site = dice.whole(0, 3) + 1e-4 * dice.whole(0, 3) + 1e-8 * dice.whole(0, 3);
+      const double site = rng.whole(0, 3) + 1e-4 * rng.whole(0, 3) + 1e-8 * rng.whole(0, 3);
       box.min[axis] += site;
       box.max[axis] += site;
     }
@@ -132,27 +132,27 @@ void add_scales(Dice& dice, std::size_t count, std::vector<DoubleInput<D>>& inpu
 
 template <int D>
 std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
-  Dice dice(21);
+  Rng rng(21);
   const std::size_t count = reduced(1500);
   const double side = std::pow(static_cast<double>(count), 1.0 / D);
   std::vector<DoubleInput<D>> inputs = {
       {"none", {}},
-      {"one", boxes_at<D>(dice, 1, {0}, 1, 1)},
-      {"near the origin", boxes_at<D>(dice, count, {0}, side, 0.6)},
-      {"a millimetre, at 5,000,000 m", boxes_at<D>(dice, count, {5e6}, side * 1e-3, 0.6e-3)},
+      {"one", boxes_at<D>(rng, 1, {0}, 1, 1)},
+      {"near the origin", boxes_at<D>(rng, count, {0}, side, 0.6)},
+      {"a millimetre, at 5,000,000 m", boxes_at<D>(rng, count, {5e6}, side * 1e-3, 0.6e-3)},
       {"a millimetre, at sites 100 km apart",
-       boxes_at<D>(dice, count, {500'000, 600'000, 5'000'000}, side * 1e-3, 0.6e-3)},
-      {"below a float's range", boxes_at<D>(dice, count, {0, 1e-300}, side * 1e-300, 0.6e-300)},
-      {"beyond a float's range", boxes_at<D>(dice, count, {-1e300, 1e300}, side * 1e299, 0.6e299)},
-      {"all at one point", boxes_at<D>(dice, 300, {1e9}, 1e-3, 1)},
-      {"points far apart", boxes_at<D>(dice, count, {0, 1e6, 1e12}, 1, 0)},
+       boxes_at<D>(rng, count, {500'000, 600'000, 5'000'000}, side * 1e-3, 0.6e-3)},
+      {"below a float's range", boxes_at<D>(rng, count, {0, 1e-300}, side * 1e-300, 0.6e-300)},
+      {"beyond a float's range", boxes_at<D>(rng, count, {-1e300, 1e300}, side * 1e299, 0.6e299)},
+      {"all at one point", boxes_at<D>(rng, 300, {1e9}, 1e-3, 1)},
+      {"points far apart", boxes_at<D>(rng, count, {0, 1e6, 1e12}, 1, 0)},
   };
   // Integers above 2^24 that touch: the last unit decides.
   DoubleBoxes<D> integers(count);
   for (Box<D, double>& box : integers) {
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = 1'000'000'000.0 + dice.whole(0, static_cast<int>(side) * 4);
-      box.max[axis] = box.min[axis] + dice.whole(0, 3);
+      box.min[axis] = 1'000'000'000.0 + rng.whole(0, static_cast<int>(side) * 4);
+      box.max[axis] = box.min[axis] + rng.whole(0, 3);
     }
   }
   inputs.push_back({"integers above 2^24", integers});
@@ -166,12 +166,12 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
   }
   inputs.push_back({"integers and maxima just below", short_above});
   inputs.push_back({"integers and minima just above", short_below});
-  inputs.push_back({"touching to the last bit", lattice<D>(dice, 600, {4.0e6 / 3})});
+  inputs.push_back({"touching to the last bit", lattice<D>(rng, 600, {4.0e6 / 3})});
   // So far from each other that they are split, and that in the middle of the second.
-  inputs.push_back({"touching at the border of regions", lattice<D>(dice, 1200, {-1e9, 4.0e6 / 3, 1e9})});
+  inputs.push_back({"touching at the border of regions", lattice<D>(rng, 1200, {-1e9, 4.0e6 / 3, 1e9})});
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    DoubleBoxes<D> boxes = boxes_at<D>(dice, 400, {1e6}, side, 1);
+    DoubleBoxes<D> boxes = boxes_at<D>(rng, 400, {1e6}, side, 1);
     for (std::size_t i = 0; i < boxes.size(); i += 13) boxes[i] = absent_box<D, double>();
     for (std::size_t i = 0; i < boxes.size(); i += 40)
       boxes[i].min.fill(-infinity), boxes[i].max.fill(infinity);
@@ -180,7 +180,7 @@ std::vector<DoubleInput<D>> double_inputs(const Algorithm& algorithm) {
     boxes[7].max.fill(std::numeric_limits<double>::max());
     inputs.push_back({"infinite and absent boxes together", boxes});
   }
-  add_scales<D>(dice, count / 2, inputs);
+  add_scales<D>(rng, count / 2, inputs);
   std::erase_if(inputs, [&](const DoubleInput<D>& input) {
     return std::ranges::any_of(input.boxes,
                                [&](const Box<D, double>& box) { return is_beyond(algorithm, box); });
@@ -240,8 +240,8 @@ void take_frame(PairTracker<D, double>& tracker, const DoubleBoxes<D>& boxes, st
 
 TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
   in_dimension([&]<int D>() {
-    Dice dice(22);
-    DoubleBoxes<D> boxes = boxes_at<D>(dice, 200, {5e6}, 0.02, 1e-3);
+    Rng rng(22);
+    DoubleBoxes<D> boxes = boxes_at<D>(rng, 200, {5e6}, 0.02, 1e-3);
     const auto tracker = make_tracker<D, double>(algorithm(), spec());
     std::vector<Pair> current;
     for (int frame = 0; frame < 10; ++frame) {
@@ -249,7 +249,7 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
       for (std::size_t i = frame == 0 ? boxes.size() : 0; i < boxes.size(); i += 3) {
         changed.push_back(BoxId(i));
         for (int axis = 0; axis < D; ++axis) {
-          const double step = 1e-4 * (dice.unit() - 0.5);
+          const double step = 1e-4 * (rng.unit() - 0.5);
           boxes[i].min[axis] += step;
           boxes[i].max[axis] += step;
         }
@@ -264,18 +264,18 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
 /// each frame.
 template <int D>
 void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double where, double unit) {
-  Dice dice(24);
-  DoubleBoxes<D> boxes = scaled<D>(boxes_at<D>(dice, 300, {where}, 0.05, 1e-3), {unit, unit, unit});
+  Rng rng(24);
+  DoubleBoxes<D> boxes = scaled<D>(boxes_at<D>(rng, 300, {where}, 0.05, 1e-3), {unit, unit, unit});
   const DoubleBoxes<D> first = boxes;
   const auto tracker = make_tracker<D, double>(algorithm, spec);
   std::vector<Pair> current;
   for (int frame = 0; frame < 30; ++frame) {
     std::vector<BoxId> changed;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (frame > 0 && dice.unit() > 0.1) continue;
+      if (frame > 0 && rng.unit() > 0.1) continue;
       changed.push_back(BoxId(i));
-      const double kind = dice.unit();
-      const double step = unit * (kind < 0.6 ? 1e-4 : 1e-2) * (dice.unit() - 0.5);
+      const double kind = rng.unit();
+      const double step = unit * (kind < 0.6 ? 1e-4 : 1e-2) * (rng.unit() - 0.5);
       if (!is_present(boxes[i])) boxes[i] = first[i];
       const double farther = kind > 0.9 && kind < 0.92 && algorithm.infinite_boxes ? 1e30 : 1;
       for (int axis = 0; axis < D; ++axis) {
@@ -308,9 +308,9 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, DoubleLaw, testing::ValuesIn(law_cases_witho
 TEST(Doubles, TakeFewTestsWhereFloatsAboutOneOriginAllTouch) {
   // Boxes of a millimetre at sites 100 km apart: as floats about one origin they would be 8 mm wide or
   // more.
-  Dice dice(23);
+  Rng rng(23);
   const std::size_t count = 20'000;
-  const DoubleBoxes<2> boxes = boxes_at<2>(dice, count, {500'000, 600'000}, 0.1, 0.5e-3);
+  const DoubleBoxes<2> boxes = boxes_at<2>(rng, count, {500'000, 600'000}, 0.1, 0.5e-3);
   const auto finder = make_finder<2, double>("grid");
   PairCounter counter;
   finder->find(boxes, counter);

@@ -12,23 +12,23 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
-#include "dice.hpp"
 #include "histories.hpp"
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 #include "law_sinks.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
 
 template <int D>
 std::vector<Box<D>> some_boxes(std::size_t count, float world = 10) {
-  Dice dice(4);
+  Rng rng(4);
   std::vector<Box<D>> boxes(count);
   for (Box<D>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = dice.between(0, world);
-      box.max[axis] = box.min[axis] + dice.between(0, 3);
+      box.min[axis] = rng.between(0, world);
+      box.max[axis] = box.min[axis] + rng.between(0, 3);
     }
   }
   return boxes;
@@ -182,12 +182,12 @@ TEST_P(FailureLaw, ATrackerDeliversWhatFailedFramesOwe) {
     for (const NamedHistory<D>& named : hard_histories<D>(algorithm())) {
       Tracked<D> tracked(algorithm());
       std::vector<Box<D>> boxes = named.history.boxes;
-      Dice dice(6);
+      Rng rng(6);
       ASSERT_EQ(tracked.divergence(boxes, {}), "") << named.name;
       for (const lab::Step<D>& step : named.history.steps) {
         lab::apply(step, boxes);
-        const bool begun_fails = dice.one_in(6);
-        const bool ended_fails = dice.one_in(6);
+        const bool begun_fails = rng.one_in(6);
+        const bool ended_fails = rng.one_in(6);
         try {
           ASSERT_EQ(
               tracked.divergence(boxes, step.changed, begun_fails ? 0 : no_limit, ended_fails ? 0 : no_limit),

@@ -12,21 +12,21 @@
 
 #include <fmt/format.h>
 
-#include "dice.hpp"
 #include "lab/verify/verify.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
 
 /// Few filters, so that many accept each other and many do not.
-Filter any_filter(Dice& dice) {
-  if (dice.one_in(3)) return {};
+Filter any_filter(Rng& rng) {
+  if (rng.one_in(3)) return {};
   constexpr std::array<std::uint32_t, 4> masks = {0xffffffffU, 1, 3, 0x80000001U};
   constexpr std::array<std::uint32_t, 3> categories = {1, 2, 0x80000000U};
-  return {.category = dice.one_of<std::uint32_t>(categories),
-          .mask = dice.one_of<std::uint32_t>(masks),
-          .group = dice.one_in(3) ? dice.whole(-2, 2) : 0,
-          .is_static = dice.one_in(4)};
+  return {.category = rng.one_of<std::uint32_t>(categories),
+          .mask = rng.one_of<std::uint32_t>(masks),
+          .group = rng.one_in(3) ? rng.whole(-2, 2) : 0,
+          .is_static = rng.one_in(4)};
 }
 
 /// The pairs that are ignored while a history goes on.
@@ -66,38 +66,38 @@ std::vector<WholeFrame<D>> whole_frames(const lab::History<D>& history) {
 
 template <int D>
 std::vector<WholeFrame<D>> with_filters(std::vector<WholeFrame<D>> frames, std::uint64_t seed) {
-  Dice dice(seed);
+  Rng rng(seed);
   std::size_t places = 2;
   for (const WholeFrame<D>& frame : frames) places = std::max(places, frame.boxes.size());
   std::vector<Filter> filters(places);
-  for (Filter& filter : filters) filter = any_filter(dice);
+  for (Filter& filter : filters) filter = any_filter(rng);
   Ignored ignored;
-  bool filters_given = dice.one_in(2);
-  bool ignored_given = dice.one_in(2);
+  bool filters_given = rng.one_in(2);
+  bool ignored_given = rng.one_in(2);
   for (WholeFrame<D>& frame : frames) {
-    if (dice.one_in(12)) filters_given = !filters_given;
-    if (dice.one_in(12)) ignored_given = !ignored_given;
-    if (dice.one_in(2)) {
-      for (std::size_t count = dice.one_in(20) ? places : dice.below(10); count > 0; --count)
-        filters[dice.below(places)] = any_filter(dice);
+    if (rng.one_in(12)) filters_given = !filters_given;
+    if (rng.one_in(12)) ignored_given = !ignored_given;
+    if (rng.one_in(2)) {
+      for (std::size_t count = rng.one_in(20) ? places : rng.below(10); count > 0; --count)
+        filters[rng.below(places)] = any_filter(rng);
     }
-    if (dice.one_in(30)) ignored.clear();
-    if (dice.one_in(2)) {
+    if (rng.one_in(30)) ignored.clear();
+    if (rng.one_in(2)) {
       // Pairs of boxes that overlap, and of any places, of which some are not there.
       const std::vector<Pair> overlapping = lab::reference_pairs<D>(frame.boxes);
-      for (std::size_t count = dice.below(8); count > 0; --count) {
-        const auto a = BoxId(dice.below(places));
-        const auto b = BoxId(dice.below(places));
-        if (!overlapping.empty() && !dice.one_in(3))
-          ignored.toggle(dice.one_of<Pair>(overlapping));
+      for (std::size_t count = rng.below(8); count > 0; --count) {
+        const auto a = BoxId(rng.below(places));
+        const auto b = BoxId(rng.below(places));
+        if (!overlapping.empty() && !rng.one_in(3))
+          ignored.toggle(rng.one_of<Pair>(overlapping));
         else if (a != b)
           ignored.toggle({std::min(a, b), std::max(a, b)});
       }
     }
     if (filters_given) frame.filters.assign(filters.begin(), filters.begin() + frame.boxes.size());
     if (ignored_given) frame.ignored = ignored.pairs();
-    if (dice.one_in(8)) frame.begun_room = dice.below(4);
-    if (dice.one_in(8)) frame.ended_room = dice.below(4);
+    if (rng.one_in(8)) frame.begun_room = rng.below(4);
+    if (rng.one_in(8)) frame.ended_room = rng.below(4);
   }
   return frames;
 }

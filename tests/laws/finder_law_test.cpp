@@ -5,9 +5,9 @@
 
 #include "broadside/sinks.hpp"
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 #include "smallest_failure.hpp"
 #include "strained_specs.hpp"
 
@@ -48,16 +48,16 @@ TEST_P(FinderLaw, HasNoMemoryThatShows) {
         EXPECT_EQ(compared(pairs_of<D>(*used, input.boxes)), compared(pairs_of<D>(*fresh, input.boxes)))
             << input.name;
       }
-      Dice(1).shuffle(inputs);
+      Rng(1).shuffle(inputs);
     }
   });
 }
 
 TEST_P(FinderLaw, FindsTheSamePairsInAnyOrderOfTheBoxes) {
   in_dimension([&]<int D>() {
-    Dice dice(2);
+    Rng rng(2);
     for (Input<D>& input : hard_inputs<D>(algorithm())) {
-      dice.shuffle(input.boxes);
+      rng.shuffle(input.boxes);
       EXPECT_TRUE(finds_the_pairs<D>(algorithm(), spec(), input.boxes)) << input.name << ", shuffled";
     }
   });
@@ -65,14 +65,14 @@ TEST_P(FinderLaw, FindsTheSamePairsInAnyOrderOfTheBoxes) {
 
 TEST_P(FinderLaw, FindsThePairsOfShiftedAndScaledBoxes) {
   in_dimension([&]<int D>() {
-    Dice dice(3);
+    Rng rng(3);
     for (const float scale : {1e-30f, 1e-3f, 1e3f, 1e30f}) {
       for (const float shift : {0.0f, -1.0f, 1000.0f}) {
         std::vector<Box<D>> boxes(200);
         for (Box<D>& box : boxes) {
           for (int axis = 0; axis < D; ++axis) {
-            box.min[axis] = scale * (shift + dice.between(0, 10));
-            box.max[axis] = box.min[axis] + scale * dice.between(0, 2);
+            box.min[axis] = scale * (shift + rng.between(0, 10));
+            box.max[axis] = box.min[axis] + scale * rng.between(0, 2);
           }
         }
         std::erase_if(boxes, [&](const Box<D>& box) { return is_beyond(algorithm(), box); });

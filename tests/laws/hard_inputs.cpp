@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "dice.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -42,17 +42,17 @@ std::vector<Box<D>> boxes_of(std::size_t count, SpanOf span) {
 /// Boxes whose coordinates are drawn from `values`, each in either order.
 template <int D>
 std::vector<Box<D>> drawn_from(std::vector<float> values, std::size_t count) {
-  Dice dice(7);
+  Rng rng(7);
   const std::span<const float> all = values;
-  return boxes_of<D>(count, [&](std::size_t, int) { return Span{dice.one_of(all), dice.one_of(all)}; });
+  return boxes_of<D>(count, [&](std::size_t, int) { return Span{rng.one_of(all), rng.one_of(all)}; });
 }
 
 template <int D>
 std::vector<Box<D>> uniform(std::size_t count, float world, float size, std::uint64_t seed = 1) {
-  Dice dice(seed);
+  Rng rng(seed);
   return boxes_of<D>(count, [&](std::size_t, int) {
-    const float min = dice.between(0, world);
-    return Span{min, min + dice.between(0, size)};
+    const float min = rng.between(0, world);
+    return Span{min, min + rng.between(0, size)};
   });
 }
 
@@ -132,13 +132,13 @@ void add_flat(std::vector<Input<D>>& inputs) {
     inputs.push_back({"equal projections on axis " + axis, same_projection});
     inputs.push_back({"along axis " + axis, line});
   }
-  Dice dice(3);
+  Rng rng(3);
   inputs.push_back({"needles", boxes_of<D>(200, [&](std::size_t i, int axis) {
-                      const float min = dice.between(0, 100);
+                      const float min = rng.between(0, 100);
                       return Span{min, min + (i % D == std::size_t(axis) ? 80.0f : 0.01f)};
                     })});
   inputs.push_back({"plates", boxes_of<D>(100, [&](std::size_t i, int axis) {
-                      const float min = dice.between(0, 100);
+                      const float min = rng.between(0, 100);
                       return i % D == std::size_t(axis) ? Span{min, min} : Span{-1, 101};
                     })});
   inputs.push_back({"points", uniform<D>(200, 10, 0)});
@@ -146,7 +146,7 @@ void add_flat(std::vector<Input<D>>& inputs) {
 
 template <int D>
 void add_scales(std::vector<Input<D>>& inputs) {
-  Dice dice(5);
+  Rng rng(5);
   std::vector<Box<D>> one_huge = uniform<D>(100, 100, 1);
   one_huge[50] = box_of<D>([](int) { return Span{-1e6f, 1e6f}; });
   inputs.push_back({"one huge among a hundred", one_huge});
@@ -160,8 +160,8 @@ void add_scales(std::vector<Input<D>>& inputs) {
   }
   inputs.push_back({"outliers at 1e30", outliers});
   inputs.push_back({"sizes by a power law", boxes_of<D>(300, [&](std::size_t, int) {
-                      const float min = dice.between(0, 100);
-                      return Span{min, min + 0.01f / (0.0001f + dice.unit() * dice.unit())};
+                      const float min = rng.between(0, 100);
+                      return Span{min, min + 0.01f / (0.0001f + rng.unit() * rng.unit())};
                     })});
   inputs.push_back({"tiny boxes in a vast world", uniform<D>(200, 1e12f, 1e-6f)});
   std::vector<Box<D>> clusters = uniform<D>(200, 3, 1);
@@ -178,9 +178,7 @@ void add_scales(std::vector<Input<D>>& inputs) {
   inputs.push_back(
       {"denormals beside ones", drawn_from<D>({-1, -smallest_float, 0, smallest_float, 1}, 150)});
   inputs.push_back({"all magnitudes", boxes_of<D>(300, [&](std::size_t, int) {
-                      const auto value = [&] {
-                        return std::ldexp(dice.between(-1, 1), dice.whole(-126, 127));
-                      };
+                      const auto value = [&] { return std::ldexp(rng.between(-1, 1), rng.whole(-126, 127)); };
                       return Span{value(), value()};
                     })});
 }
@@ -206,7 +204,7 @@ void add_extremes(std::vector<Input<D>>& inputs) {
       {"every special value", drawn_from<D>({-float_infinity, -largest_float, -1, -smallest_float, -0.0f, 0,
                                              smallest_float, 1, largest_float, float_infinity},
                                             300)});
-  Dice dice(9);
+  Rng rng(9);
   std::vector<Box<D>> half_spaces = uniform<D>(200, 10, 1);
   for (std::size_t i = 0; i < half_spaces.size(); i += 10) {
     const int axis = static_cast<int>(i / 10) % D;
@@ -217,7 +215,7 @@ void add_extremes(std::vector<Input<D>>& inputs) {
   std::vector<Box<D>> with_absent = half_spaces;
   with_absent[7] = box_of<D>([](int) { return Span{-float_infinity, float_infinity}; });
   for (Box<D>& box : with_absent) {
-    if (dice.one_in(2)) box = absent_box<D>();
+    if (rng.one_in(2)) box = absent_box<D>();
   }
   inputs.push_back({"infinite and absent", with_absent});
   std::vector<Box<D>> half_absent = uniform<D>(400, 10, 1);

@@ -7,20 +7,20 @@
 #include <cstdint>
 #include <limits>
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
 
 /// A box of extents up to `size` whose minima lie in [0, world).
 template <int D>
-Box<D> box_in(Dice& dice, float world, float size) {
+Box<D> box_in(Rng& rng, float world, float size) {
   Box<D> box;
   for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = dice.between(0, world);
-    box.max[axis] = box.min[axis] + dice.between(0, size);
+    box.min[axis] = rng.between(0, world);
+    box.max[axis] = box.min[axis] + rng.between(0, size);
   }
   return box;
 }
@@ -54,8 +54,8 @@ class Histories {
  public:
   explicit Histories(std::size_t count)
       : count_(count), world_(std::pow(static_cast<float>(count), 1.0F / D)), uniform_(count) {
-    Dice dice(count);
-    for (Box<D>& box : uniform_) box = any(dice);
+    Rng rng(count);
+    for (Box<D>& box : uniform_) box = any(rng);
   }
 
   /// Each frame's boxes are made by `next(frame, boxes)` from those of the frame before.
@@ -70,9 +70,9 @@ class Histories {
   }
 
   void add_moderate() {
-    Dice dice(1);
+    Rng rng(1);
     add("everything teleports", uniform_, 10, [&](int, Boxes<D>& boxes) {
-      for (Box<D>& box : boxes) box = any(dice);
+      for (Box<D>& box : boxes) box = any(rng);
     });
     add("everything drifts one way", uniform_, 60, [&](int, Boxes<D>& boxes) {
       for (Box<D>& box : boxes) move(box, 0, 0.37F);
@@ -81,12 +81,12 @@ class Histories {
       for (Box<D>& box : boxes) move(box, frame % D, 1);
     });
     Boxes<D> other = uniform_;
-    for (Box<D>& box : other) box = any(dice);
+    for (Box<D>& box : other) box = any(rng);
     add("two states by turns", uniform_, 30,
         [&](int frame, Boxes<D>& boxes) { boxes = frame % 2 == 0 ? uniform_ : other; });
     add("a tenth goes and comes in other places", uniform_, 40, [&](int, Boxes<D>& boxes) {
-      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[dice.below(count_)] = absent_box<D>();
-      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[dice.below(count_)] = any(dice);
+      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[rng.below(count_)] = absent_box<D>();
+      for (std::size_t i = 0; i < count_ / 10; ++i) boxes[rng.below(count_)] = any(rng);
     });
     add("one of all moves", uniform_, 60,
         [&](int frame, Boxes<D>& boxes) { move(boxes[7], frame % D, frame % 20 < 10 ? 0.4F : -0.4F); });
@@ -120,7 +120,7 @@ class Histories {
   }
 
   void add_extreme() {
-    Dice dice(2);
+    Rng rng(2);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr float largest = std::numeric_limits<float>::max();
     add("boxes fall for ever", lattice(), 135, [&](int frame, Boxes<D>& boxes) {
@@ -134,8 +134,7 @@ class Histories {
     });
     add("extents of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += frame % 4 == 0 ? 1 : 10)
-        boxes[i] =
-            box_about<D>(centre(any(dice)), std::pow(10.0F, dice.between(-30, dice.one_in(8) ? 30 : 1)));
+        boxes[i] = box_about<D>(centre(any(rng)), std::pow(10.0F, rng.between(-30, rng.one_in(8) ? 30 : 1)));
     });
     add("coordinates of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       const float power = frame < 15 ? static_cast<float>(2 * frame) : static_cast<float>(60 - 4 * frame);
@@ -158,13 +157,13 @@ class Histories {
     });
     add("all at one point, coming and going", Boxes<D>(count_ / 3, box_about<D>({}, 0)), 20,
         [&](int frame, Boxes<D>& boxes) {
-          for (std::size_t i = 0; i < boxes.size(); i += 1 + dice.below(9))
-            boxes[i] = frame % 5 == 0 ? absent_box<D>() : box_about<D>({}, dice.one_in(9) ? 1.0F : 0.0F);
+          for (std::size_t i = 0; i < boxes.size(); i += 1 + rng.below(9))
+            boxes[i] = frame % 5 == 0 ? absent_box<D>() : box_about<D>({}, rng.one_in(9) ? 1.0F : 0.0F);
         });
     add("infinite boxes come, move and go", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += 40) {
-        boxes[i] = any(dice);
-        const int axis = static_cast<int>(dice.below(D));
+        boxes[i] = any(rng);
+        const int axis = static_cast<int>(rng.below(D));
         if (frame % 4 != 0) boxes[i].min[axis] = -infinity;
         if (frame % 4 > 1) boxes[i].max[axis] = infinity;
       }
@@ -186,7 +185,7 @@ class Histories {
 
  private:
   /// One or two neighbours each, and some large ones.
-  Box<D> any(Dice& dice) const { return box_in<D>(dice, world_, dice.one_in(30) ? world_ / 4 : 1.2F); }
+  Box<D> any(Rng& rng) const { return box_in<D>(rng, world_, rng.one_in(30) ? world_ / 4 : 1.2F); }
 
   static std::array<float, D> centre(const Box<D>& box) {
     std::array<float, D> centre;
@@ -235,16 +234,16 @@ std::vector<NamedFrames<D>> harder_histories(const Algorithm& algorithm) {
 
 template <int D>
 std::vector<WholeFrame<D>> large_history(std::size_t count) {
-  Dice dice(3);
+  Rng rng(3);
   const float world = std::pow(static_cast<float>(count), 1.0F / D);
   Boxes<D> boxes(count);
-  const auto any = [&] { return box_in<D>(dice, world, dice.one_in(1000) ? world / 4 : 1); };
+  const auto any = [&] { return box_in<D>(rng, world, rng.one_in(1000) ? world / 4 : 1); };
   for (Box<D>& box : boxes) box = any();
   std::vector<WholeFrame<D>> frames = {frame_of<D>(boxes)};
   const auto add = [&] { frames.push_back(frame_of<D>(boxes)); };
   const auto drift = [&](std::size_t every) {
-    for (std::size_t i = dice.below(every); i < boxes.size(); i += every) {
-      if (!is_absent(boxes[i])) move(boxes[i], dice.whole(0, D - 1), dice.between(-0.3F, 0.3F));
+    for (std::size_t i = rng.below(every); i < boxes.size(); i += every) {
+      if (!is_absent(boxes[i])) move(boxes[i], rng.whole(0, D - 1), rng.between(-0.3F, 0.3F));
     }
     add();
   };
@@ -257,10 +256,10 @@ std::vector<WholeFrame<D>> large_history(std::size_t count) {
   for (Box<D>& box : boxes) box = any();
   add();
   drift(50);
-  for (std::size_t i = 0; i < count; i += 1 + dice.below(20)) boxes[i] = absent_box<D>();
+  for (std::size_t i = 0; i < count; i += 1 + rng.below(20)) boxes[i] = absent_box<D>();
   add();
   drift(30);
-  for (std::size_t i = 0; i < count; i += 1 + dice.below(20)) boxes[i] = any();
+  for (std::size_t i = 0; i < count; i += 1 + rng.below(20)) boxes[i] = any();
   add();
   boxes.resize(count / 3);
   add();

@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -28,27 +28,27 @@ struct Course {
 /// Makes boxes of one kind, near another box or anywhere.
 template <int D>
 struct BoxSource {
-  std::function<Box<D>(Dice&)> anywhere;
-  std::function<Box<D>(Dice&, const Box<D>&)> near;
+  std::function<Box<D>(Rng&)> anywhere;
+  std::function<Box<D>(Rng&, const Box<D>&)> near;
 };
 
 /// Boxes with whole coordinates: touching and coinciding all the time.
 template <int D>
 BoxSource<D> whole_numbers() {
   return {.anywhere =
-              [](Dice& dice) {
+              [](Rng& rng) {
                 Box<D> box;
                 for (int axis = 0; axis < D; ++axis) {
-                  box.min[axis] = static_cast<float>(dice.whole(-6, 6));
-                  box.max[axis] = box.min[axis] + static_cast<float>(dice.whole(0, 3));
+                  box.min[axis] = static_cast<float>(rng.whole(-6, 6));
+                  box.max[axis] = box.min[axis] + static_cast<float>(rng.whole(0, 3));
                 }
                 return box;
               },
           .near =
-              [](Dice& dice, const Box<D>& from) {
+              [](Rng& rng, const Box<D>& from) {
                 Box<D> box = from;
-                const int axis = dice.whole(0, D - 1);
-                const auto step = static_cast<float>(dice.whole(-1, 1));
+                const int axis = rng.whole(0, D - 1);
+                const auto step = static_cast<float>(rng.whole(-1, 1));
                 box.min[axis] += step;
                 box.max[axis] += step;
                 return box;
@@ -58,20 +58,20 @@ BoxSource<D> whole_numbers() {
 template <int D>
 BoxSource<D> real_numbers() {
   return {.anywhere =
-              [](Dice& dice) {
+              [](Rng& rng) {
                 Box<D> box;
-                const float size = dice.one_in(20) ? 30.0f : 2.0f;
+                const float size = rng.one_in(20) ? 30.0f : 2.0f;
                 for (int axis = 0; axis < D; ++axis) {
-                  box.min[axis] = dice.between(-10, 10);
-                  box.max[axis] = box.min[axis] + dice.between(0, size);
+                  box.min[axis] = rng.between(-10, 10);
+                  box.max[axis] = box.min[axis] + rng.between(0, size);
                 }
                 return box;
               },
           .near =
-              [](Dice& dice, const Box<D>& from) {
+              [](Rng& rng, const Box<D>& from) {
                 Box<D> box = from;
                 for (int axis = 0; axis < D; ++axis) {
-                  const float step = dice.between(-0.5f, 0.5f);
+                  const float step = rng.between(-0.5f, 0.5f);
                   box.min[axis] += step;
                   box.max[axis] += step;
                 }
@@ -82,71 +82,71 @@ BoxSource<D> real_numbers() {
 /// Boxes at the ends of what a float can hold.
 template <int D>
 BoxSource<D> special_values() {
-  const auto anywhere = [](Dice& dice) {
+  const auto anywhere = [](Rng& rng) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr float largest = std::numeric_limits<float>::max();
     static constexpr std::array<float, 9> values = {-infinity, -largest, -1,      -0.0f,   0.0f,
                                                     1,         2,        largest, infinity};
     Box<D> box;
     for (int axis = 0; axis < D; ++axis) {
-      const float a = dice.one_of(std::span<const float>(values));
-      const float b = dice.one_of(std::span<const float>(values));
+      const float a = rng.one_of(std::span<const float>(values));
+      const float b = rng.one_of(std::span<const float>(values));
       box.min[axis] = std::min(a, b);
       box.max[axis] = std::max(a, b);
     }
     return box;
   };
-  return {.anywhere = anywhere, .near = [anywhere](Dice& dice, const Box<D>&) { return anywhere(dice); }};
+  return {.anywhere = anywhere, .near = [anywhere](Rng& rng, const Box<D>&) { return anywhere(rng); }};
 }
 
 template <int D>
 lab::History<D> random_history(const BoxSource<D>& kind, const Course& course, std::uint64_t seed) {
-  Dice dice(seed);
+  Rng rng(seed);
   lab::History<D> history;
   for (std::size_t i = 0; i < course.slots; ++i)
-    history.boxes.push_back(dice.one_in(4) ? absent_box<D>() : kind.anywhere(dice));
+    history.boxes.push_back(rng.one_in(4) ? absent_box<D>() : kind.anywhere(rng));
 
   std::vector<Box<D>> boxes = history.boxes;
   for (std::size_t frame = 0; frame < course.frames; ++frame) {
     lab::Step<D> step{.size = boxes.size(), .changed = {}, .boxes = {}};
-    if (course.resize_one_in > 0 && dice.one_in(course.resize_one_in))
-      step.size = dice.one_in(4) ? 0 : dice.below(2 * course.slots);
+    if (course.resize_one_in > 0 && rng.one_in(course.resize_one_in))
+      step.size = rng.one_in(4) ? 0 : rng.below(2 * course.slots);
     const std::size_t places = std::max(step.size, boxes.size());
-    const bool rests = course.rest_one_in > 0 && dice.one_in(course.rest_one_in);
-    const std::size_t changes = rests || places == 0 ? 0 : dice.below(course.changes + 1);
+    const bool rests = course.rest_one_in > 0 && rng.one_in(course.rest_one_in);
+    const std::size_t changes = rests || places == 0 ? 0 : rng.below(course.changes + 1);
     std::vector<std::pair<BoxId, Box<D>>> changed;
     const auto is_changed = [&](std::size_t place) {
       return std::ranges::any_of(changed, [place](const auto& other) { return index(other.first) == place; });
     };
     const auto change = [&](std::size_t place, const Box<D>& box) {
       // A place listed twice must be harmless, and so must one beyond a shorter array's end.
-      for (std::size_t times = dice.one_in(8) ? 2 : 1; times > 0; --times) {
+      for (std::size_t times = rng.one_in(8) ? 2 : 1; times > 0; --times) {
         changed.emplace_back(BoxId(place), box);
       }
     };
     std::vector<Box<D>> next = boxes;
     next.resize(places, absent_box<D>());
     for (std::size_t i = 0; i < changes; ++i) {
-      const std::size_t place = dice.below(places);
+      const std::size_t place = rng.below(places);
       // Changed once: a second change would make the list say two things of one place.
       if (is_changed(place)) continue;
       Box<D>& box = next[place];
-      const std::size_t what = dice.below(8);
+      const std::size_t what = rng.below(8);
       if (is_absent(box) || what == 0)
-        box = kind.anywhere(dice);  // comes, or jumps
+        box = kind.anywhere(rng);  // comes, or jumps
       else if (what == 1)
         box = absent_box<D>();  // goes
       else if (what > 2)
-        box = kind.near(dice, box);  // moves; or else is said to change and does not
+        box = kind.near(rng, box);  // moves; or else is said to change and does not
       change(place, box);
     }
     next.resize(step.size);
     for (std::size_t place = boxes.size(); place < step.size; ++place) {
       if (is_changed(place)) continue;
-      next[place] = kind.anywhere(dice);
+      next[place] = kind.anywhere(rng);
       change(place, next[place]);
     }
-    dice.shuffle(changed);
+    rng.shuffle(changed);
     for (const auto& [id, box] : changed) {
       step.changed.push_back(id);
       step.boxes.push_back(box);
@@ -160,11 +160,11 @@ lab::History<D> random_history(const BoxSource<D>& kind, const Course& course, s
 /// Everything goes and comes back, again and again.
 template <int D>
 lab::History<D> flicker(const BoxSource<D>& kind, std::size_t count) {
-  Dice dice(11);
+  Rng rng(11);
   lab::History<D> history;
   std::vector<BoxId> all;
   for (std::size_t i = 0; i < count; ++i) {
-    history.boxes.push_back(kind.anywhere(dice));
+    history.boxes.push_back(kind.anywhere(rng));
     all.push_back(BoxId(i));
   }
   for (int frame = 0; frame < 6; ++frame) {
@@ -178,12 +178,12 @@ lab::History<D> flicker(const BoxSource<D>& kind, std::size_t count) {
 /// A first frame without a box, and one box more in each that follows; then none at once.
 template <int D>
 lab::History<D> arrivals(const BoxSource<D>& kind, std::size_t count) {
-  Dice dice(13);
+  Rng rng(13);
   lab::History<D> history;
   for (std::size_t i = 0; i < count; ++i)
-    history.steps.push_back({.size = i + 1, .changed = {BoxId(i)}, .boxes = {kind.anywhere(dice)}});
+    history.steps.push_back({.size = i + 1, .changed = {BoxId(i)}, .boxes = {kind.anywhere(rng)}});
   history.steps.push_back({.size = 0, .changed = {}, .boxes = {}});
-  history.steps.push_back({.size = 1, .changed = {BoxId(0)}, .boxes = {kind.anywhere(dice)}});
+  history.steps.push_back({.size = 1, .changed = {BoxId(0)}, .boxes = {kind.anywhere(rng)}});
   return history;
 }
 

@@ -13,11 +13,11 @@
 
 #include "broadside/queries.hpp"
 
-#include "dice.hpp"
 #include "hard_inputs.hpp"
 #include "histories.hpp"
 #include "lab/scenes/scene.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside {
 
@@ -57,9 +57,9 @@ class QueryLaw : public testing::Test {
       result.max[axis] = box.max[axis];
       if constexpr (std::is_same_v<Real, double>) {
         if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) continue;
-        const double wider = dice_.one_in(2) ? 0 : 0x1p-26;
-        result.min[axis] -= dice_.unit() * wider * std::abs(result.min[axis]);
-        result.max[axis] += dice_.unit() * wider * std::abs(result.max[axis]);
+        const double wider = rng_.one_in(2) ? 0 : 0x1p-26;
+        result.min[axis] -= rng_.unit() * wider * std::abs(result.min[axis]);
+        result.max[axis] += rng_.unit() * wider * std::abs(result.max[axis]);
         result.min[axis] *= unit_[axis];
         result.max[axis] *= unit_[axis];
       }
@@ -75,25 +75,25 @@ class QueryLaw : public testing::Test {
 
   /// A coordinate where something happens: one that a box has, or close to it.
   Real coordinate(const Boxes& boxes, int axis) {
-    if (boxes.empty() || dice_.one_in(8)) return dice_.between(-12, 12) * unit_[axis];
-    const Box<D, Real>& box = boxes[dice_.below(boxes.size())];
-    const Real at = dice_.one_in(2) ? box.min[axis] : box.max[axis];
-    if (dice_.one_in(4)) return at + dice_.between(-1, 1) * unit_[axis];
-    if (dice_.one_in(8)) return std::nextafter(at, Real(dice_.one_in(2) ? -1e30 : 1e30));
+    if (boxes.empty() || rng_.one_in(8)) return rng_.between(-12, 12) * unit_[axis];
+    const Box<D, Real>& box = boxes[rng_.below(boxes.size())];
+    const Real at = rng_.one_in(2) ? box.min[axis] : box.max[axis];
+    if (rng_.one_in(4)) return at + rng_.between(-1, 1) * unit_[axis];
+    if (rng_.one_in(8)) return std::nextafter(at, Real(rng_.one_in(2) ? -1e30 : 1e30));
     return at;
   }
 
   Real finite(const Boxes& boxes, int axis) {
     const Real at = coordinate(boxes, axis);
-    return std::isfinite(at) ? at : Real(dice_.whole(-3, 3));
+    return std::isfinite(at) ? at : Real(rng_.whole(-3, 3));
   }
 
   Box<D, Real> any_box(const Boxes& boxes) {
-    if (!boxes.empty() && dice_.one_in(3)) return boxes[dice_.below(boxes.size())];
+    if (!boxes.empty() && rng_.one_in(3)) return boxes[rng_.below(boxes.size())];
     Box<D, Real> box;
     for (int axis = 0; axis < D; ++axis) {
       const Real a = coordinate(boxes, axis);
-      const Real b = dice_.one_in(4) ? a : coordinate(boxes, axis);
+      const Real b = rng_.one_in(4) ? a : coordinate(boxes, axis);
       box.min[axis] = std::min(a, b);
       box.max[axis] = std::max(a, b);
     }
@@ -112,30 +112,30 @@ class QueryLaw : public testing::Test {
                                               Real(1e30),
                                               std::numeric_limits<Real>::denorm_min()};
     Cast cast;
-    const Real length = dice_.one_in(3) ? lengths[dice_.below(lengths.size())] : 1;
-    const std::size_t way = dice_.below(4);
-    const int along = dice_.whole(0, D - 1);
+    const Real length = rng_.one_in(3) ? lengths[rng_.below(lengths.size())] : 1;
+    const std::size_t way = rng_.below(4);
+    const int along = rng_.whole(0, D - 1);
     for (int axis = 0; axis < D; ++axis) {
       const Real from = finite(boxes, axis);
       const Real to = finite(boxes, axis);
       Real direction = 0;
       if (way == 0) direction = std::isfinite(to - from) ? to - from : 1;
-      if (way == 1) direction = axis == along ? Real(dice_.one_in(2) ? 1 : -1) : Real(0);
-      if (way == 2) direction = Real(dice_.whole(-3, 3));
-      if (way == 3) direction = dice_.between(-1, 1) * (dice_.one_in(4) ? Real(1e-12) : Real(1));
+      if (way == 1) direction = axis == along ? Real(rng_.one_in(2) ? 1 : -1) : Real(0);
+      if (way == 2) direction = Real(rng_.whole(-3, 3));
+      if (way == 3) direction = rng_.between(-1, 1) * (rng_.one_in(4) ? Real(1e-12) : Real(1));
       direction *= length;
       cast.direction[axis] = std::isfinite(direction) ? direction : 1;
       cast.box.min[axis] = cast.box.max[axis] = from;
     }
-    if (dice_.one_in(2)) {
+    if (rng_.one_in(2)) {
       for (int axis = 0; axis < D; ++axis) {
         cast.box.max[axis] = finite(boxes, axis);
-        if (dice_.one_in(2)) cast.box.max[axis] = cast.box.min[axis] + Real(dice_.whole(0, 2));
+        if (rng_.one_in(2)) cast.box.max[axis] = cast.box.min[axis] + Real(rng_.whole(0, 2));
         if (cast.box.min[axis] > cast.box.max[axis]) std::swap(cast.box.min[axis], cast.box.max[axis]);
       }
     }
-    if (dice_.one_in(3)) cast.t_max = Real(dice_.whole(0, 4)) / Real(dice_.whole(1, 3));
-    if (dice_.one_in(9)) cast.t_max *= 100;
+    if (rng_.one_in(3)) cast.t_max = Real(rng_.whole(0, 4)) / Real(rng_.whole(1, 3));
+    if (rng_.one_in(9)) cast.t_max *= 100;
     return cast;
   }
 
@@ -144,9 +144,9 @@ class QueryLaw : public testing::Test {
                       std::size_t rounds) {
     Filter query_filter{.category = 2, .mask = 1};
     for (std::size_t round = 0; round < rounds; ++round) {
-      const Filter* const filter = dice_.one_in(4) ? &query_filter : nullptr;
+      const Filter* const filter = rng_.one_in(4) ? &query_filter : nullptr;
       const std::optional<BoxId> except =
-          dice_.one_in(4) ? std::optional(BoxId(dice_.below(boxes.size() + 2))) : std::nullopt;
+          rng_.one_in(4) ? std::optional(BoxId(rng_.below(boxes.size() + 2))) : std::nullopt;
       const auto counts = [&](std::size_t i) {
         const Filter own = filters.empty() ? Filter{} : filters[i];
         return is_present(boxes[i]) && except != BoxId(i) && (filter == nullptr || accepts(*filter, own));
@@ -203,8 +203,8 @@ class QueryLaw : public testing::Test {
   void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const Point& point,
                       const Filter* filter, std::optional<BoxId> except, Counts counts) {
     constexpr Real infinity = std::numeric_limits<Real>::infinity();
-    const std::size_t count = dice_.one_in(10) ? boxes.size() : dice_.below(12);
-    const Real max_distance_squared = dice_.one_in(3) ? Real(dice_.whole(0, 9)) : infinity;
+    const std::size_t count = rng_.one_in(10) ? boxes.size() : rng_.below(12);
+    const Real max_distance_squared = rng_.one_in(3) ? Real(rng_.whole(0, 9)) : infinity;
     std::vector<Neighbour<Real>> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!counts(i)) continue;
@@ -218,7 +218,7 @@ class QueryLaw : public testing::Test {
     EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point);
   }
 
-  Dice dice_{1};
+  Rng rng_{1};
   std::array<Real, 3> unit_ = {1, 1, 1};  // by axis
 };
 
@@ -288,7 +288,7 @@ TYPED_TEST(QueryLaw, HoldsAfterHistories) {
   for (const auto& [name, history] : hard_histories<dimension>(Algorithm{})) {
     typename TestFixture::Boxes boxes = this->real(history.boxes);
     std::vector<Filter> filters(boxes.size());
-    const bool has_filters = this->dice_.one_in(2);
+    const bool has_filters = this->rng_.one_in(2);
     const auto index = make_box_index<dimension, typename TestFixture::Real>();
     const auto update = [&](const std::vector<BoxId>& changed) {
       index->update({.boxes = boxes,
@@ -303,7 +303,7 @@ TYPED_TEST(QueryLaw, HoldsAfterHistories) {
       for (std::size_t i = 0; i < step.changed.size(); ++i) {
         if (broadside::index(step.changed[i]) >= step.size) continue;
         boxes[broadside::index(step.changed[i])] = this->real(step.boxes[i]);
-        filters[broadside::index(step.changed[i])].category = this->dice_.one_in(2) ? 1 : 2;
+        filters[broadside::index(step.changed[i])].category = this->rng_.one_in(2) ? 1 : 2;
       }
       update(step.changed);
       ASSERT_FALSE(this->HasFailure()) << name;
@@ -315,13 +315,13 @@ TYPED_TEST(QueryLaw, HoldsAfterHistories) {
 TYPED_TEST(QueryLaw, HoldsAfterManySmallChanges) {
   constexpr int dimension = TestFixture::D;
   for (const int way : {0, 1, 2, 3}) {
-    Dice dice(5);
-    const auto anywhere = [&dice, way] {
+    Rng rng(5);
+    const auto anywhere = [&rng, way] {
       Box<dimension, typename TestFixture::Real> box;
       for (int axis = 0; axis < dimension; ++axis) {
-        box.min[axis] = way == 3 ? typename TestFixture::Real(dice.whole(0, 9)) : dice.between(0, 40);
+        box.min[axis] = way == 3 ? typename TestFixture::Real(rng.whole(0, 9)) : rng.between(0, 40);
         box.max[axis] =
-            box.min[axis] + (way == 3 ? typename TestFixture::Real(dice.whole(0, 1)) : dice.between(0, 3));
+            box.min[axis] + (way == 3 ? typename TestFixture::Real(rng.whole(0, 1)) : rng.between(0, 3));
       }
       return box;
     };
@@ -333,14 +333,14 @@ TYPED_TEST(QueryLaw, HoldsAfterManySmallChanges) {
       std::vector<BoxId> changed;
       // Whole regions empty and fill in the second way.
       for (std::size_t k = 0; k < boxes.size() / 10; ++k) {
-        const std::size_t i = way == 1 ? (frame * 97 + k) % boxes.size() : dice.below(boxes.size());
+        const std::size_t i = way == 1 ? (frame * 97 + k) % boxes.size() : rng.below(boxes.size());
         Box<dimension, typename TestFixture::Real>& box = boxes[i];
         changed.push_back(BoxId(i));
         if (way == 1) {
           box = is_present(box) ? absent_box<dimension, typename TestFixture::Real>() : anywhere();
         } else if (way == 2 && is_present(box)) {
-          const typename TestFixture::Real step = dice.between(-2, 2);
-          const int axis = dice.whole(0, dimension - 1);
+          const typename TestFixture::Real step = rng.between(-2, 2);
+          const int axis = rng.whole(0, dimension - 1);
           box.min[axis] += step;
           box.max[axis] += step;
         } else {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "dice.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -47,12 +47,12 @@ std::string first_difference(const std::vector<Pair>& found, const std::vector<P
 
 /// The pairs as a caller may list them: in no order, with the boxes of each in either one, some twice.
 std::vector<Pair> listed_somehow(std::vector<Pair> pairs) {
-  Dice dice(pairs.size());
+  Rng rng(pairs.size());
   for (std::size_t i = pairs.size(); i > 0; --i) {
-    if (dice.one_in(4)) pairs.push_back(pairs[i - 1]);
-    if (dice.one_in(2)) std::swap(pairs[i - 1].first, pairs[i - 1].second);
+    if (rng.one_in(4)) pairs.push_back(pairs[i - 1]);
+    if (rng.one_in(2)) std::swap(pairs[i - 1].first, pairs[i - 1].second);
   }
-  dice.shuffle(pairs);
+  rng.shuffle(pairs);
   return pairs;
 }
 

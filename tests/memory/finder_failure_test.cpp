@@ -18,9 +18,9 @@ namespace {
 /// Boxes to be searched, all of them or one part against the other, and their pairs.
 template <int D, typename Real>
 struct Search {
-  Search(std::size_t count, bool is_between, Dice& dice)
-      : boxes(lattice_boxes<D, Real>(count, dice)),
-        left_count(is_between && count > 1 ? 1 + dice.below(count - 1) : 0) {
+  Search(std::size_t count, bool is_between, Rng& rng)
+      : boxes(lattice_boxes<D, Real>(count, rng)),
+        left_count(is_between && count > 1 ? 1 + rng.below(count - 1) : 0) {
     for (std::size_t i = 0; i < count; ++i) {
       if (!is_present(boxes[i])) continue;
       for (std::size_t j = std::max(i + 1, left_count); j < count; ++j) {
@@ -88,7 +88,7 @@ class FinderFailure : public MemoryTest {
   template <int D, typename Real>
   void check(const std::vector<Spec>& specs, const std::vector<Workers>& all_workers) const {
     std::uint64_t failures = 0;
-    Dice dice(1);
+    Rng rng(1);
     for (const Spec& spec : specs) {
       for (const Workers& workers : all_workers) {
         const bool is_alone = workers.threads == 1;
@@ -100,7 +100,7 @@ class FinderFailure : public MemoryTest {
           return injector.failures() > 0;
         };
         {
-          const std::vector<Search<D, Real>> few = {{6, false, dice}, {41, false, dice}, {70, true, dice}};
+          const std::vector<Search<D, Real>> few = {{6, false, rng}, {41, false, rng}, {70, true, rng}};
           for (const FailureKind kind : {FailureKind::once, FailureKind::from_then_on}) {
             for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k = next_number(k, !is_alone)) {
             }
@@ -108,10 +108,10 @@ class FinderFailure : public MemoryTest {
           }
           for (std::uint64_t seed = 0; seed < random_histories(); ++seed) {
             std::vector<Search<D, Real>> searches;
-            for (std::size_t i = 2 + dice.below(5); i > 0; --i) {
+            for (std::size_t i = 2 + rng.below(5); i > 0; --i) {
               constexpr std::array<std::size_t, 5> most = {3, 30, 200, 1000, 3000};
-              const std::size_t count = dice.below(dice.one_of<std::size_t>(most));
-              searches.emplace_back(count, dice.one_in(3), dice);
+              const std::size_t count = rng.below(rng.one_of<std::size_t>(most));
+              searches.emplace_back(count, rng.one_in(3), rng);
             }
             run(searches, Injector(seed));
             ASSERT_EQ(text, "") << spec.text() << ", seed " << seed;

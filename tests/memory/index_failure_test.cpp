@@ -25,7 +25,7 @@ std::vector<BoxId> overlapping(const BoxIndex<D, Real>& index, const Box<D, Real
 /// What is wrong with an index of boxes that change; empty if nothing is.
 template <int D, typename Real>
 std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector) {
-  Dice dice(seed);
+  Rng rng(seed);
   const std::unique_ptr<BoxIndex<D, Real>> index = make_box_index<D, Real>();
   std::vector<Box<D, Real>> boxes;
   std::vector<Box<D, Real>> held;
@@ -33,11 +33,11 @@ std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector)
   everywhere.min.fill(-1);
   everywhere.max.fill(1e6F);
   for (int frame = 0; frame < 8; ++frame) {
-    boxes.resize(dice.below(most_boxes + 1), absent_box<D, Real>());
-    const std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(boxes.size(), dice);
+    boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
+    const std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(boxes.size(), rng);
     std::vector<BoxId> changed;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (!dice.one_in(frame % 2 == 0 ? 2 : 12)) continue;
+      if (!rng.one_in(frame % 2 == 0 ? 2 : 12)) continue;
       boxes[i] = others[i];
       changed.push_back(BoxId(i));
     }

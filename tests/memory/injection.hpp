@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <new>
 
-#include "dice.hpp"
 #include "failing_allocation.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 
@@ -24,7 +24,7 @@ class Injector {
   Injector(std::uint64_t number, FailureKind kind) : number_(number), kind_(kind) {}
 
   /// In about a third of the calls, one allocation fails or all from one on.
-  explicit Injector(std::uint64_t seed) : dice_(seed), is_random_(true) {}
+  explicit Injector(std::uint64_t seed) : rng_(seed), is_random_(true) {}
 
   /// Whether the call came to its end; false if it threw std::bad_alloc because an allocation failed.
   template <typename Call>
@@ -57,12 +57,12 @@ class Injector {
 
   void choose() {
     if (!is_random_) return;
-    number_ = dice_.one_in(3) ? dice_.below(usual_ + 3) : never;
-    if (dice_.one_in(2)) number_ /= 1 + dice_.below(8);
-    kind_ = dice_.one_in(2) ? FailureKind::once : FailureKind::from_then_on;
+    number_ = rng_.one_in(3) ? rng_.below(usual_ + 3) : never;
+    if (rng_.one_in(2)) number_ /= 1 + rng_.below(8);
+    kind_ = rng_.one_in(2) ? FailureKind::once : FailureKind::from_then_on;
   }
 
-  Dice dice_{0};
+  Rng rng_{0};
   bool is_random_ = false;
   std::uint64_t number_ = never;
   FailureKind kind_ = FailureKind::once;

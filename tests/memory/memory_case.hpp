@@ -12,7 +12,7 @@
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
 
-#include "dice.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 
@@ -42,19 +42,19 @@ std::vector<Spec> threaded_specs_of(const MemoryCase& memory_case);
 
 /// Boxes on a lattice, many of which overlap, touch or coincide; a few absent, a few large.
 template <int D, typename Real>
-std::vector<Box<D, Real>> lattice_boxes(std::size_t count, Dice& dice) {
+std::vector<Box<D, Real>> lattice_boxes(std::size_t count, Rng& rng) {
   int side = 4;
   for (std::size_t room = 1; room < count; room *= D == 2 ? 4 : 8) side *= 2;
   std::vector<Box<D, Real>> boxes(count);
   for (Box<D, Real>& box : boxes) {
-    if (dice.one_in(12)) {
+    if (rng.one_in(12)) {
       box = absent_box<D, Real>();
       continue;
     }
-    const int most = dice.one_in(20) ? side / 2 : 3;
+    const int most = rng.one_in(20) ? side / 2 : 3;
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(dice.whole(0, side)) / 2;
-      box.max[axis] = box.min[axis] + static_cast<Real>(dice.whole(0, most)) / 2;
+      box.min[axis] = static_cast<Real>(rng.whole(0, side)) / 2;
+      box.max[axis] = box.min[axis] + static_cast<Real>(rng.whole(0, most)) / 2;
     }
   }
   return boxes;

@@ -21,39 +21,39 @@ namespace broadside::laws {
 namespace {
 
 /// Few filters, so that many accept each other and many do not.
-Filter any_filter(Dice& dice) {
-  if (dice.one_in(3)) return {};
-  return {.category = dice.one_in(2) ? 1U : 2U,
-          .mask = dice.one_in(2) ? 1U : 3U,
-          .group = dice.one_in(4) ? dice.whole(-1, 1) : 0,
-          .is_static = dice.one_in(6)};
+Filter any_filter(Rng& rng) {
+  if (rng.one_in(3)) return {};
+  return {.category = rng.one_in(2) ? 1U : 2U,
+          .mask = rng.one_in(2) ? 1U : 3U,
+          .group = rng.one_in(4) ? rng.whole(-1, 1) : 0,
+          .is_static = rng.one_in(6)};
 }
 
 /// Frames in which boxes come, move and go, filters and ignored pairs change. Some come twice: as one that is
 /// handed in again because it has failed.
 template <int D, typename Real>
-std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t most_boxes, Dice& dice) {
+std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t most_boxes, Rng& rng) {
   std::vector<WholeFrame<D, Real>> frames;
   WholeFrame<D, Real> frame;
-  frame.boxes = lattice_boxes<D, Real>(dice.below(most_boxes + 1), dice);
+  frame.boxes = lattice_boxes<D, Real>(rng.below(most_boxes + 1), rng);
   std::vector<Filter> filters(most_boxes);
   std::vector<Pair> ignored;
-  bool has_filters = dice.one_in(3);
-  bool has_ignored = dice.one_in(2);
+  bool has_filters = rng.one_in(3);
+  bool has_ignored = rng.one_in(2);
   while (frames.size() < count) {
-    if (dice.one_in(4)) frame.boxes.resize(dice.below(most_boxes + 1), absent_box<D, Real>());
-    std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(frame.boxes.size(), dice);
-    const std::size_t part = dice.one_in(3) ? 1 : dice.one_in(2) ? 4 : 20;
+    if (rng.one_in(4)) frame.boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
+    std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(frame.boxes.size(), rng);
+    const std::size_t part = rng.one_in(3) ? 1 : rng.one_in(2) ? 4 : 20;
     for (std::size_t i = 0; i < others.size(); ++i) {
-      if (dice.one_in(part)) frame.boxes[i] = others[i];
+      if (rng.one_in(part)) frame.boxes[i] = others[i];
     }
-    if (dice.one_in(8)) has_filters = !has_filters;
-    if (dice.one_in(8)) has_ignored = !has_ignored;
-    for (std::size_t i = dice.below(4); i > 0; --i) filters[dice.below(most_boxes)] = any_filter(dice);
-    for (std::size_t i = dice.below(6); i > 0; --i) {
+    if (rng.one_in(8)) has_filters = !has_filters;
+    if (rng.one_in(8)) has_ignored = !has_ignored;
+    for (std::size_t i = rng.below(4); i > 0; --i) filters[rng.below(most_boxes)] = any_filter(rng);
+    for (std::size_t i = rng.below(6); i > 0; --i) {
       const std::size_t near = std::min<std::size_t>(most_boxes, 12);
-      const auto a = BoxId(dice.below(near));
-      const auto b = BoxId(dice.below(near));
+      const auto a = BoxId(rng.below(near));
+      const auto b = BoxId(rng.below(near));
       const Pair pair{std::min(a, b), std::max(a, b)};
       if (a == b) continue;
       const auto at = std::ranges::lower_bound(ignored, pair);
@@ -68,7 +68,7 @@ std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t mo
     frame.ignored.reset();
     if (has_ignored) frame.ignored = ignored;
     frames.push_back(frame);
-    if (dice.one_in(3)) frames.push_back(frame);
+    if (rng.one_in(3)) frames.push_back(frame);
   }
   return frames;
 }
@@ -100,7 +100,7 @@ class TrackerFailure : public MemoryTest {
   template <int D, typename Real>
   void check(const std::vector<Spec>& specs, const std::vector<Workers>& all_workers) {
     std::uint64_t failures = 0;
-    Dice dice(2);
+    Rng rng(2);
     for (const Spec& spec : specs) {
       for (const Workers& workers : all_workers) {
         const bool is_alone = workers.threads == 1;
@@ -112,7 +112,7 @@ class TrackerFailure : public MemoryTest {
           return injector.failures() > 0;
         };
         {
-          const auto few = random_frames<D, Real>(7, 12, dice);
+          const auto few = random_frames<D, Real>(7, 12, rng);
           for (const FailureKind kind : {FailureKind::once, FailureKind::from_then_on}) {
             for (std::uint64_t k = 0; text.empty() && run(few, {k, kind}); k = next_number(k, !is_alone)) {
             }
@@ -121,7 +121,7 @@ class TrackerFailure : public MemoryTest {
         }
         for (std::uint64_t seed = 0; seed < random_histories(); ++seed) {
           constexpr std::array<std::size_t, 6> most = {3, 20, 20, 60, 200, 700};
-          const auto frames = random_frames<D, Real>(10, dice.one_of<std::size_t>(most), dice);
+          const auto frames = random_frames<D, Real>(10, rng.one_of<std::size_t>(most), rng);
           run(frames, Injector(seed));
           ASSERT_EQ(text, "") << spec.text() << ", seed " << seed;
         }

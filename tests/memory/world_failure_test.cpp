@@ -26,19 +26,19 @@ template <int D, typename Real>
 class Model {
  public:
   Model(const WorldOptions& options, std::size_t most_boxes, std::uint64_t seed, Injector& injector)
-      : dice_(seed), most_boxes_(most_boxes), injector_(injector) {
+      : rng_(seed), most_boxes_(most_boxes), injector_(injector) {
     while (!injector_.attempt([&] { world_.emplace(options); })) {
     }
   }
 
   /// Does something to the world. What is wrong then; empty if nothing is.
   std::string act() {
-    switch (dice_.below(15)) {
+    switch (rng_.below(15)) {
       case 0:
       case 1:
-        return add(1 + dice_.below(2));
+        return add(1 + rng_.below(2));
       case 2:
-        return add(dice_.below(most_boxes_ + 1));
+        return add(rng_.below(most_boxes_ + 1));
       case 3:
       case 4:
         return move();
@@ -93,19 +93,19 @@ class Model {
 
   Box<D, Real> any_box() {
     for (;;) {
-      const Box<D, Real> box = lattice_boxes<D, Real>(std::max<std::size_t>(most_boxes_, 1), dice_).front();
+      const Box<D, Real> box = lattice_boxes<D, Real>(std::max<std::size_t>(most_boxes_, 1), rng_).front();
       if (is_present(box)) return box;
     }
   }
 
   Handle any_handle() {
-    return std::next(known_.live.begin(), std::ptrdiff_t(dice_.below(known_.live.size())))->first;
+    return std::next(known_.live.begin(), std::ptrdiff_t(rng_.below(known_.live.size())))->first;
   }
 
   std::vector<Handle> some_handles() {
     std::set<Handle> handles;
     if (known_.live.empty()) return {};
-    for (std::size_t i = dice_.one_in(3) ? dice_.below(known_.live.size() + 1) : 1; i > 0; --i)
+    for (std::size_t i = rng_.one_in(3) ? rng_.below(known_.live.size() + 1) : 1; i > 0; --i)
       handles.insert(any_handle());
     return {handles.begin(), handles.end()};
   }
@@ -115,10 +115,9 @@ class Model {
   }
 
   Filter any_filter() {
-    if (dice_.one_in(2)) return {};
-    return {.category = dice_.one_in(2) ? 1U : 2U,
-            .mask = dice_.one_in(2) ? 1U : 3U,
-            .is_static = dice_.one_in(4)};
+    if (rng_.one_in(2)) return {};
+    return {
+        .category = rng_.one_in(2) ? 1U : 2U, .mask = rng_.one_in(2) ? 1U : 3U, .is_static = rng_.one_in(4)};
   }
 
   bool attempt(const auto& call) {
@@ -139,10 +138,10 @@ class Model {
   std::string add(std::size_t count) {
     std::vector<Box<D, Real>> boxes(count);
     for (Box<D, Real>& box : boxes) box = any_box();
-    std::vector<BoxOptions> options(dice_.one_in(2) ? count : 0);
+    std::vector<BoxOptions> options(rng_.one_in(2) ? count : 0);
     for (BoxOptions& its : options) its.filter = any_filter();
     std::vector<Handle> handles(count);
-    if (count == 1 && dice_.one_in(2)) {
+    if (count == 1 && rng_.one_in(2)) {
       if (!attempt([&] { handles[0] = world_->add(boxes[0], options.empty() ? BoxOptions{} : options[0]); }))
         return check_size();
     } else if (!attempt([&] { world_->add(boxes, handles, options); })) {
@@ -161,7 +160,7 @@ class Model {
     if (handles.empty()) return "";
     std::vector<Box<D, Real>> boxes(handles.size());
     for (Box<D, Real>& box : boxes) box = any_box();
-    const bool is_one = handles.size() == 1 && dice_.one_in(2);
+    const bool is_one = handles.size() == 1 && rng_.one_in(2);
     if (attempt([&] { is_one ? world_->move(handles[0], boxes[0]) : world_->move(handles, boxes); })) {
       for (std::size_t i = 0; i < handles.size(); ++i) known_.live[handles[i]].box = boxes[i];
     }
@@ -171,7 +170,7 @@ class Model {
   std::string remove() {
     const std::vector<Handle> handles = some_handles();
     if (handles.empty()) return "";
-    const bool is_one = handles.size() == 1 && dice_.one_in(2);
+    const bool is_one = handles.size() == 1 && rng_.one_in(2);
     if (!attempt([&] { is_one ? world_->remove(handles[0]) : world_->remove(handles); })) return check_size();
     for (const Handle handle : handles) {
       known_.live.erase(handle);
@@ -194,7 +193,7 @@ class Model {
     const Handle a = any_handle();
     const Handle b = any_handle();
     if (a == b) return "";
-    const bool is_new = dice_.one_in(2);
+    const bool is_new = rng_.one_in(2);
     if (attempt([&] { is_new ? world_->ignore(a, b) : world_->unignore(a, b); })) {
       if (is_new)
         known_.ignored.insert(ordered(a, b));
@@ -207,8 +206,8 @@ class Model {
 
   /// The predicate depends on the pair alone, so that it does not matter when it is asked.
   std::string change_predicate() {
-    const std::uint32_t phase = static_cast<std::uint32_t>(dice_.below(4));
-    if (dice_.one_in(2)) {
+    const std::uint32_t phase = static_cast<std::uint32_t>(rng_.below(4));
+    if (rng_.one_in(2)) {
       attempt([&] { world_->refilter(); });
       return "";
     }
@@ -232,7 +231,7 @@ class Model {
 
   /// Asks for what can be asked between updates, and for memory to be given back.
   std::string look_back() {
-    if (dice_.one_in(3)) attempt([&] { world_->shrink_to_fit(); });
+    if (rng_.one_in(3)) attempt([&] { world_->shrink_to_fit(); });
     if (attempt([&] { world_->pairs(); })) {
       if (std::string text = compare("the pairs", world_->pairs(), known_.pairs); !text.empty()) return text;
     }
@@ -247,7 +246,7 @@ class Model {
   /// Keeps what there is, or restores what was kept. That must be right after failed updates as well; whether
   /// restore() itself may fail is tested elsewhere.
   std::string go_back() {
-    if (!kept_ || kept_->known.phase != known_.phase || dice_.one_in(2)) {
+    if (!kept_ || kept_->known.phase != known_.phase || rng_.one_in(2)) {
       kept_ = Kept{known_, world_->snapshot()};
       return "";
     }
@@ -286,7 +285,7 @@ class Model {
            std::to_string(expected.size()) + " expected";
   }
 
-  Dice dice_;
+  Rng rng_;
   std::size_t most_boxes_;
   Injector& injector_;
   std::optional<World<D, Real>> world_;

@@ -1,4 +1,4 @@
-// Parallel: work shared among lanes gives what one lane gives.
+// Parallel: work shared among workers gives what one worker gives.
 #include "core/parallel.hpp"
 
 #include <atomic>
@@ -49,16 +49,16 @@ class Sloth final : public Executor {
 TEST(Parallel, HasALaneForEachThreadThatIsWorthIt) {
   Team team;
   Parallel parallel;
-  const auto lanes = [&](std::size_t threads, std::size_t boxes) {
+  const auto workers = [&](std::size_t threads, std::size_t boxes) {
     parallel.start({.threads = threads, .executor = &team, .boxes_per_thread = 100}, boxes);
-    return parallel.lanes();
+    return parallel.workers();
   };
-  EXPECT_EQ(lanes(1, 1'000'000), 1u);
-  EXPECT_EQ(lanes(4, 1'000'000), 4u);
-  EXPECT_EQ(lanes(0, 1'000'000), team.threads());
-  EXPECT_EQ(lanes(4, 399), 3u);
-  EXPECT_EQ(lanes(4, 199), 1u);
-  EXPECT_EQ(lanes(4, 0), 1u);
+  EXPECT_EQ(workers(1, 1'000'000), 1u);
+  EXPECT_EQ(workers(4, 1'000'000), 4u);
+  EXPECT_EQ(workers(0, 1'000'000), team.threads());
+  EXPECT_EQ(workers(4, 399), 3u);
+  EXPECT_EQ(workers(4, 199), 1u);
+  EXPECT_EQ(workers(4, 0), 1u);
 }
 
 TEST(Parallel, CoversARangeOnce) {
@@ -68,8 +68,8 @@ TEST(Parallel, CoversARangeOnce) {
     parallel.start(with(team, threads), 1000);
     for (const std::size_t count : {0, 1, 3, 17, 1000}) {
       std::vector<std::atomic<int>> visits(count);
-      parallel.for_ranges(count, [&](Range range, std::size_t lane) {
-        EXPECT_LT(lane, parallel.lanes());
+      parallel.for_ranges(count, [&](Range range, std::size_t worker) {
+        EXPECT_LT(worker, parallel.workers());
         for (std::size_t i = range.begin; i < range.end; ++i) ++visits[i];
       });
       for (const std::atomic<int>& visit : visits) EXPECT_EQ(visit, 1);

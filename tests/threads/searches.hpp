@@ -9,20 +9,20 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/sinks.hpp"
 
-#include "dice.hpp"
 #include "found.hpp"
 #include "law_case.hpp"
+#include "rng.hpp"
 
 namespace broadside::laws {
 
 template <int D>
 std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_t seed = 1) {
-  Dice dice(seed);
+  Rng rng(seed);
   std::vector<Box<D>> boxes(count);
   for (Box<D>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = dice.between(0, world);
-      box.max[axis] = box.min[axis] + dice.between(0, 3);
+      box.min[axis] = rng.between(0, world);
+      box.max[axis] = box.min[axis] + rng.between(0, 3);
     }
   }
   return boxes;

@@ -12,11 +12,11 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
-#include "dice.hpp"
 #include "executors.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
 #include "law_sinks.hpp"
+#include "rng.hpp"
 #include "searches.hpp"
 #include "whole_frames.hpp"
 
@@ -88,13 +88,13 @@ TEST_P(ThreadLaw, FindsTheSamePairsOfDoublesInTheSameOrder) {
   in_dimension([&]<int D>() {
     const auto alone = make_finder<D, double>(algorithm(), spec());
     const auto shared = make_finder<D, double>(algorithm(), spec());
-    Dice dice(5);
+    Rng rng(5);
     for (const double shift : {0.0, 1e9}) {
       std::vector<Box<D, double>> boxes(2000);
       for (Box<D, double>& box : boxes) {
         for (int axis = 0; axis < D; ++axis) {
-          box.min[axis] = shift + (dice.one_in(3) ? 1e7 : 0) + dice.between(0, 30);
-          box.max[axis] = box.min[axis] + dice.between(0, 2);
+          box.min[axis] = shift + (rng.one_in(3) ? 1e7 : 0) + rng.between(0, 30);
+          box.max[axis] = box.min[axis] + rng.between(0, 2);
         }
       }
       boxes[3] = absent_box<D, double>();

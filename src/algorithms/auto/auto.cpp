@@ -16,7 +16,7 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/outline.hpp"
 
-#include "algorithms/auto/glance.hpp"
+#include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_join.hpp"
 #include "algorithms/descriptions.hpp"
 #include "core/parallel.hpp"
@@ -27,7 +27,7 @@
 #include "interface/follow_costs.hpp"
 #include "interface/yielding.hpp"
 
-namespace broadside::own {
+namespace broadside::algorithms {
 namespace {
 
 /// Up to here comparing all costs less than any order.
@@ -177,7 +177,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
 
   Choice choose(std::span<const Box<D>> boxes) {
     if (boxes.size() <= few_boxes<D>) return Choice::few;
-    if (boxes.size() <= boxes_for_cells) return choose_at_a_glance(boxes);
+    if (boxes.size() <= boxes_for_cells) return choose_by_estimate(boxes);
     sample_.take(boxes, most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
@@ -191,29 +191,29 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     for (int axis = 0; axis < D; ++axis)
       reach[axis] =
           static_cast<float>(double{near} * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-    glance_.take(boxes, most_compared);
-    clustering_ = glance_.clustering(reach);
+    estimate_.take(boxes, most_compared);
+    clustering_ = estimate_.clustering(reach);
     return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
   }
 
   /// Chooses for so few boxes that to sort a sample of them would take a good part of the time.
-  Choice choose_at_a_glance(std::span<const Box<D>> boxes) {
+  Choice choose_by_estimate(std::span<const Box<D>> boxes) {
     const std::size_t size = boxes.size();
     const auto half = static_cast<double>(size) / 2;
-    glance_.take(boxes, size < 2 * boxes_of_a_line ? 32 : 48);
-    glance_.compare();
-    overlaps_ = half * glance_.overlap_on_all();
-    if (glance_.overlap_on_all() >= most_pairs)
+    estimate_.take(boxes, size < 2 * boxes_of_a_line ? 32 : 48);
+    estimate_.compare();
+    overlaps_ = half * estimate_.overlap_on_all();
+    if (estimate_.overlap_on_all() >= most_pairs)
       return size <= few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
     if (size < boxes_of_a_line) return Choice::tree;
-    std::array<double, D> overlap = glance_.overlap();
+    std::array<double, D> overlap = estimate_.overlap();
     std::ranges::sort(overlap);
     tests_ = half * overlap[0];
     if (overlap[1] >= in_line && tests_ <= tests_of_a_line) return Choice::one_axis;
     if (!shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
-    std::array<float, D> reach = glance_.range();
+    std::array<float, D> reach = estimate_.range();
     for (float& distance : reach) distance *= near;
-    clustering_ = glance_.clustering(reach);
+    clustering_ = estimate_.clustering(reach);
     return clustering_ >= clustered<D> ? Choice::clusters : Choice::shapes;
   }
 
@@ -222,7 +222,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (overlaps_ >= most_overlaps_for_their_shape) return false;
     if (D == 3 && size >= flat_boxes_for_cells && most_on_an_axis >= flat) return true;
     if (size < most_uneven_boxes_for_cells) return false;
-    const core::Sides sides = core::look_at_sides<D>(boxes);
+    const core::ExtentStats sides = core::extent_stats<D>(boxes);
     if (sides.unevenness >= most_uneven_boxes || (D == 3 && sides.unevenness <= of_one_size)) return true;
     return (size >= long_boxes_for_cells<D> && sides.longest_over_shortest >= long_boxes) ||
            (size >= uneven_boxes_for_cells<D> && sides.unevenness >= uneven_boxes);
@@ -247,7 +247,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     return count * density * sample.mean_extent;
   }
 
-  core::Glance<D> glance_;
+  core::OverlapEstimate<D> estimate_;
   core::Sample<D> sample_;
   std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
@@ -310,4 +310,4 @@ Algorithm automatic() {
   };
 }
 
-}  // namespace broadside::own
+}  // namespace broadside::algorithms

@@ -14,7 +14,7 @@
 #include "kernels/block_pool.hpp"
 #include "kernels/moved.hpp"
 
-namespace broadside::own {
+namespace broadside::algorithms {
 
 template <int D>
 class HierarchicalCells {
@@ -60,4 +60,4 @@ class HierarchicalCells {
   std::size_t boxes_ = 0;
 };
 
-}  // namespace broadside::own
+}  // namespace broadside::algorithms

@@ -32,7 +32,7 @@
 #include "kernels/run.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::own {
+namespace broadside::algorithms {
 namespace {
 
 template <int D>
@@ -55,18 +55,18 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     parallel_.start(this->workers(), boxes.size());
-    sweeps_.resize(std::max(sweeps_.size(), parallel_.lanes()));
+    sweeps_.resize(std::max(sweeps_.size(), parallel_.workers()));
     choose_cells(boxes);
     count_boxes(boxes);
     scatter(boxes);
     swept_to_.resize(layout_.slabs());
-    const auto sweep = [&](core::Range slabs, std::size_t lane, PairSink& sink) {
+    const auto sweep = [&](core::Range slabs, std::size_t worker, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
         const BoxesByCell<D> cells{entries_, begin_};
         const Statistics of_slab =
-            sweeps_[lane].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
-        swept_to_[slab] = sweeps_[lane].swept_to();
+            sweeps_[worker].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
+        swept_to_[slab] = sweeps_[worker].swept_to();
         statistics.tests += of_slab.tests;
         statistics.references += of_slab.references;
       }
@@ -202,7 +202,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
   std::vector<std::uint64_t> next_;
   std::vector<CellEntry<D>> entries_;
   core::Parallel parallel_;
-  std::vector<GridSweep<D>> sweeps_;   // by lane
+  std::vector<GridSweep<D>> sweeps_;   // by worker
   std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
@@ -259,4 +259,4 @@ std::unique_ptr<core::CandidateTracker<D>> grid_candidates() {
 template std::unique_ptr<core::CandidateTracker<2>> grid_candidates();
 template std::unique_ptr<core::CandidateTracker<3>> grid_candidates();
 
-}  // namespace broadside::own
+}  // namespace broadside::algorithms

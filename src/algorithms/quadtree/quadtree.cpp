@@ -33,11 +33,11 @@
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
-namespace broadside::own {
+namespace broadside::algorithms {
 namespace {
 
 /// One thread splits nodes until each thread has this many.
-constexpr std::size_t parts_per_lane = 3;
+constexpr std::size_t parts_per_worker = 3;
 
 /// Leaves of this many boxes: a sweep of so few costs about what a further split would.
 template <int D>
@@ -54,7 +54,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
   using Split = QuadtreeSplit<D>;
 
   /// What one thread searches with.
-  struct Lane {
+  struct Worker {
     QuadtreeStack<D> stack;
     kernels::RunBuffer<D> run;
     kernels::RunBuffer<D> kept_run;
@@ -70,26 +70,27 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     parallel_.start(this->workers(), boxes.size());
-    lanes_.resize(std::max(lanes_.size(), parallel_.lanes()));
+    workers_.resize(std::max(workers_.size(), parallel_.workers()));
     sample_.take(boxes);
     sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
-    Lane& first = lanes_[0];
+    Worker& first = workers_[0];
     first.statistics = {};
     first.stack.references.clear();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
       first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
-    if (parallel_.lanes() == 1) {
+    if (parallel_.workers() == 1) {
       search(first, 0, first.stack.references.size(), pairs);
       this->count(first.statistics);
       return;
     }
     parts_.clear();
     part_references_.clear();
-    expand(first, 0, first.stack.references.size(), boxes.size() / (parts_per_lane * parallel_.lanes()));
-    const auto search_parts = [&](core::Range parts, std::size_t lane, PairSink& sink) {
-      lanes_[lane].statistics = {};
-      for (std::size_t part = parts.begin; part < parts.end; ++part) search_part(lanes_[lane], part, sink);
-      return lanes_[lane].statistics;
+    expand(first, 0, first.stack.references.size(), boxes.size() / (parts_per_worker * parallel_.workers()));
+    const auto search_parts = [&](core::Range parts, std::size_t worker, PairSink& sink) {
+      workers_[worker].statistics = {};
+      for (std::size_t part = parts.begin; part < parts.end; ++part)
+        search_part(workers_[worker], part, sink);
+      return workers_[worker].statistics;
     };
     this->count(parallel_.search(parts_.size(), pairs, search_parts));
   }
@@ -99,17 +100,17 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     sample_.take(boxes);
     const std::array<int, D> axes = sample_.axes_by_overlap();
     sorted_boxes_ = sorted_.sort(boxes, axes);
-    lanes_.resize(std::max<std::size_t>(lanes_.size(), 1));
-    Lane& lane = lanes_[0];
-    lane.stack.references.clear();
-    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) lane.stack.references.push_back({i, 0});
+    workers_.resize(std::max<std::size_t>(workers_.size(), 1));
+    Worker& worker = workers_[0];
+    worker.stack.references.clear();
+    for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) worker.stack.references.push_back({i, 0});
     Outline<D> outline;
     outline.kind = "nodes";
     Box<D> region;
     region.min.fill(-std::numeric_limits<float>::infinity());
     region.max.fill(std::numeric_limits<float>::infinity());
     const std::size_t leaves =
-        lay_out(lane, 0, lane.stack.references.size(), {axes, region}, 0, outline.levels);
+        lay_out(worker, 0, worker.stack.references.size(), {axes, region}, 0, outline.levels);
     std::size_t nodes = 0;
     for (const std::vector<Box<D>>& level : outline.levels) nodes += level.size();
     outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
@@ -124,15 +125,15 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
   };
 
   /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
-  std::size_t lay_out(Lane& lane, std::size_t begin, std::size_t end, const Region& region, std::size_t depth,
-                      std::vector<std::vector<Box<D>>>& levels) const {
+  std::size_t lay_out(Worker& worker, std::size_t begin, std::size_t end, const Region& region,
+                      std::size_t depth, std::vector<std::vector<Box<D>>>& levels) const {
     if (levels.size() == depth) levels.emplace_back();
     levels[depth].push_back(region.box);
     Split split;
-    if (end - begin < 2 || end - begin <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split))
+    if (end - begin < 2 || end - begin <= capacity_ || !worker.stack.split(sorted_boxes_, begin, end, split))
       return 1;
-    const std::size_t top = lane.stack.references.size();
-    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    const std::size_t top = worker.stack.references.size();
+    worker.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t leaves = 0;
     std::size_t first = top;
     for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
@@ -141,102 +142,104 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
         const int axis = region.axes[split.axes[at]];
         ((child >> at & 1U) != 0 ? part.box.min : part.box.max)[axis] = split.at[split.axes[at]];
       }
-      leaves += lay_out(lane, first, first + split.sizes[child], part, depth + 1, levels);
+      leaves += lay_out(worker, first, first + split.sizes[child], part, depth + 1, levels);
       first += split.sizes[child];
     }
-    lane.stack.references.resize(top);
+    worker.stack.references.resize(top);
     return leaves;
   }
 
   /// Makes parts of the node and those below it, in the order in which search() would meet them.
-  void expand(Lane& lane, std::size_t begin, std::size_t end, std::size_t largest) {
+  void expand(Worker& worker, std::size_t begin, std::size_t end, std::size_t largest) {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
-    if (count <= std::max(capacity_, largest) || !lane.stack.split(sorted_boxes_, begin, end, split)) {
-      copy(lane, begin, end, [](std::size_t) { return true; });
+    if (count <= std::max(capacity_, largest) || !worker.stack.split(sorted_boxes_, begin, end, split)) {
+      copy(worker, begin, end, [](std::size_t) { return true; });
       parts_.push_back({part_references_.size(), 0});
       return;
     }
-    if (lane.stack.kept_count > 0) {
-      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] == 0; });
-      copy(lane, begin, end, [&](std::size_t i) { return lane.stack.children[i] != 0; });
-      parts_.push_back({part_references_.size(), lane.stack.kept_count});
+    if (worker.stack.kept_count > 0) {
+      copy(worker, begin, end, [&](std::size_t i) { return worker.stack.children[i] == 0; });
+      copy(worker, begin, end, [&](std::size_t i) { return worker.stack.children[i] != 0; });
+      parts_.push_back({part_references_.size(), worker.stack.kept_count});
     }
-    const std::size_t top = lane.stack.references.size();
-    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    const std::size_t top = worker.stack.references.size();
+    worker.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t child = top;
     for (const std::size_t size : split.sizes) {
-      expand(lane, child, child + size, largest);
+      expand(worker, child, child + size, largest);
       child += size;
     }
-    lane.stack.references.resize(top);
+    worker.stack.references.resize(top);
   }
 
   /// Appends those of a node's references whose places in the node are `wanted` to the parts'.
   template <typename Wanted>
-  void copy(const Lane& lane, std::size_t begin, std::size_t end, Wanted wanted) {
+  void copy(const Worker& worker, std::size_t begin, std::size_t end, Wanted wanted) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (wanted(i - begin)) part_references_.push_back(lane.stack.references[i]);
+      if (wanted(i - begin)) part_references_.push_back(worker.stack.references[i]);
     }
   }
 
-  void search_part(Lane& lane, std::size_t number, PairSink& pairs) const {
+  void search_part(Worker& worker, std::size_t number, PairSink& pairs) const {
     const std::size_t begin = number == 0 ? 0 : parts_[number - 1].end;
     const std::span<const QuadtreeReference> references =
         std::span(part_references_).subspan(begin, parts_[number].end - begin);
-    lane.stack.references.assign(references.begin(), references.end());
+    worker.stack.references.assign(references.begin(), references.end());
     if (parts_[number].kept_count == 0) {
-      search(lane, 0, references.size(), pairs);
+      search(worker, 0, references.size(), pairs);
       return;
     }
-    lane.stack.children.assign(references.size(), 1);
-    std::fill_n(lane.stack.children.begin(), parts_[number].kept_count, std::uint8_t{0});
-    sweep_kept(lane, 0, references.size(), pairs);
+    worker.stack.children.assign(references.size(), 1);
+    std::fill_n(worker.stack.children.begin(), parts_[number].kept_count, std::uint8_t{0});
+    sweep_kept(worker, 0, references.size(), pairs);
   }
 
   /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
   /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
-  void search(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
+  void search(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
-    if (count <= capacity_ || !lane.stack.split(sorted_boxes_, begin, end, split)) {
-      lane.statistics.references += count;
-      gather(lane, begin, end, lane.run, [](std::size_t) { return true; });
-      lane.statistics.tests += kernels::sweep(lane.run.view(), pairs);
+    if (count <= capacity_ || !worker.stack.split(sorted_boxes_, begin, end, split)) {
+      worker.statistics.references += count;
+      gather(worker, begin, end, worker.run, [](std::size_t) { return true; });
+      worker.statistics.tests += kernels::sweep(worker.run.view(), pairs);
       return;
     }
-    if (lane.stack.kept_count > 0) sweep_kept(lane, begin, end, pairs);
-    const std::size_t top = lane.stack.references.size();
-    lane.stack.push_children(sorted_boxes_, begin, end, split);
+    if (worker.stack.kept_count > 0) sweep_kept(worker, begin, end, pairs);
+    const std::size_t top = worker.stack.references.size();
+    worker.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t child = top;
     for (const std::size_t size : split.sizes) {
-      search(lane, child, child + size, pairs);
+      search(worker, child, child + size, pairs);
       child += size;
     }
-    lane.stack.references.resize(top);
+    worker.stack.references.resize(top);
   }
 
   /// Sweeps the boxes kept at a node among themselves and against the node's others.
-  void sweep_kept(Lane& lane, std::size_t begin, std::size_t end, PairSink& pairs) const {
-    gather(lane, begin, end, lane.kept_run, [&lane](std::size_t i) { return lane.stack.children[i] == 0; });
-    gather(lane, begin, end, lane.run, [&lane](std::size_t i) { return lane.stack.children[i] != 0; });
-    lane.statistics.references += lane.kept_run.size();
-    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), pairs);
-    lane.statistics.tests += kernels::sweep(lane.kept_run.view(), lane.run.view(), pairs);
+  void sweep_kept(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
+    gather(worker, begin, end, worker.kept_run,
+           [&worker](std::size_t i) { return worker.stack.children[i] == 0; });
+    gather(worker, begin, end, worker.run,
+           [&worker](std::size_t i) { return worker.stack.children[i] != 0; });
+    worker.statistics.references += worker.kept_run.size();
+    worker.statistics.tests += kernels::sweep(worker.kept_run.view(), pairs);
+    worker.statistics.tests += kernels::sweep(worker.kept_run.view(), worker.run.view(), pairs);
   }
 
   /// Fills `run` with those of the node's references whose places in the node are `wanted`.
   template <typename Wanted>
-  void gather(const Lane& lane, std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run,
+  void gather(const Worker& worker, std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run,
               Wanted wanted) const {
     run.clear();
     run.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       if (!wanted(i - begin)) continue;
-      const core::SortedBox<D>& sorted = sorted_boxes_[lane.stack.references[i].place];
-      run.append(sorted.box, sorted.id, lane.stack.references[i].apart);
+      const core::SortedBox<D>& sorted = sorted_boxes_[worker.stack.references[i].place];
+      run.append(sorted.box, sorted.id, worker.stack.references[i].apart);
     }
   }
 
@@ -246,7 +249,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
   core::SortedBoxes<D> sorted_;
   std::span<const core::SortedBox<D>> sorted_boxes_;
   core::Parallel parallel_;
-  std::vector<Lane> lanes_;
+  std::vector<Worker> workers_;
   std::vector<Part> parts_;
   std::vector<QuadtreeReference> part_references_;
 };
@@ -292,4 +295,4 @@ Algorithm quadtree() {
   };
 }
 
-}  // namespace broadside::own
+}  // namespace broadside::algorithms

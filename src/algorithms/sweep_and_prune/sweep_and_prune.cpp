@@ -31,7 +31,7 @@
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::own {
+namespace broadside::algorithms {
 namespace {
 
 /// What filing a box once more costs, in tests of two boxes.
@@ -61,7 +61,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     this->set_yielded(false);
     parallel_.start(this->workers(), boxes.size());
-    runs_.resize(std::max(runs_.size(), parallel_.lanes()));
+    runs_.resize(std::max(runs_.size(), parallel_.workers()));
     const std::array<int, D> axes = choose_axes(boxes);
     const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
     if (borders_.empty())
@@ -167,11 +167,11 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
           stripes_.append(stripe, static_cast<std::uint32_t>(i), number);
       }
     });
-    const auto sweep = [&](core::Range stripes, std::size_t lane, PairSink& sink) {
+    const auto sweep = [&](core::Range stripes, std::size_t worker, PairSink& sink) {
       Statistics statistics;
       for (std::size_t stripe = stripes.begin; stripe < stripes.end; ++stripe) {
         const std::span<const std::uint32_t> list = stripes_.list(stripe);
-        kernels::RunBuffer<D>& run = runs_[lane];
+        kernels::RunBuffer<D>& run = runs_[worker];
         run.clear();
         run.reserve(list.size());
         for (const std::uint32_t i : list) {
@@ -202,7 +202,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
   std::vector<Place> places_;
   core::CellLists stripes_;
   core::Parallel parallel_;
-  std::vector<kernels::RunBuffer<D>> runs_;  // by lane
+  std::vector<kernels::RunBuffer<D>> runs_;  // by worker
 };
 
 template <int D>
@@ -248,4 +248,4 @@ Algorithm sweep_and_prune() {
   };
 }
 
-}  // namespace broadside::own
+}  // namespace broadside::algorithms

@@ -41,11 +41,11 @@ void expect_to_count_without_keeping() {
     if (algorithm.kind != AlgorithmKind::own) continue;
     SCOPED_TRACE(std::string(algorithm.name) + ", " + std::to_string(dimension(boxes)) + "D, " +
                  std::string(name(precision(boxes))));
-    const Contender contender{&algorithm, {algorithm.name, {}}};
+    const Entry entry{&algorithm, {algorithm.name, {}}};
     for (const AnyBoxes* const set : {&points, &boxes}) {
-      expect_little_memory(crowd * (crowd - 1) / 2, [&](PairSink& pairs) { join(*set, contender, pairs); });
+      expect_little_memory(crowd * (crowd - 1) / 2, [&](PairSink& pairs) { join(*set, entry, pairs); });
     }
-    expect_little_memory(crowd * crowd, [&](PairSink& pairs) { join(points, boxes, contender, pairs); });
+    expect_little_memory(crowd * crowd, [&](PairSink& pairs) { join(points, boxes, entry, pairs); });
   }
 }
 

@@ -48,9 +48,9 @@ class Blind final : public PairFinder<2> {
   void find_valid(std::span<const Box2>, PairSink&) override {}
 };
 
-std::vector<std::string> texts(const std::vector<Contender>& contenders) {
+std::vector<std::string> texts(const std::vector<Entry>& entries) {
   std::vector<std::string> specs;
-  for (const Contender& contender : contenders) specs.push_back(contender.spec.text());
+  for (const Entry& entry : entries) specs.push_back(entry.spec.text());
   return specs;
 }
 
@@ -154,9 +154,9 @@ TEST(MeasureFind, RefusesPairsOfFloatsForBoxesOfDoubles) {
   // Two boxes that only doubles tell apart: what finds them in float is wrong.
   const std::vector<History<2, double>> inputs = {{{{{0, 0}, {1, 1}}, {{1 + 1e-12, 0}, {2, 1}}}, {}}};
   const Catalogue catalogue;
-  const auto contenders = catalogue.select("grid");
+  const auto entries = catalogue.select("grid");
   const Case of{.scene = "two", .parameters = {}, .seeds = {1}, .dimension = 2, .boxes = 2};
-  const CaseResult result = measure_find<2, double>(of, inputs, {contenders, catalogue.algorithms(), {}, {}});
+  const CaseResult result = measure_find<2, double>(of, inputs, {entries, catalogue.algorithms(), {}, {}});
   EXPECT_EQ(result.measurements[0].outcome, Outcome::verified);
   EXPECT_EQ(result.measurements[0].pairs, 0u);
   EXPECT_THAT(result.floor_ms, IsEmpty());

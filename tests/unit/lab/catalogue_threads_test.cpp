@@ -1,4 +1,4 @@
-// Contenders with several numbers of threads.
+// Entries with several numbers of threads.
 #include <array>
 #include <string>
 #include <vector>
@@ -15,24 +15,24 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<std::string> specs_of(const std::vector<Contender>& contenders) {
+std::vector<std::string> specs_of(const std::vector<Entry>& entries) {
   std::vector<std::string> specs;
-  for (const Contender& contender : contenders) specs.push_back(contender.spec.text());
+  for (const Entry& entry : entries) specs.push_back(entry.spec.text());
   return specs;
 }
 
-TEST(ContendersWithThreads, AreThereOnceForEachNumberWhereTheyCanUseSeveral) {
+TEST(EntriesWithThreads, AreThereOnceForEachNumberWhereTheyCanUseSeveral) {
   const Catalogue catalogue;
-  const std::vector<Contender> contenders =
+  const std::vector<Entry> entries =
       catalogue.select("quadtree,paper_quadtree,quadtree:threads=3,brute_force");
-  EXPECT_THAT(specs_of(with_threads(contenders, std::array<std::size_t, 1>{1})),
+  EXPECT_THAT(specs_of(with_threads(entries, std::array<std::size_t, 1>{1})),
               ElementsAre("quadtree", "paper_quadtree", "quadtree:threads=3", "brute_force"));
-  EXPECT_THAT(specs_of(with_threads(contenders, std::array<std::size_t, 2>{1, 2})),
+  EXPECT_THAT(specs_of(with_threads(entries, std::array<std::size_t, 2>{1, 2})),
               ElementsAre("quadtree", "quadtree:threads=2", "paper_quadtree", "quadtree:threads=3",
                           "brute_force", "brute_force:threads=2"));
 }
 
-TEST(ContendersWithThreads, SayHowMany) {
+TEST(EntriesWithThreads, SayHowMany) {
   const Catalogue catalogue;
   const bool has_several = standard_executor() != nullptr;
   const auto threads = [&](const std::string& spec) { return threads_of(catalogue.select(spec)[0]); };

@@ -16,7 +16,7 @@
 namespace broadside::lab {
 namespace {
 
-Contender only(std::string_view spec) {
+Entry only(std::string_view spec) {
   static const Catalogue catalogue;
   return catalogue.select(spec).at(0);
 }

@@ -167,7 +167,7 @@ TEST_F(VerifyFile, RefusesAnUnknownAlgorithmBeforeItReads) {
 }
 
 TEST(VerifyHistory, FindsTheFaultInAReferenceThatIsWrong) {
-  // The last pair of a sorted set is not among the sampled ones; a contender that finds it is judged right.
+  // The last pair of a sorted set is not among the sampled ones; an entry that finds it is judged right.
   std::vector<Box2> boxes;
   for (int i = 0; i < 25'000; ++i) {
     const auto x = static_cast<float>(i);
@@ -177,8 +177,8 @@ TEST(VerifyHistory, FindsTheFaultInAReferenceThatIsWrong) {
   wrong.name = "quadtree";
   const std::vector<Algorithm> known = {wrong};
   const Catalogue catalogue;
-  const std::vector<Contender> contenders = catalogue.select("grid");
-  const HistoryVerdicts checked = verify_history<2, float>({boxes, {}}, contenders, known, {});
+  const std::vector<Entry> entries = catalogue.select("grid");
+  const HistoryVerdicts checked = verify_history<2, float>({boxes, {}}, entries, known, {});
   ASSERT_EQ(checked.verdicts.size(), 2u);
   EXPECT_EQ(checked.verdicts[0].outcome, Outcome::skipped);
   EXPECT_THAT(checked.verdicts[0].reason, HasSubstr("quadtree, which it was compared with, failed"));
@@ -187,7 +187,7 @@ TEST(VerifyHistory, FindsTheFaultInAReferenceThatIsWrong) {
   EXPECT_THAT(checked.verdicts[1].reason, HasSubstr("pair (24998, 24999) is missing"));
 }
 
-TEST(VerifyHistory, SamplesAReferenceThatIsWrongInTheSameWayAsTheContender) {
+TEST(VerifyHistory, SamplesAReferenceThatIsWrongInTheSameWayAsTheEntry) {
   std::vector<Box2> boxes;
   for (int i = 0; i < 25'000; ++i) {
     const auto x = static_cast<float>(i);
@@ -197,8 +197,8 @@ TEST(VerifyHistory, SamplesAReferenceThatIsWrongInTheSameWayAsTheContender) {
   Algorithm reference = blind;
   reference.name = "quadtree";
   const std::vector<Algorithm> known = {reference};
-  const std::vector<Contender> contenders = {{&blind, Spec{"blind", {}}}};
-  const HistoryVerdicts checked = verify_history<2, float>({boxes, {}}, contenders, known, {});
+  const std::vector<Entry> entries = {{&blind, Spec{"blind", {}}}};
+  const HistoryVerdicts checked = verify_history<2, float>({boxes, {}}, entries, known, {});
   ASSERT_EQ(checked.verdicts.size(), 2u);
   EXPECT_NE(checked.verdicts[0].outcome, Outcome::verified);
   EXPECT_EQ(checked.verdicts[1].algorithm, "quadtree");

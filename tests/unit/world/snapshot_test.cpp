@@ -43,35 +43,35 @@ Told update(World<D, Real>& world) {
   return told;
 }
 
-/// A game of which the next move depends on the dice alone, and on the handles that it was given.
+/// A game of which the next move depends on the rng alone, and on the handles that it was given.
 template <int D, typename Real = float>
 struct Game {
-  Random dice{1};
+  Random rng{1};
   std::vector<Handle> handles{};
 
   Box<D, Real> any_box() {
     Box<D, Real> box;
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(dice.below(20));
-      box.max[axis] = box.min[axis] + static_cast<Real>(dice.below(5));
+      box.min[axis] = static_cast<Real>(rng.below(20));
+      box.max[axis] = box.min[axis] + static_cast<Real>(rng.below(5));
     }
     return box;
   }
 
   Filter any_filter() {
     Filter filter;
-    filter.category = static_cast<std::uint32_t>(1 + dice.below(3));
-    filter.mask = static_cast<std::uint32_t>(dice.below(8));
-    filter.group = static_cast<std::int32_t>(dice.below(5)) - 2;
-    filter.is_static = dice.chance(0.2);
+    filter.category = static_cast<std::uint32_t>(1 + rng.below(3));
+    filter.mask = static_cast<std::uint32_t>(rng.below(8));
+    filter.group = static_cast<std::int32_t>(rng.below(5)) - 2;
+    filter.is_static = rng.chance(0.2);
     return filter;
   }
 
   void step(World<D, Real>& world, bool with_filters) {
-    const std::size_t place = handles.empty() ? 0 : static_cast<std::size_t>(dice.below(handles.size()));
-    const double what = dice.fraction();
+    const std::size_t place = handles.empty() ? 0 : static_cast<std::size_t>(rng.below(handles.size()));
+    const double what = rng.fraction();
     if (what < 0.3 || handles.size() < 2) {
-      handles.push_back(world.add(any_box(), {with_filters ? any_filter() : Filter{}, dice.below(3)}));
+      handles.push_back(world.add(any_box(), {with_filters ? any_filter() : Filter{}, rng.below(3)}));
     } else if (what < 0.7) {
       world.move(handles[place], any_box());
     } else if (what < 0.85) {
@@ -81,7 +81,7 @@ struct Game {
       world.set_filter(handles[place], any_filter());
     } else if (with_filters && what < 0.97) {
       const Handle other = handles[(place + 1) % handles.size()];
-      if (dice.chance(0.7))
+      if (rng.chance(0.7))
         world.ignore(handles[place], other);
       else
         world.unignore(handles[place], other);
@@ -132,7 +132,7 @@ void check_the_future(const Way& way, std::uint64_t seed) {
   World<D, Real> world = world_of<D, Real>(way);
   Game<D, Real> game{Random(seed), {}};
   for (int frame = 0; frame < 12; ++frame) {
-    for (std::uint64_t i = game.dice.below(12); i > 0; --i) game.step(world, way.with_filters);
+    for (std::uint64_t i = game.rng.below(12); i > 0; --i) game.step(world, way.with_filters);
     const Bytes bytes = world.snapshot();  // between changes and the update
     World<D, Real> other = world_of<D, Real>(way);
     other.restore(bytes);

@@ -1,5 +1,5 @@
 // What a few boxes, each held against each other, say of all: less than a sorted sample, and sooner.
-#include "algorithms/auto/glance.hpp"
+#include "algorithms/auto/overlap_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ std::size_t place(std::size_t i, std::size_t count, std::size_t boxes) {
 }  // namespace
 
 template <int D>
-void Glance<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
+void OverlapEstimate<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
   count_ = std::min({boxes.size(), most, most_boxes});
   for (std::size_t i = 0; i < count_; ++i) {
     const Box<D>& box = boxes[sampled_place(i, boxes.size())];
@@ -29,7 +29,7 @@ void Glance<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
 }
 
 template <int D>
-void Glance<D>::compare() {
+void OverlapEstimate<D>::compare() {
   std::array<std::uint32_t, D> on_axis{};
   std::uint32_t on_all = 0;
   for (std::size_t i = 1; i < count_; ++i) {
@@ -50,7 +50,7 @@ void Glance<D>::compare() {
 }
 
 template <int D>
-double Glance<D>::clustering(const std::array<float, D>& reach) const {
+double OverlapEstimate<D>::clustering(const std::array<float, D>& reach) const {
   std::array<std::uint32_t, D> on_axis{};
   std::uint32_t on_all = 0;
   for (std::size_t i = 1; i < count_; ++i) {
@@ -74,7 +74,7 @@ double Glance<D>::clustering(const std::array<float, D>& reach) const {
 }
 
 template <int D>
-std::array<float, D> Glance<D>::range() const {
+std::array<float, D> OverlapEstimate<D>::range() const {
   std::array<float, D> range;
   for (int axis = 0; axis < D; ++axis) {
     float least = std::numeric_limits<float>::max();
@@ -90,7 +90,7 @@ std::array<float, D> Glance<D>::range() const {
 }
 
 template <int D>
-Sides look_at_sides(std::span<const Box<D>> boxes) {
+ExtentStats extent_stats(std::span<const Box<D>> boxes) {
   const std::size_t count = std::min<std::size_t>(boxes.size(), 256);
   std::array<double, D> sum{};
   std::array<double, D> squares{};
@@ -114,9 +114,9 @@ Sides look_at_sides(std::span<const Box<D>> boxes) {
   return {unevenness, longest / shortest};
 }
 
-template class Glance<2>;
-template class Glance<3>;
-template Sides look_at_sides(std::span<const Box2>);
-template Sides look_at_sides(std::span<const Box3>);
+template class OverlapEstimate<2>;
+template class OverlapEstimate<3>;
+template ExtentStats extent_stats(std::span<const Box2>);
+template ExtentStats extent_stats(std::span<const Box3>);
 
 }  // namespace broadside::core

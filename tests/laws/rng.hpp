@@ -10,9 +10,9 @@
 namespace broadside::laws {
 
 /// Seeded random numbers. Their slight bias does not matter here.
-class Dice {
+class Rng {
  public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  explicit Rng(std::uint64_t seed) : engine_(seed) {}
 
   /// A number from 0 to `count` - 1.
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }

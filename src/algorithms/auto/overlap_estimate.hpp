@@ -14,7 +14,7 @@ namespace broadside::core {
 /// branches: about a microsecond for 64 boxes. Parts are of the pairs among the boxes that were looked at;
 /// boxes that are absent overlap none.
 template <int D>
-class Glance {
+class OverlapEstimate {
  public:
   static constexpr std::size_t most_boxes = 96;
 
@@ -42,13 +42,13 @@ class Glance {
 };
 
 /// What the sides of some boxes are like. Not a number where a mean is zero or infinite.
-struct Sides {
+struct ExtentStats {
   double unevenness;  ///< of the axes' means of the squares over the squares of the means, the greatest
   double longest_over_shortest;  ///< the mean of the boxes' longest sides over that of their shortest
 };
 
 /// Looks at up to 256 of the boxes: of few that are large, a smaller sample may have none.
 template <int D>
-Sides look_at_sides(std::span<const Box<D>> boxes);
+ExtentStats extent_stats(std::span<const Box<D>> boxes);
 
 }  // namespace broadside::core
