@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
 #include "kernels/run.hpp"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "broadside/suggestion.hpp"
+#include "broadside/error.hpp"
 
 #include "cli/message.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "lab/peers/peers.hpp"
 #include "paper/listings/descriptions.hpp"

@@ -6,7 +6,7 @@
 
 #include <hwy/targets.h>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 
 #include "kernels/instruction_set_name.hpp"
 

@@ -1,8 +1,9 @@
-// What the library knows of an algorithm: its description, how to make one from a spec, and the list of all
-// of them, to which users add their own.
+// What the library knows of an algorithm: its description, its spec (such as "grid:cell=2.5"), how to make
+// one from a spec, and the list of all algorithms, to which users add their own.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -10,15 +11,58 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/spec.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside {
 
-/// The spec that find_pairs() and World use unless told otherwise.
-inline constexpr std::string_view default_algorithm = "auto";
+/// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
+struct Spec {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> values;
+
+  /// Reads a spec. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
+  /// is given twice. Whether name and tunables exist is for Settings to say.
+  static Spec parse(std::string_view text);
+
+  /// The text that parse() reads back to the same spec.
+  std::string text() const;
+};
+
+/// A parameter that a user may set in a spec.
+struct Tunable {
+  enum class Type { number, integer, choice };
+
+  std::string name;
+  std::string summary;   ///< one line, with the unit
+  std::string standard;  ///< the value when none is given; "auto" where the algorithm chooses by itself
+  Type type = Type::number;
+  double least = 0;  ///< for number and integer: the range of values allowed, both ends included
+  double most = std::numeric_limits<double>::max();
+  std::vector<std::string> choices{};  ///< for choice: the values allowed
+};
+
+/// A spec's values, checked against the tunables they are for; those not given have their standard value.
+class Settings {
+ public:
+  /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
+  /// range. "auto" is a value of a tunable if and only if it is its standard one.
+  Settings(const Spec& spec, std::span<const Tunable> tunables);
+
+  /// Whether the tunable is left for the algorithm to choose.
+  bool is_auto(std::string_view tunable) const { return text(tunable) == "auto"; }
+
+  /// The value of a tunable, which must exist and not be "auto".
+  double number(std::string_view tunable) const;
+  std::int64_t integer(std::string_view tunable) const;
+  const std::string& text(std::string_view tunable) const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> values_;
+};
 
 /// Where an algorithm comes from.
 enum class AlgorithmKind { own, paper, peer };
@@ -90,21 +134,11 @@ const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm
 
 /// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec
 /// if a value is wrong or the algorithm does not do D dimensions.
-///
-/// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
-/// origin and at a scale of their own, and has a last test in double: its pairs are exact.
 template <int D, typename Real = float>
 std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm, const Spec& spec);
 
 /// Likewise a tracker: the algorithm's own, or a DiffTracker over its finder.
 template <int D, typename Real = float>
 std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm, const Spec& spec);
-
-/// Makes a finder or a tracker of one of algorithms(), from a spec such as "grid:cell=2.5".
-/// Throws InvalidSpec, naming the algorithms there are, if there is none of that name.
-template <int D, typename Real = float>
-std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
-template <int D, typename Real = float>
-std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec);
 
 }  // namespace broadside

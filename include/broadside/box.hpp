@@ -8,7 +8,7 @@
 #include <ranges>
 #include <type_traits>
 
-#include "broadside/cpp_version.hpp"
+#include "broadside/version.hpp"
 
 namespace broadside {
 

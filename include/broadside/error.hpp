@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
-#include "broadside/cpp_version.hpp"
+#include "broadside/version.hpp"
 
 namespace broadside {
 
@@ -49,5 +52,18 @@ class InvalidHandle : public std::invalid_argument {
 class InvalidSnapshot : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
+
+/// What is done about an invalid box: one with a NaN, or with min > max without being the absent box. It is
+/// the same in every build, for every algorithm, and for floats and doubles; no algorithm ever sees such a
+/// box. Infinite boxes are valid.
+enum class BadInput : std::uint8_t {
+  reject,     ///< InvalidInput is thrown, naming the first one, before anything has changed
+  quarantine  ///< it counts as absent, pairs with nothing, and is listed by quarantined()
+};
+
+/// " (did you mean 'grid'?)" for the one of `known` that is closest to `found`: at most two letters are
+/// missing, too many, wrong or swapped (one where `found` has fewer than five), or `found` is how it begins.
+/// Case is not looked at. Empty where none is that close.
+std::string did_you_mean(std::string_view found, std::span<const std::string> known);
 
 }  // namespace broadside

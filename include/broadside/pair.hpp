@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include "broadside/cpp_version.hpp"
+#include "broadside/version.hpp"
 
 namespace broadside {
 namespace core {

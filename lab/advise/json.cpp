@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 
 #include "lab/advise/advise.hpp"
 #include "lab/measure/processor_share.hpp"

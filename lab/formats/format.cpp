@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "broadside/suggestion.hpp"
+#include "broadside/error.hpp"
 
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/unread_formats.hpp"

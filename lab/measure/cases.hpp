@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/history.hpp"
+#include "broadside/debug/history.hpp"
 
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::lab::peers {
 

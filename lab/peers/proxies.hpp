@@ -6,7 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/peers/peer_tracker.hpp"
 

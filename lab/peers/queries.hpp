@@ -9,7 +9,7 @@
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/ray.hpp"
+#include "broadside/queries.hpp"
 
 namespace broadside::lab::peers {
 

@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
-#include "broadside/find_pairs.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/numbers.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 
 #include "lab/measure/processor_share.hpp"
 #include "lab/measure/ranking.hpp"

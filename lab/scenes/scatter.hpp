@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
-#include "broadside/spec.hpp"
 
 #include "lab/scenes/random.hpp"
 

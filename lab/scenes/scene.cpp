@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "broadside/error.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "lab/formats/format.hpp"
 #include "lab/recordings/recordings.hpp"

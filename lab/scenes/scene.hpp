@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
-#include "broadside/history.hpp"
+#include "broadside/debug/history.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/spec.hpp"
 
 namespace broadside::lab {
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "broadside/minimise.hpp"
+#include "broadside/debug/minimise.hpp"
 
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"

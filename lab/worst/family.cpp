@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "broadside/error.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "lab/scenes/scatter.hpp"
 

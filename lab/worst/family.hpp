@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
-#include "broadside/spec.hpp"
 
 #include "lab/scenes/random.hpp"
 #include "lab/scenes/scene.hpp"

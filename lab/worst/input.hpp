@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "broadside/history.hpp"
-#include "broadside/spec.hpp"
+#include "broadside/algorithm.hpp"
+#include "broadside/debug/history.hpp"
 
 #include "lab/scenes/random.hpp"
 #include "lab/scenes/scene.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "broadside/error.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "paper/experiments/descriptions.hpp"
 

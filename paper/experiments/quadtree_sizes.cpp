@@ -7,8 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/numbers.hpp"
 #include "lab/scenes/random.hpp"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"

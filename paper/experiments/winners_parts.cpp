@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "broadside/executor.hpp"
-#include "broadside/instruction_set.hpp"
 
 #include "lab/measure/samples.hpp"
 #include "paper/experiments/winners_measure.hpp"

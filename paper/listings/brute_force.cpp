@@ -3,7 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"

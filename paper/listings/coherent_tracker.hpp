@@ -8,8 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/spec.hpp"
+#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::paper {
 

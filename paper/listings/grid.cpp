@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"

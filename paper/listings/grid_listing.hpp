@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "paper/listings/world.hpp"
 

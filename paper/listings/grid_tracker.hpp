@@ -3,8 +3,9 @@
 
 #include <memory>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/spec.hpp"
+#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::paper {
 

@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::paper {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
-#include "broadside/spec.hpp"
 
 namespace broadside::paper {
 

@@ -7,7 +7,6 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "core/float_environment.hpp"

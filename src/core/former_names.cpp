@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/spec.hpp"
+#include "broadside/algorithm.hpp"
 
 namespace broadside::core {
 namespace {

@@ -4,10 +4,11 @@
 #include <cstddef>
 #include <functional>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/algorithm.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/spec.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/pair_blocks.hpp"
 

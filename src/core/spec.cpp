@@ -1,13 +1,11 @@
 // Specs read and written, and their values checked against tunables.
-#include "broadside/spec.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/suggestion.hpp"
 
 #include "core/former_names.hpp"
 

@@ -1,10 +1,10 @@
 // Names that a user may have meant, by edit distance.
-#include "broadside/suggestion.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <vector>
+
+#include "broadside/error.hpp"
 
 namespace broadside {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::core {
 

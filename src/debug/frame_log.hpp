@@ -5,7 +5,7 @@
 #include <list>
 #include <vector>
 
-#include "broadside/history.hpp"
+#include "broadside/debug/history.hpp"
 
 namespace broadside::core {
 

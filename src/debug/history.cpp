@@ -1,5 +1,5 @@
 // Histories played again, and written for people.
-#include "broadside/history.hpp"
+#include "broadside/debug/history.hpp"
 
 #include "interface/box_text.hpp"
 

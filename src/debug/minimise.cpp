@@ -1,5 +1,5 @@
 // Failing inputs made small by delta debugging.
-#include "broadside/minimise.hpp"
+#include "broadside/debug/minimise.hpp"
 
 #include <algorithm>
 #include <numeric>

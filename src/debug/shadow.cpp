@@ -1,5 +1,5 @@
 // ShadowTracker: any tracker with brute force beside it.
-#include "broadside/shadow.hpp"
+#include "broadside/debug/shadow.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <span>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/debug/minimise.hpp"
 #include "broadside/error.hpp"
-#include "broadside/minimise.hpp"
 
 #include "debug/definition.hpp"
 #include "debug/frame_log.hpp"

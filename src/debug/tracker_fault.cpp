@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "broadside/minimise.hpp"
+#include "broadside/debug/minimise.hpp"
 #include "broadside/sinks.hpp"
 
 #include "debug/definition.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "broadside/history.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/debug/history.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::core {
 

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/parallel.hpp"
 #include "core/rounding.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/rounding.hpp"
 #include "interface/candidate_tracker.hpp"

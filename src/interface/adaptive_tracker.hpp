@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "broadside/pair_finder.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "interface/follow_policy.hpp"
 

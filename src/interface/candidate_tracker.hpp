@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "broadside/pair_tracker.hpp"
-#include "broadside/statistics.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::core {
 

@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "broadside/pair_tracker.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "interface/pair_difference.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "broadside/pair.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/moved_box.hpp"
 

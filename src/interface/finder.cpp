@@ -1,11 +1,13 @@
 // PairFinder: what every finder does before its algorithm sees the boxes.
+#include "broadside/finder.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
 
-#include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/filter_sink.hpp"
 #include "core/parallel.hpp"

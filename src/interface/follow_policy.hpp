@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "broadside/spec.hpp"
-#include "broadside/statistics.hpp"
+#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 
 namespace broadside::core {
 

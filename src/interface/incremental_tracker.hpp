@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/sample.hpp"
 

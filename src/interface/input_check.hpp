@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
+#include "broadside/error.hpp"
 
 namespace broadside::core {
 

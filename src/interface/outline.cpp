@@ -1,5 +1,5 @@
 // What outline() does around an algorithm.
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,14 @@
 // PairTracker: what every tracker does around its algorithm.
+#include "broadside/tracker.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "core/float_environment.hpp"
@@ -23,7 +25,46 @@ constexpr std::size_t ignored_pair_bytes = 40;
 }  // namespace
 
 template <int D, typename Real>
-void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+class PairTracker<D, Real>::State {
+ public:
+  void update(PairTracker& tracker, const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+  Frame<D, Real> last_frame() const noexcept;
+  std::size_t bytes() const noexcept;
+  bool is_whole() const noexcept { return !dirty_; }
+  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+
+  BadInput bad_input = BadInput::reject;
+  std::optional<Statistics> statistics;
+  Workers workers;
+
+ private:
+  void check(const Frame<D, Real>& frame) const;
+  void take(const Frame<D, Real>& frame, bool rebuild);
+  void take_ignored(const Frame<D, Real>& frame, bool rebuild);
+  void drop_ignored(const Change<D, Real>& change);
+  void keep(const Frame<D, Real>& frame) noexcept;
+
+  std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
+  std::size_t taken_ = 0;             // how many boxes that had
+  std::vector<Box<D, Real>> now_;
+  std::vector<Filter> filters_before_;  // both empty until there are filters
+  std::vector<Filter> filters_now_;
+  IgnoredPairs ignored_;       // those of the last whole update
+  bool had_ignored_ = false;   // whether it was given a set
+  std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted
+  std::vector<BoxId> changed_;
+  std::vector<std::uint8_t> flags_;
+  std::vector<BoxId> invalid_;      // of the changed ones
+  std::vector<BoxId> quarantined_;  // those of the last whole update
+  std::vector<Pair> begun_;
+  std::vector<Pair> ended_;
+  std::vector<Pair> sorting_;
+  bool dirty_ = true;  // the last update did not end, or there was none
+};
+
+template <int D, typename Real>
+void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Real>& frame, PairSink& begun,
+                                         PairSink& ended) {
   const core::DefaultEnvironment environment;
   check(frame);
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
@@ -32,13 +73,13 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
 
   begun_.clear();
   ended_.clear();
-  statistics_.reset();
+  statistics.reset();
   const Change<D, Real> change{before_,         now_,         changed_, flags_, rebuild,
                                filters_before_, filters_now_, &frame};
   {
     PairCollector begun_pairs(begun_);
     PairCollector ended_pairs(ended_);
-    update_valid(change, begun_pairs, ended_pairs);
+    tracker.update_valid(change, begun_pairs, ended_pairs);
     begun_pairs.flush();
     ended_pairs.flush();
   }
@@ -72,7 +113,7 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
 /// and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
 /// order of the list.
 template <int D, typename Real>
-void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
+void PairTracker<D, Real>::State::check(const Frame<D, Real>& frame) const {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), before_.size());
   core::check_count(boxes.size());
@@ -88,12 +129,12 @@ void PairTracker<D, Real>::check(const Frame<D, Real>& frame) const {
     }
     if (index(id) < first && core::is_invalid(boxes[index(id)])) first = index(id);
   }
-  if (bad_input_ == BadInput::reject) core::check_boxes(boxes, first);
+  if (bad_input == BadInput::reject) core::check_boxes(boxes, first);
 }
 
 /// Sets now_, changed_, invalid_ and flags_, and makes everything as long as the longer frame.
 template <int D, typename Real>
-void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
+void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), taken_);
   const bool had_filters = !filters_before_.empty();
@@ -129,7 +170,7 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
 
 /// Sets toggled_.
 template <int D, typename Real>
-void PairTracker<D, Real>::take_ignored(const Frame<D, Real>& frame, bool rebuild) {
+void PairTracker<D, Real>::State::take_ignored(const Frame<D, Real>& frame, bool rebuild) {
   const auto is_ignored = [&frame](Pair pair) {
     return frame.ignored != nullptr && frame.ignored->contains(pair);
   };
@@ -149,7 +190,7 @@ void PairTracker<D, Real>::take_ignored(const Frame<D, Real>& frame, bool rebuil
 
 /// Takes from the events those of pairs that are ignored, and adds those of pairs that became it or were it.
 template <int D, typename Real>
-void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
+void PairTracker<D, Real>::State::drop_ignored(const Change<D, Real>& change) {
   if (toggled_.empty() && ignored_.empty()) return;
   const auto is_dropped = [this](Pair pair) {
     return ignored_.contains(pair) || std::ranges::binary_search(toggled_, pair);
@@ -168,7 +209,7 @@ void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
 
 /// Makes this frame the one before, but for what is ignored. There is room in quarantined_.
 template <int D, typename Real>
-void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) noexcept {
+void PairTracker<D, Real>::State::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();
   if (!quarantined_.empty() || !invalid_.empty()) {
     std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
@@ -192,22 +233,95 @@ void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) noexcept {
 }
 
 template <int D, typename Real>
-std::size_t PairTracker<D, Real>::bytes() const noexcept {
+Frame<D, Real> PairTracker<D, Real>::State::last_frame() const noexcept {
+  // An update that failed may have made them longer.
+  const std::span<const Filter> filters = filters_before_;
+  return {std::span(before_).first(taken_),
+          {},
+          filters.first(filters.empty() ? 0 : taken_),
+          had_ignored_ ? &ignored_ : nullptr,
+          {}};
+}
+
+template <int D, typename Real>
+std::size_t PairTracker<D, Real>::State::bytes() const noexcept {
   return (before_.capacity() + now_.capacity()) * sizeof(Box<D, Real>) +
          (filters_before_.capacity() + filters_now_.capacity()) * sizeof(Filter) +
          (changed_.capacity() + invalid_.capacity() + quarantined_.capacity()) * sizeof(BoxId) +
          flags_.capacity() +
          (begun_.capacity() + ended_.capacity() + sorting_.capacity() + toggled_.capacity()) * sizeof(Pair) +
-         ignored_.size() * ignored_pair_bytes + algorithm_bytes();
+         ignored_.size() * ignored_pair_bytes;
+}
+
+template <int D, typename Real>
+PairTracker<D, Real>::PairTracker() : state_(std::make_unique<State>()) {}
+
+template <int D, typename Real>
+PairTracker<D, Real>::~PairTracker() = default;
+
+template <int D, typename Real>
+void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  state_->update(*this, frame, begun, ended);
+}
+
+template <int D, typename Real>
+BadInput PairTracker<D, Real>::bad_input() const noexcept {
+  return state_->bad_input;
+}
+
+template <int D, typename Real>
+void PairTracker<D, Real>::set_bad_input(BadInput bad_input) noexcept {
+  state_->bad_input = bad_input;
+}
+
+template <int D, typename Real>
+std::span<const BoxId> PairTracker<D, Real>::quarantined() const noexcept {
+  return state_->quarantined();
+}
+
+template <int D, typename Real>
+Frame<D, Real> PairTracker<D, Real>::last_frame() const noexcept {
+  return state_->last_frame();
+}
+
+template <int D, typename Real>
+const BoxIndex<D, Real>* PairTracker<D, Real>::box_index() const noexcept {
+  return state_->is_whole() ? algorithm_index() : nullptr;
+}
+
+template <int D, typename Real>
+const std::optional<Statistics>& PairTracker<D, Real>::statistics() const noexcept {
+  return state_->statistics;
+}
+
+template <int D, typename Real>
+std::size_t PairTracker<D, Real>::bytes() const noexcept {
+  return state_->bytes() + algorithm_bytes();
+}
+
+template <int D, typename Real>
+const Workers& PairTracker<D, Real>::workers() const noexcept {
+  return state_->workers;
+}
+
+template <int D, typename Real>
+void PairTracker<D, Real>::set_workers(const Workers& workers) {
+  state_->workers = workers;
+  workers_changed();
+}
+
+template <int D, typename Real>
+void PairTracker<D, Real>::count(const std::optional<Statistics>& statistics) {
+  state_->statistics = statistics;
 }
 
 template <int D, typename Real>
 void PairTracker<D, Real>::update_with(PairTracker& other, const Change<D, Real>& change, PairSink& begun,
                                        PairSink& ended) {
-  other.set_workers(workers_);
-  other.statistics_.reset();
+  other.set_workers(workers());
+  other.state_->statistics.reset();
   other.update_valid(change, begun, ended);
-  statistics_ = other.statistics_;
+  state_->statistics = other.state_->statistics;
 }
 
 template class PairTracker<2, float>;

@@ -1,9 +1,8 @@
 // Which instruction set the kernels are dispatched to.
-#include "broadside/instruction_set.hpp"
-
 #include <cstdint>
 
 #include "broadside/error.hpp"
+#include "broadside/executor.hpp"
 
 #include "kernels/instruction_set_name.hpp"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "broadside/handle.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/world.hpp"
 
 namespace broadside::core {
 

@@ -33,8 +33,7 @@ const std::vector<Rule>& rules() {
       {"src/core/", core},
       {"src/interface/", interface},
       {"src/kernels/",
-       standard +
-           R"(|"broadside/(box|error|instruction_set|pair)\.hpp"|"core/((moved|nan)_box|cell_axis)\.hpp")" +
+       standard + R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry",
        interface + R"(|"algorithms/descriptions\.hpp"|"doubles/double_finder\.hpp")"},

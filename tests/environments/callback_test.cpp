@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
-#include "broadside/find_pairs.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/world.hpp"
 
 #include "environment.hpp"

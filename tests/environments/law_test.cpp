@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
 #include "broadside/queries.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"

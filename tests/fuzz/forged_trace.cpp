@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/pair_tracker.hpp"
 #include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "debug/definition.hpp"
 #include "history_bytes.hpp"

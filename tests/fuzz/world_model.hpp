@@ -14,7 +14,6 @@
 
 #include "broadside/box.hpp"
 #include "broadside/filter.hpp"
-#include "broadside/handle.hpp"
 #include "broadside/world.hpp"
 
 #include "history_bytes.hpp"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 
 #include "law_case.hpp"
 #include "tests/instruction_sets.hpp"

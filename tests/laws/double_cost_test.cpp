@@ -10,7 +10,6 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/sinks.hpp"
-#include "broadside/spec.hpp"
 #include "broadside/world.hpp"
 
 #include "core/sample.hpp"

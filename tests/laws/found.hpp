@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "broadside/pair_finder.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 namespace broadside::laws {

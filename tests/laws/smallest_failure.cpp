@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "broadside/history.hpp"
-#include "broadside/minimise.hpp"
+#include "broadside/debug/history.hpp"
+#include "broadside/debug/minimise.hpp"
 
 #include "lab/verify/verify.hpp"
 

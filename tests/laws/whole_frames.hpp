@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "broadside/filter.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 #include "law_sinks.hpp"
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "broadside/find_pairs.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/recorder.hpp"
 #include "broadside/sinks.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/shadow.hpp"
+#include "broadside/debug/shadow.hpp"
 #include "broadside/sinks.hpp"
 
 #include "injection.hpp"

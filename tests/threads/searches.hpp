@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "found.hpp"
 #include "law_case.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/pair_tracker.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "tests/unit/boxes.hpp"
 

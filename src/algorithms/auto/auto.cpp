@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/broad_phase.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_join.hpp"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/statistics.hpp"
 
 #include "core/radix_sort.hpp"
 #include "core/sorted_boxes.hpp"

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/brute_force/tracker.hpp"
 #include "algorithms/descriptions.hpp"

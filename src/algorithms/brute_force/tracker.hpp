@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::algorithms {
 

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/bvh/packer.hpp"
 #include "algorithms/bvh/tracker.hpp"

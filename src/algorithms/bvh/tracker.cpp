@@ -12,7 +12,8 @@
 #include <string>
 #include <utility>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/bvh/index.hpp"
 #include "interface/incremental_tracker.hpp"

@@ -15,8 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/grid/layout.hpp"

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/grid/layout.hpp"
 #include "core/cell_axis.hpp"

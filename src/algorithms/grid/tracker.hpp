@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/grid/cells.hpp"
 #include "core/moved_box.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::algorithms {
 

@@ -14,9 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/broad_phase.hpp"
+#include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
-#include "broadside/outline.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "algorithms/descriptions.hpp"
 #include "algorithms/sweep_and_prune/tracker.hpp"

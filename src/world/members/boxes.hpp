@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "broadside/debug/shadow.hpp"
 #include "broadside/error.hpp"
-#include "broadside/shadow.hpp"
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"

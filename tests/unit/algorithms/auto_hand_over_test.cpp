@@ -12,8 +12,9 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "core/sample.hpp"
 #include "tests/laws/found.hpp"

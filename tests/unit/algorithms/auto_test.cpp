@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/pair_tracker.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/scenes/scene.hpp"
 

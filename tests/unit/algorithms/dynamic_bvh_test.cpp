@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
 #include "interface/encloses.hpp"

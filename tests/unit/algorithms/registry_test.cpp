@@ -10,7 +10,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/find_pairs.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/world.hpp"
 
 #include "tests/message.hpp"

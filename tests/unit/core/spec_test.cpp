@@ -1,6 +1,4 @@
 // Specs and settings: what is read, and what is refused with which words.
-#include "broadside/spec.hpp"
-
 #include <limits>
 #include <span>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 
 #include "tests/message.hpp"

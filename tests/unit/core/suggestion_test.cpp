@@ -1,6 +1,4 @@
 // The name that a message suggests for one that is not known.
-#include "broadside/suggestion.hpp"
-
 #include <string>
 #include <vector>
 

@@ -1,5 +1,5 @@
 // ShadowTracker: finds the first pair that a tracker reports wrongly, and shows how it came about.
-#include "broadside/shadow.hpp"
+#include "broadside/debug/shadow.hpp"
 
 #include <functional>
 #include <memory>

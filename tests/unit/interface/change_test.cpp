@@ -9,10 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 #include "broadside/filter.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "tests/message.hpp"
 #include "tests/unit/trackers.hpp"

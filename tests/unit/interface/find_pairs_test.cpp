@@ -1,6 +1,4 @@
 // find_pairs: one call from boxes to pairs.
-#include "broadside/find_pairs.hpp"
-
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 namespace broadside {

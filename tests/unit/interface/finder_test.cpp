@@ -1,13 +1,15 @@
 // PairFinder: what it does around its algorithm. Absent boxes, wrong boxes, sinks that throw.
+#include "broadside/finder.hpp"
+
 #include <functional>
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "tests/unit/boxes.hpp"
 

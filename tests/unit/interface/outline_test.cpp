@@ -1,5 +1,5 @@
 // outline(): what algorithms lay over boxes holds these boxes, is finite, and costs a search nothing.
-#include "broadside/outline.hpp"
+#include "broadside/debug/outline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/find_pairs.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/allocation.hpp"

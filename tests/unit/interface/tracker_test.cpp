@@ -1,4 +1,6 @@
 // PairTracker and DiffTracker: frames that grow and shrink, changes listed and not, frames that fail.
+#include "broadside/tracker.hpp"
+
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -7,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/broad_phase.hpp"
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "tests/message.hpp"

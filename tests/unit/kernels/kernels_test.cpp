@@ -13,7 +13,7 @@
 
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
-#include "broadside/instruction_set.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
 #include "kernels/sweep.hpp"

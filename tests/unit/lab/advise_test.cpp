@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadside/executor.hpp"
-#include "broadside/pair_finder.hpp"
+#include "broadside/finder.hpp"
 
 #include "lab/advise/choice.hpp"
 #include "lab/measure/cases.hpp"

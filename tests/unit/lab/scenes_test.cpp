@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
-#include "broadside/find_pairs.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/scenes/scatter.hpp"

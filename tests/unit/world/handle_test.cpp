@@ -1,6 +1,4 @@
 // Handles as keys of hash tables.
-#include "broadside/handle.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -9,6 +7,8 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+
+#include "broadside/world.hpp"
 
 namespace broadside {
 namespace {

@@ -10,7 +10,7 @@
 #include "broadside/box.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside {
 

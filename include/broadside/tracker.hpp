@@ -8,15 +8,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "broadside/bad_input.hpp"
 #include "broadside/box.hpp"
+#include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/filter.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/pair_finder.hpp"
-#include "broadside/statistics.hpp"
 
 namespace broadside {
 
@@ -94,10 +94,10 @@ class BoxIndex;
 template <int D, typename Real = float>
 class PairTracker {
  public:
-  PairTracker() = default;
+  PairTracker();
   PairTracker(const PairTracker&) = delete;
   PairTracker& operator=(const PairTracker&) = delete;
-  virtual ~PairTracker() = default;
+  virtual ~PairTracker();
 
   /// Takes the next frame; writes to `begun` the pairs that hold now and did not before, to `ended` those
   /// that did and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
@@ -111,31 +111,23 @@ class PairTracker {
 
   /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
   /// otherwise.
-  BadInput bad_input() const noexcept { return bad_input_; }
-  void set_bad_input(BadInput bad_input) noexcept { bad_input_ = bad_input; }
+  BadInput bad_input() const noexcept;
+  void set_bad_input(BadInput bad_input) noexcept;
 
   /// The places whose boxes have been invalid since they last changed, ascending, and so count as absent.
   /// Valid until the next update.
-  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+  std::span<const BoxId> quarantined() const noexcept;
 
   /// The frame that the last whole update() took, with nothing listed: what the next one's events start from.
   /// Without boxes before the first. Valid until the next update().
-  Frame<D, Real> last_frame() const noexcept {
-    // An update that failed may have made them longer.
-    const std::span<const Filter> filters = filters_before_;
-    return {std::span(before_).first(taken_),
-            {},
-            filters.first(filters.empty() ? 0 : taken_),
-            had_ignored_ ? &ignored_ : nullptr,
-            {}};
-  }
+  Frame<D, Real> last_frame() const noexcept;
 
   /// The boxes of the last whole update() for queries (see queries.hpp), where the algorithm keeps such an
   /// index anyway; else null. Valid until the next update().
-  const BoxIndex<D, Real>* box_index() const noexcept { return dirty_ ? nullptr : algorithm_index(); }
+  const BoxIndex<D, Real>* box_index() const noexcept;
 
   /// What the last update() did; empty where the algorithm does not count.
-  const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
+  const std::optional<Statistics>& statistics() const noexcept;
 
   /// Where the algorithm is one that chooses: what it chose for the last update(), and why, in a sentence.
   /// Empty for others.
@@ -145,15 +137,12 @@ class PairTracker {
   std::size_t bytes() const noexcept;
 
   /// As a PairFinder's.
-  const Workers& workers() const noexcept { return workers_; }
-  void set_workers(const Workers& workers) {
-    workers_ = workers;
-    workers_changed();
-  }
+  const Workers& workers() const noexcept;
+  void set_workers(const Workers& workers);
 
  protected:
   /// For update_valid: what this update did.
-  void count(const std::optional<Statistics>& statistics) { statistics_ = statistics; }
+  void count(const std::optional<Statistics>& statistics);
 
   /// For update_valid: lets another tracker do this update, with the same workers. Its statistics are then
   /// this tracker's.
@@ -175,32 +164,14 @@ class PairTracker {
   /// The bytes that the algorithm keeps from frame to frame.
   virtual std::size_t algorithm_bytes() const noexcept { return 0; }
 
-  void check(const Frame<D, Real>& frame) const;
-  void take(const Frame<D, Real>& frame, bool rebuild);
-  void take_ignored(const Frame<D, Real>& frame, bool rebuild);
-  void drop_ignored(const Change<D, Real>& change);
-  void keep(const Frame<D, Real>& frame) noexcept;
-
-  std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
-  std::size_t taken_ = 0;             // how many boxes that had
-  std::vector<Box<D, Real>> now_;
-  std::vector<Filter> filters_before_;  // both empty until there are filters
-  std::vector<Filter> filters_now_;
-  IgnoredPairs ignored_;       // those of the last whole update
-  bool had_ignored_ = false;   // whether it was given a set
-  std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted
-  std::vector<BoxId> changed_;
-  std::vector<std::uint8_t> flags_;
-  std::vector<BoxId> invalid_;      // of the changed ones
-  std::vector<BoxId> quarantined_;  // those of the last whole update
-  BadInput bad_input_ = BadInput::reject;
-  std::vector<Pair> begun_;
-  std::vector<Pair> ended_;
-  std::vector<Pair> sorting_;
-  bool dirty_ = true;  // the last update did not end, or there was none
-  std::optional<Statistics> statistics_;
-  Workers workers_;
+  class State;
+  std::unique_ptr<State> state_;
 };
+
+/// Makes a tracker of one of algorithms(), from a spec such as "grid:update=follow". Throws InvalidSpec,
+/// naming the algorithms there are, if there is none of that name.
+template <int D, typename Real = float>
+std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec);
 
 /// Makes any finder a tracker: finds all pairs in each frame and tells what differs from the frame before.
 ///

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/broad_phase.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/history.hpp"
+#include "broadside/debug/history.hpp"
 
 namespace broadside {
 

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/debug/history.hpp"
 #include "broadside/filter.hpp"
-#include "broadside/history.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/pair_tracker.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside {
 

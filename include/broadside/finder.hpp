@@ -1,0 +1,292 @@
+// Boxes to pairs, from nothing, at each call: find_pairs(), and PairFinder, the interface of every algorithm.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/error.hpp"
+#include "broadside/executor.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
+
+namespace broadside {
+
+/// What one search or one update did, in the paper's units of cost; 0 where an algorithm does not count it.
+struct Statistics {
+  std::uint64_t tests = 0;       ///< pairs of boxes compared
+  std::uint64_t references = 0;  ///< entries of boxes in cells, leaves or lists
+  std::uint64_t cells = 0;       ///< cells or nodes that there are
+  std::uint64_t hits = 0;  ///< of the tests, those of boxes that overlap; the others are false positives
+};
+
+namespace core {
+template <int D>
+class Yielding;
+}  // namespace core
+
+template <int D, typename Real = float>
+class Outlined;
+
+/// Finds every overlapping pair in an array of boxes, from nothing, at each call.
+///
+/// A finder keeps its scratch memory between calls, and nothing else that can be observed. To be called by
+/// one thread at a time; it may itself use several, which shows in nothing but the time.
+template <int D, typename Real = float>
+class PairFinder {
+ public:
+  PairFinder() = default;
+  PairFinder(const PairFinder&) = delete;
+  PairFinder& operator=(const PairFinder&) = delete;
+  virtual ~PairFinder() = default;
+
+  /// Writes each pair of overlapping boxes to `pairs` once, as ids = places in `boxes`, and flushes it. The
+  /// order is fixed by the algorithm and the boxes, whatever the workers. Absent boxes pair with nothing.
+  ///
+  /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
+  /// max without being absent, unless bad_input() says otherwise; and what the sink throws.
+  /// Boxes that are no array are gathered first. With `filters`, pairs that they do not let count are not
+  /// written; throws InvalidFrame if there are some and not one for each box.
+  void find(BoxView<D, Real> boxes, PairSink& pairs, const PairFilters& filters = {});
+
+  /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
+  /// is a place in `left` and its second one in `right`, so the two may be equal. No pair within a set is
+  /// ever written; the library's own algorithms do not even look for one. Throws as find() does.
+  void find_between(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs,
+                    const PairFilters& filters = {});
+
+  /// The same for two sets that lie one behind the other: the first `left_count` <= boxes.size() boxes are
+  /// the left set. Where none is absent this saves copying them.
+  void find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
+
+  /// What find() and find_between() do about invalid boxes: they throw, unless set_bad_input() says
+  /// otherwise.
+  BadInput bad_input() const noexcept { return bad_input_; }
+  void set_bad_input(BadInput bad_input) noexcept { bad_input_ = bad_input; }
+
+  /// The places of the last call's invalid boxes, ascending, where they are quarantined; those of a right set
+  /// are counted on from the end of the left one. Valid until the next call.
+  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+
+  /// What the last find() did; empty where the algorithm does not count.
+  const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
+
+  /// Who does the work: one thread, unless the spec or set_workers() says otherwise. An algorithm without the
+  /// tunable `threads` uses the calling thread alone.
+  const Workers& workers() const noexcept { return workers_; }
+  void set_workers(const Workers& workers) {
+    workers_ = workers;
+    workers_changed();
+  }
+
+  /// Where the algorithm is one that chooses: what it chose for the last find(), and why, in a sentence.
+  /// Empty for others.
+  virtual std::string explanation() const { return {}; }
+
+  /// What it lays over boxes, to be drawn, where it lays something: see outline().
+  virtual Outlined<D, Real>* outlined() noexcept { return nullptr; }
+
+  /// For the library: this finder, if its searches can give up.
+  virtual core::Yielding<D>* yielding() noexcept { return nullptr; }
+
+ protected:
+  /// For find_valid: what this search did.
+  void count(const Statistics& statistics) { statistics_ = statistics; }
+
+  /// For find_valid: lets another finder do this search, with the same workers. Its statistics are then this
+  /// finder's.
+  void search_with(PairFinder& other, std::span<const Box<D, Real>> boxes, PairSink& pairs);
+
+  /// For find_valid: 0 if every overlapping pair is asked for. Else the boxes before this place are the left
+  /// set and the others the right one, and pairs within a set need not be written: they will be dropped.
+  std::size_t left_count() const noexcept { return left_count_; }
+
+ private:
+  /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
+  /// places in `boxes`. No need to flush.
+  virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
+
+  /// Where a finder works through another one, it hands workers() on.
+  virtual void workers_changed() {}
+
+  /// Checks the boxes, and returns how many are absent or quarantined.
+  std::size_t check(std::span<const Box<D, Real>> boxes) const;
+
+  /// The boxes as an array: themselves, or gathered into `scratch`.
+  static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& scratch);
+
+  /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
+  void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first);
+
+  /// Appends the present ones of `boxes` to present_ and their places to ids_.
+  void take_present(std::span<const Box<D, Real>> boxes);
+
+  std::array<std::vector<Box<D, Real>>, 2> gathered_;  // boxes that were given as no array
+  std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
+  std::vector<BoxId> ids_;             // and their places in the caller's array
+  std::vector<BoxId> quarantined_;
+  BadInput bad_input_ = BadInput::reject;
+  std::size_t left_count_ = 0;
+  std::optional<Statistics> statistics_;
+  Workers workers_;
+};
+
+/// The spec that find_pairs() and World use unless told otherwise.
+inline constexpr std::string_view default_algorithm = "auto";
+
+/// Makes a finder of one of algorithms(), from a spec such as "grid:cell=2.5". Throws InvalidSpec, naming the
+/// algorithms there are, if there is none of that name.
+///
+/// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
+/// origin and at a scale of their own, and has a last test in double: its pairs are exact.
+template <int D, typename Real = float>
+std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
+
+/// How one call of find_pairs() searches.
+struct FindOptions {
+  std::string_view algorithm = default_algorithm;  ///< the spec, such as "grid:cell=2.5" or "auto:threads=4"
+  std::span<const Filter> filters{};               ///< as PairFilters has them
+  std::span<const Filter> right_filters{};
+  const IgnoredPairs* ignored = nullptr;
+  Executor* executor = nullptr;  ///< whose threads search; null for the library's own
+
+  /// Where it is given, invalid boxes count as absent and are listed here instead of being thrown about: see
+  /// BadInput.
+  std::vector<BoxId>* quarantined = nullptr;
+};
+
+namespace detail {
+
+template <typename T>
+struct BoxTraits {};
+
+template <int Dimension, typename Coordinate>
+struct BoxTraits<Box<Dimension, Coordinate>> {
+  using View = BoxView<Dimension, Coordinate>;
+};
+
+template <typename T>
+struct ViewTraits {};
+
+template <int Dimension, typename Coordinate>
+struct ViewTraits<BoxView<Dimension, Coordinate>> {
+  using View = BoxView<Dimension, Coordinate>;
+};
+
+template <typename T>
+requires std::ranges::contiguous_range<const T> && std::ranges::sized_range<const T>
+struct ViewTraits<T> : BoxTraits<std::ranges::range_value_t<T>> {
+};
+
+inline const FindOptions& options_of(const FindOptions& options) { return options; }
+inline FindOptions options_of(std::string_view algorithm) { return {.algorithm = algorithm}; }
+
+/// Has a finder that the options describe search by `search`.
+template <int D, typename Real, typename Search>
+void find_with(const FindOptions& options, const Search& search) {
+  const auto finder = make_finder<D, Real>(options.algorithm);
+  Workers workers = finder->workers();
+  workers.executor = options.executor;
+  finder->set_workers(workers);
+  if (options.quarantined != nullptr) finder->set_bad_input(BadInput::quarantine);
+  search(*finder, PairFilters{options.filters, options.right_filters, options.ignored});
+  if (options.quarantined != nullptr)
+    options.quarantined->assign(finder->quarantined().begin(), finder->quarantined().end());
+}
+
+template <int D, typename Real>
+void find_pairs(BoxView<D, Real> boxes, PairSink& pairs, const FindOptions& options) {
+  find_with<D, Real>(options, [&](PairFinder<D, Real>& finder, const PairFilters& filters) {
+    finder.find(boxes, pairs, filters);
+  });
+}
+
+template <int D, typename Real>
+void find_pairs(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs, const FindOptions& options) {
+  find_with<D, Real>(options, [&](PairFinder<D, Real>& finder, const PairFilters& filters) {
+    finder.find_between(left, right, pairs, filters);
+  });
+}
+
+}  // namespace detail
+
+/// Boxes: a std::vector, std::array, std::span ... of Box<2>, Box<3>, DoubleBox2 or DoubleBox3; or a BoxView
+/// of them in structs of the caller's own.
+template <typename T>
+concept BoxArray = requires {
+  typename detail::ViewTraits<T>::View;
+};
+
+/// FindOptions, or the spec alone.
+template <typename T>
+concept FindOption = std::same_as<T, FindOptions> || std::convertible_to<const T&, std::string_view>;
+
+/// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
+/// spec and the boxes.
+///
+/// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
+/// first box with a NaN or with min > max, InvalidFrame where there are filters and not one for each box, and
+/// InvalidSpec. Thread-safe. A finder kept from make_finder() saves the memory's allocation when calls are
+/// many.
+template <BoxArray Boxes, FindOption Options = FindOptions>
+void find_pairs(const Boxes& boxes, PairSink& pairs, const Options& options = {}) {
+  using View = typename detail::ViewTraits<Boxes>::View;
+  detail::find_pairs(View(boxes), pairs, detail::options_of(options));
+}
+
+/// The same pairs in a vector.
+template <BoxArray Boxes, FindOption Options = FindOptions>
+std::vector<Pair> find_pairs(const Boxes& boxes, const Options& options = {}) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  find_pairs(boxes, collector, options);
+  return pairs;
+}
+
+/// Writes every pair of a box of `left` and an overlapping one of `right`, once, and flushes: a pair's first
+/// is a place in `left` and its second one in `right`. The rest as for one array.
+template <BoxArray Left, BoxArray Right, FindOption Options = FindOptions>
+requires std::same_as < typename detail::ViewTraits<Left>::View,
+typename detail::ViewTraits<Right>::View >
+    void find_pairs(const Left& left, const Right& right, PairSink& pairs, const Options& options = {}) {
+  using View = typename detail::ViewTraits<Left>::View;
+  detail::find_pairs(View(left), View(right), pairs, detail::options_of(options));
+}
+
+/// The same pairs in a vector.
+template <BoxArray Left, BoxArray Right, FindOption Options = FindOptions>
+requires std::same_as < typename detail::ViewTraits<Left>::View,
+typename detail::ViewTraits<Right>::View >
+    std::vector<Pair> find_pairs(const Left& left, const Right& right, const Options& options = {}) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  find_pairs(left, right, collector, options);
+  return pairs;
+}
+
+/// The pairs of things that have boxes: `box_of(thing)` or `thing.*box_of` is a thing's box. One pass gathers
+/// the boxes.
+template <std::ranges::forward_range Things, typename Projection, FindOption Options = FindOptions>
+requires(!BoxArray<Things>) std::vector<Pair> find_pairs(const Things& things, const Options& options,
+                                                         Projection box_of) {
+  using Box =
+      std::remove_cvref_t<std::invoke_result_t<Projection&, std::ranges::range_reference_t<const Things>>>;
+  std::vector<Box> boxes;
+  if constexpr (std::ranges::sized_range<const Things>) boxes.reserve(std::ranges::size(things));
+  for (const auto& thing : things) boxes.push_back(std::invoke(box_of, thing));
+  return find_pairs(boxes, options);
+}
+
+}  // namespace broadside
