@@ -27,7 +27,7 @@
 #include "interface/follow_costs.hpp"
 #include "interface/yielding.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// Up to here comparing all costs less than any order.
@@ -310,4 +310,4 @@ Algorithm automatic() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -17,7 +17,7 @@
 #include "kernels/bvh_join.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 template <int D>
@@ -97,4 +97,4 @@ Algorithm bvh() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -16,7 +16,7 @@
 #include "core/radix_sort.hpp"
 #include "kernels/run.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A box in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
 /// run.
@@ -115,4 +115,4 @@ class GridSweep {
   kernels::RunBuffer<D> run_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

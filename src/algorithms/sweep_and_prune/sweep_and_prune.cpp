@@ -31,7 +31,7 @@
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// What filing a box once more costs, in tests of two boxes.
@@ -248,4 +248,4 @@ Algorithm sweep_and_prune() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm
