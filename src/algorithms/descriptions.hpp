@@ -8,7 +8,7 @@
 
 #include "interface/candidate_tracker.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 Algorithm automatic();  // of auto/
 Algorithm brute_force();
@@ -24,4 +24,4 @@ std::unique_ptr<core::CandidateTracker<D>> grid_candidates();
 /// Those that BROADSIDE_ALGORITHMS lists, in its order: CMake writes this function.
 std::vector<Algorithm> linked_algorithms();
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

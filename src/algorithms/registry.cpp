@@ -19,7 +19,7 @@ namespace {
 /// The list of algorithms after each registration; the last one counts. The earlier ones stay, because spans
 /// and references into them were given out.
 std::list<std::vector<Algorithm>>& lists() {
-  static std::list<std::vector<Algorithm>> lists = {algorithms::linked_algorithms()};
+  static std::list<std::vector<Algorithm>> lists = {algorithm::linked_algorithms()};
   return lists;
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// False candidates a box that cost about what rounding all boxes anew does.
@@ -92,4 +92,4 @@ std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
 template class DoubleFollower<2>;
 template class DoubleFollower<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

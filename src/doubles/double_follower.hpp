@@ -14,7 +14,7 @@
 #include "core/rounding.hpp"
 #include "interface/candidate_tracker.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So all pairs
 /// that began or ended are among those of a changed box with what it overlaps as floats, or did. How
@@ -42,4 +42,4 @@ class DoubleFollower final : public PairTracker<D, double> {
   std::vector<Box<D>> now_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -28,7 +28,7 @@
 #include "interface/follow_costs.hpp"
 #include "interface/yielding.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// Up to here comparing all costs less than any order.
@@ -311,4 +311,4 @@ Algorithm automatic() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -16,7 +16,7 @@
 #include "core/sample.hpp"
 #include "kernels/sweep.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// A sweep of so few boxes costs about what a further cut would.
@@ -284,4 +284,4 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
 template class SegmentJoin<2>;
 template class SegmentJoin<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -18,7 +18,7 @@
 #include "core/sorted_boxes.hpp"
 #include "kernels/run.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Cost: O((n + k) log^D n) whatever the boxes, where medians of samples halve them. Memory: O(n log n), kept
 /// from one search to the next.
@@ -97,4 +97,4 @@ class SegmentJoin {
   Statistics statistics_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -12,7 +12,7 @@
 #include "interface/follow_costs.hpp"
 #include "kernels/sweep.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// What a box takes in an algorithm that is not this one, in boxes compared.
@@ -86,4 +86,4 @@ Algorithm brute_force() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

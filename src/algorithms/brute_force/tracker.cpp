@@ -13,7 +13,7 @@
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// So many boxes are compared with all that changed, while they are in the nearest cache.
@@ -92,4 +92,4 @@ std::unique_ptr<PairTracker<D>> make_brute_force_tracker() {
 template std::unique_ptr<PairTracker<2>> make_brute_force_tracker();
 template std::unique_ptr<PairTracker<3>> make_brute_force_tracker();
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

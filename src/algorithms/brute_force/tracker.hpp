@@ -5,10 +5,10 @@
 
 #include "broadside/tracker.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A tracker that compares each changed box with all others.
 template <int D>
 std::unique_ptr<PairTracker<D>> make_brute_force_tracker();
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

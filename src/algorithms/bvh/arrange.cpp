@@ -6,7 +6,7 @@
 
 #include "kernels/bvh.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 using kernels::fan_out;
@@ -50,4 +50,4 @@ void arrange(std::span<NumberedBox<D>> leaves) {
 template void arrange(std::span<NumberedBox<2>>);
 template void arrange(std::span<NumberedBox<3>>);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

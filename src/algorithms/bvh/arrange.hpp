@@ -7,7 +7,7 @@
 
 #include "broadside/box.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A box, or a node's bounds, and its number.
 template <int D>
@@ -60,4 +60,4 @@ int widest_axis(std::span<const NumberedBox<D>> boxes) {
 template <int D>
 void arrange(std::span<NumberedBox<D>> leaves);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 inline constexpr std::size_t most_buckets = 2048;
 
@@ -42,4 +42,4 @@ struct Buckets {
   std::uint32_t count = 1;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -18,7 +18,7 @@
 #include "kernels/bvh_join.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 template <int D>
@@ -98,4 +98,4 @@ Algorithm bvh() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

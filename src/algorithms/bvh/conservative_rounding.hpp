@@ -13,7 +13,7 @@
 
 #include "core/rounding.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A float less than `value` by at least half of its last place, or -inf; at most 2^100, so that what is
 /// computed with it does not overflow.
@@ -56,4 +56,4 @@ class ConservativeRounding {
   std::array<core::LinearFit, D> fit_{};
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -11,7 +11,7 @@
 
 #include "interface/encloses.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 using kernels::fan_out;
 using kernels::leaf_bit;
@@ -285,4 +285,4 @@ std::size_t DynamicBvh<D>::bytes() const noexcept {
 template class DynamicBvh<2>;
 template class DynamicBvh<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

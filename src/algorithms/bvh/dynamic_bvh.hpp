@@ -14,7 +14,7 @@
 #include "algorithms/bvh/packer.hpp"
 #include "kernels/bvh.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Packed by BvhPacker, and maintained as an R-tree: a box that leaves its leaf is inserted where bounds grow
 /// least, full nodes are split, empty ones vanish. All leaves are equally deep.
@@ -100,4 +100,4 @@ class DynamicBvh {
   std::array<std::vector<std::uint32_t>, 2> lists_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

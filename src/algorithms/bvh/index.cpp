@@ -10,7 +10,7 @@
 
 #include "interface/squared_distance.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 using kernels::fan_out;
@@ -226,7 +226,7 @@ bool BvhIndex<D, Real>::find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
   Met<D, Real> found(*this, cast, visitor, eligible);
-  found.t_max = algorithms::in_tree(cast.t_max, exponent);
+  found.t_max = algorithm::in_tree(cast.t_max, exponent);
   return kernels::find_met(tree_.view(), query, found) && found.take();
 }
 
@@ -237,7 +237,7 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
   First<D, Real> found(*this, cast, eligible, exponent);
-  found.t_max = algorithms::in_tree(cast.t_max, exponent);
+  found.t_max = algorithm::in_tree(cast.t_max, exponent);
   kernels::find_first_met(tree_.view(), query, found);
   return found.best;
 }
@@ -323,13 +323,13 @@ template class BvhIndex<2, double>;
 template class BvhIndex<3, float>;
 template class BvhIndex<3, double>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm
 
 namespace broadside {
 
 template <int D, typename Real>
 std::unique_ptr<BoxIndex<D, Real>> make_box_index() {
-  return std::make_unique<algorithms::BvhIndex<D, Real>>();
+  return std::make_unique<algorithm::BvhIndex<D, Real>>();
 }
 
 template std::unique_ptr<BoxIndex<2, float>> make_box_index();

@@ -12,7 +12,7 @@
 #include "algorithms/bvh/dynamic_bvh.hpp"
 #include "kernels/bvh_query.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Floats are searched exactly by the kernels. Boxes of doubles are in the tree as floats about an origin, by
 /// conservative rounding; what the kernels find there is tested again by the definitions, in double.
@@ -58,4 +58,4 @@ class BvhIndex final : public BoxIndex<D, Real> {
   ConservativeRounding<D> rounding_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -3,7 +3,7 @@
 
 #include "core/nan_box.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 using kernels::fan_out;
@@ -88,4 +88,4 @@ std::size_t PackedLevels<D>::bytes() const noexcept {
 template class PackedLevels<2>;
 template class PackedLevels<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

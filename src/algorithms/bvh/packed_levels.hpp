@@ -13,7 +13,7 @@
 
 #include "kernels/bvh_join.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// As many places as leaves that are to hold `size` boxes have.
 constexpr std::size_t whole_leaves(std::size_t size) {
@@ -75,4 +75,4 @@ class PackedLevels {
   kernels::PackedBvh<D> tree_{};
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

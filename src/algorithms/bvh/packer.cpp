@@ -16,7 +16,7 @@
 
 #include "algorithms/bvh/buckets.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 using kernels::fan_out;
@@ -246,4 +246,4 @@ std::size_t BvhPacker<D>::bytes() const noexcept {
 template class BvhPacker<2>;
 template class BvhPacker<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

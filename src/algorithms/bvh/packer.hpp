@@ -16,7 +16,7 @@
 #include "core/sorted_boxes.hpp"
 #include "kernels/bvh_join.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Builds trees and holds the last one built.
 ///
@@ -71,4 +71,4 @@ class BvhPacker {
   PackedLevels<D> levels_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -20,7 +20,7 @@
 #include "interface/moved_boxes.hpp"
 #include "kernels/bvh_follow.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// The fraction of changed boxes from which finding all pairs anew is not slower.
@@ -213,4 +213,4 @@ std::unique_ptr<PairTracker<D>> make_bvh_tracker(const Settings& settings,
 template std::unique_ptr<PairTracker<2>> make_bvh_tracker(const Settings&, std::unique_ptr<PairFinder<2>>);
 template std::unique_ptr<PairTracker<3>> make_bvh_tracker(const Settings&, std::unique_ptr<PairFinder<3>>);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

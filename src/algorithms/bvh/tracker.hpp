@@ -6,7 +6,7 @@
 
 #include "broadside/algorithm.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// The tunable `update`.
 std::vector<Tunable> bvh_tracking();
@@ -16,4 +16,4 @@ template <int D>
 std::unique_ptr<PairTracker<D>> make_bvh_tracker(const Settings& settings,
                                                  std::unique_ptr<PairFinder<D>> finder);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

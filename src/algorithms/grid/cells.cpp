@@ -10,7 +10,7 @@
 
 #include "core/grow.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 using kernels::block_size;
 using kernels::no_slot;
@@ -163,4 +163,4 @@ std::size_t HierarchicalCells<D>::bytes() const noexcept {
 template class HierarchicalCells<2>;
 template class HierarchicalCells<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -14,7 +14,7 @@
 #include "kernels/block_pool.hpp"
 #include "kernels/moved.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 template <int D>
 class HierarchicalCells {
@@ -60,4 +60,4 @@ class HierarchicalCells {
   std::size_t boxes_ = 0;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -33,7 +33,7 @@
 #include "kernels/run.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 template <int D>
@@ -260,4 +260,4 @@ std::unique_ptr<core::CandidateTracker<D>> grid_candidates() {
 template std::unique_ptr<core::CandidateTracker<2>> grid_candidates();
 template std::unique_ptr<core::CandidateTracker<3>> grid_candidates();
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

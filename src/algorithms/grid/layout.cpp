@@ -8,7 +8,7 @@
 
 #include "core/radix_sort.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -175,4 +175,4 @@ void GridLayout<D>::set_slabs() {
 template class GridLayout<2>;
 template class GridLayout<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

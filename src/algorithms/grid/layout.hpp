@@ -12,7 +12,7 @@
 #include "core/cell_axis.hpp"
 #include "core/sample.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Cells over all axes but the one that is swept. On each of them they are equally wide, and those at the
 /// ends take in what lies beyond. The cells of the first of these axes make a row; in 3D there are rows one
@@ -73,4 +73,4 @@ class GridLayout {
   std::vector<float> slab_border_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

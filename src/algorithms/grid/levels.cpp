@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// Boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
@@ -171,4 +171,4 @@ bool CellLevels<D>::disperse_crowds(std::span<const std::uint32_t> counts) {
 template class CellLevels<2>;
 template class CellLevels<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

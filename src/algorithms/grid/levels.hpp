@@ -17,7 +17,7 @@
 #include "core/sample.hpp"
 #include "kernels/moved.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// The last level is one cell: it is for boxes that are about as long as all is.
 template <int D>
@@ -96,4 +96,4 @@ class CellLevels {
   std::size_t count_ = 1;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -15,7 +15,7 @@
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 constexpr std::size_t least_buckets = 16;
@@ -282,4 +282,4 @@ void GridSweep<D>::sort(const Lists& lists, std::size_t count) {
 template class GridSweep<2>;
 template class GridSweep<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -17,7 +17,7 @@
 #include "core/radix_sort.hpp"
 #include "kernels/run.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A box in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
 /// run.
@@ -116,4 +116,4 @@ class GridSweep {
   kernels::RunBuffer<D> run_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -12,7 +12,7 @@
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// Boxes that are moved before the kernel searches for them: enough to make up for the call, and few enough
@@ -115,4 +115,4 @@ std::size_t GridTracker<D>::algorithm_bytes() const noexcept {
 template class GridTracker<2>;
 template class GridTracker<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

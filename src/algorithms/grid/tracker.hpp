@@ -13,7 +13,7 @@
 #include "core/moved_box.hpp"
 #include "interface/candidate_tracker.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
 /// longer suit the boxes: not before searching has cost that much too much.
@@ -44,4 +44,4 @@ class GridTracker final : public core::CandidateTracker<D> {
   double excess_ = 0;  // blocks looked at beyond what is usual
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

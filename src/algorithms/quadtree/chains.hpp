@@ -10,7 +10,7 @@
 
 #include "kernels/block_pool.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A chain is named by its first block, no_slot if it is empty. A box keeps its slot until it is erased or
 /// its chain is drained.
@@ -67,4 +67,4 @@ class QuadtreeChains {
   kernels::BlockPool<D> pool_;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

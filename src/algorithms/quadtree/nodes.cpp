@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// The most references a box that splitting may lead to.
@@ -265,4 +265,4 @@ bool QuadtreeNodes<D>::merge(std::uint32_t node, std::span<const Box<D>> boxes) 
 template class QuadtreeNodes<2>;
 template class QuadtreeNodes<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -13,7 +13,7 @@
 
 #include "algorithms/quadtree/chains.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// Sentinel: "no child" or "no parent".
 inline constexpr std::uint32_t no_node = 0xffffffffU;
@@ -143,4 +143,4 @@ class QuadtreeNodes {
   std::vector<std::uint8_t> masks_;    // of the uppermost node's: the children that each one touches, or 0
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

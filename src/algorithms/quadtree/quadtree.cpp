@@ -34,7 +34,7 @@
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// One thread splits nodes until each thread has this many.
@@ -296,4 +296,4 @@ Algorithm quadtree() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -13,7 +13,7 @@
 
 #include "core/sorted_boxes.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A box in a node. Bit a of `apart` is set if the box starts before the node's region on axis a; the rest
 /// as in a run.
@@ -152,4 +152,4 @@ class QuadtreeStack {
   }
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -20,7 +20,7 @@
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 template <int D>
@@ -216,4 +216,4 @@ std::unique_ptr<PairTracker<D>> make_quadtree_tracker(std::uint32_t capacity) {
 template std::unique_ptr<PairTracker<2>> make_quadtree_tracker(std::uint32_t);
 template std::unique_ptr<PairTracker<3>> make_quadtree_tracker(std::uint32_t);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -6,7 +6,7 @@
 
 #include "broadside/tracker.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A tracker that keeps a tree whose leaves hold up to `capacity` boxes.
 template <int D>
@@ -16,4 +16,4 @@ std::unique_ptr<PairTracker<D>> make_quadtree_tracker(std::uint32_t capacity);
 /// boxes.
 inline constexpr std::uint32_t tracking_capacity = 32;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

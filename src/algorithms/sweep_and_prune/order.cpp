@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -223,4 +223,4 @@ std::size_t SweepOrder<D>::bytes() const noexcept {
 template class SweepOrder<2>;
 template class SweepOrder<3>;
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -13,7 +13,7 @@
 
 #include "kernels/moved.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 
 /// A box's place in the order: by where it begins on the swept axis, and of equal ones by id.
 struct SweepKey {
@@ -110,4 +110,4 @@ class SweepOrder {
   std::vector<BoxId>& id_ = arrays_.id;
 };
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -32,7 +32,7 @@
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// What filing a box once more costs, in tests of two boxes.
@@ -249,4 +249,4 @@ Algorithm sweep_and_prune() {
   };
 }
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -15,7 +15,7 @@
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 /// After this many tests, and this many a box, another look at the axes pays.
@@ -160,4 +160,4 @@ std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracker(int axis) {
 template std::unique_ptr<PairTracker<2>> make_sweep_and_prune_tracker(int);
 template std::unique_ptr<PairTracker<3>> make_sweep_and_prune_tracker(int);
 
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm

@@ -19,7 +19,7 @@
 #include "kernels/bvh_query.hpp"
 #include "tests/instruction_sets.hpp"
 
-namespace broadside::algorithms {
+namespace broadside::algorithm {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -201,4 +201,4 @@ TEST(DynamicBvh, TellsWhatMovesToggle) {
 }
 
 }  // namespace
-}  // namespace broadside::algorithms
+}  // namespace broadside::algorithm
