@@ -271,7 +271,7 @@ std::vector<core::Follower<D, float>> followers() {
       {"grid", [] { return make_tracker<D>("grid:update=follow"); }, core::grid_following<D>},
       {"quadtree", [] { return make_tracker<D>("quadtree:update=follow"); },
        core::quadtree_following_for_auto},
-      {"bvh", [] { return make_tracker<D>("bvh:update=reinsert"); }, core::bvh_following_for_auto},
+      {"bvh", [] { return make_tracker<D>("bvh:update=follow"); }, core::bvh_following_for_auto},
   };
 }
 
