@@ -148,8 +148,11 @@ class PairTracker {
   /// this tracker's.
   void update_with(PairTracker& other, const Change<D, Real>& change, PairSink& begun, PairSink& ended);
 
-  /// The bytes of what another tracker's algorithm keeps, for who works through one.
+  /// For a tracker that works through another: what that one's algorithm keeps, and its index.
   static std::size_t kept_bytes(const PairTracker& other) noexcept { return other.algorithm_bytes(); }
+  static const BoxIndex<D, Real>* index_of(const PairTracker& other) noexcept {
+    return other.algorithm_index();
+  }
 
  private:
   /// What an algorithm writes: the events of `change`, in any order. One may be written more than once.

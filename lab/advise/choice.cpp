@@ -127,10 +127,7 @@ std::vector<std::string> cells(const Signals& signals) {
 std::vector<Trial> trials_of(std::string_view algorithm, const Signals& signals) {
   const bool moves = signals.motion.has_value();
   std::vector<Trial> trials;
-  const bool adapts = algorithm == "auto" || algorithm == "brute_force" || algorithm == "grid" ||
-                      algorithm == "quadtree" || algorithm == "sweep_and_prune";
-  if (adapts && moves) trials.push_back({"update", {"follow", "rebuild"}});
-  if (algorithm == "bvh" && moves) trials.push_back({"update", {"reinsert", "rebuild"}});
+  if (moves) trials.push_back({"update", {"follow", "rebuild"}});
   if (algorithm == "grid") trials.push_back({"cell", cells(signals)});
   if (algorithm == "quadtree") trials.push_back({"capacity", {"8", "16", "32", "64", "128"}});
   if (algorithm == "sweep_and_prune") {

@@ -23,10 +23,16 @@ std::string_view current_algorithm(std::string_view name) noexcept {
   return name == "hierarchical_grid" ? "grid" : name;
 }
 
+std::string_view current_value(std::string_view algorithm, std::string_view tunable,
+                               std::string_view value) noexcept {
+  return algorithm == "bvh" && tunable == "update" && value == "reinsert" ? "follow" : value;
+}
+
 std::string current_spec(std::string_view spec) {
   Spec current = Spec::parse(spec);
   current.name = current_algorithm(current.name);
   if (current.name.starts_with("paper_")) return current.text();
+  for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
   std::erase_if(current.values, [](const std::pair<std::string, std::string>& given) {
     const auto& [tunable, value] = given;
     return !former_tunable(tunable).empty() || !former_value(tunable, value).empty();

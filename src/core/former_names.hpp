@@ -9,6 +9,10 @@ namespace broadside::core {
 /// What an algorithm of that name is called now; the name itself where it is no former one.
 std::string_view current_algorithm(std::string_view name) noexcept;
 
+/// What a value of an algorithm's tunable is called now, where only its name changed; else the value itself.
+std::string_view current_value(std::string_view algorithm, std::string_view tunable,
+                               std::string_view value) noexcept;
+
 /// A spec of an earlier version as this one understands it: renamed, and without the tunables and values that
 /// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
 std::string current_spec(std::string_view spec);

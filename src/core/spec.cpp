@@ -103,7 +103,8 @@ std::string Spec::text() const {
 
 Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
   for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.standard);
-  for (const auto& [name, value] : spec.values) {
+  for (const auto& [name, given] : spec.values) {
+    const std::string value(core::current_value(spec.name, name, given));
     const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
     if (tunable == tunables.end()) {
       std::vector<std::string> names;

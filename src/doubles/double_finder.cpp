@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <utility>
 
 #include "doubles/exact_sink.hpp"
@@ -11,16 +10,30 @@
 namespace broadside::core {
 namespace {
 
-/// All pairs of so few boxes are few, false ones included.
+/// Up to this many boxes have few pairs, false ones included.
 constexpr std::size_t few_boxes = 256;
 
-/// Neighbours are brought together in memory by squares, in 3D cubes, of so many boxes: some cache lines of
-/// floats.
-constexpr double boxes_per_bucket = 64;
+/// Boxes are sorted in memory by squares, in 3D cubes, that hold this many of them on average: a few cache
+/// lines of floats.
+constexpr std::size_t boxes_per_bucket = 64;
 
 /// Limits the buckets to as many as a bucket_of_ can tell apart.
 template <int D>
-constexpr double most_buckets_per_side = D == 2 ? 181 : 31;
+constexpr std::size_t most_buckets_per_side = D == 2 ? 181 : 31;
+
+/// The buckets along each axis: the greatest number whose power is not above what the boxes fill. In
+/// integers, since the order of the pairs depends on it.
+template <int D>
+std::size_t buckets_per_side(std::size_t boxes) {
+  const auto fits = [boxes](std::size_t side) {
+    std::size_t buckets = 1;
+    for (int axis = 0; axis < D; ++axis) buckets *= side;
+    return buckets * boxes_per_bucket <= boxes;
+  };
+  std::size_t side = 1;
+  while (side < most_buckets_per_side<D> && fits(side + 1)) ++side;
+  return side;
+}
 
 }  // namespace
 
@@ -53,14 +66,13 @@ void DoubleFinder<D>::find_valid(std::span<const Box<D, double>> boxes, PairSink
 
 template <int D>
 bool DoubleFinder<D>::measure(std::span<const Box<D, double>> boxes, const Fit& fit) {
-  const double buckets = static_cast<double>(boxes.size()) / boxes_per_bucket;
-  const double per_side = std::floor(std::clamp(std::pow(buckets, 1.0 / D), 1.0, most_buckets_per_side<D>));
+  const std::size_t per_side = buckets_per_side<D>(boxes.size());
   const auto last = static_cast<double>(per_side - 1);
   std::array<double, D> per_unit;
   bucket_count_ = 1;
   for (int axis = 0; axis < D; ++axis) {
-    per_unit[axis] = per_side / (fit[axis].high - fit[axis].low);
-    bucket_count_ *= static_cast<std::size_t>(per_side);
+    per_unit[axis] = static_cast<double>(per_side) / (fit[axis].high - fit[axis].low);
+    bucket_count_ *= per_side;
   }
   parallel_.start(this->workers(), boxes.size());
   bucket_of_.resize(std::max(bucket_of_.size(), boxes.size()));

@@ -5,17 +5,13 @@
 #include <array>
 #include <utility>
 
+#include "core/prefetch.hpp"
+
 namespace broadside::core {
 namespace {
 
 /// So many pairs before a box is looked up, its floats are asked for.
 constexpr std::size_t looked_ahead = 32;
-
-void prefetch([[maybe_unused]] const void* address) {
-#ifdef __GNUC__  // clang says so as well
-  __builtin_prefetch(address);
-#endif
-}
 
 /// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
 template <int D>

@@ -161,6 +161,12 @@ std::string AdaptiveTracker<D, Real>::explanation() const {
   return found + "; " + changed + ", and it pays to follow boxes up to " + break_even;
 }
 
+/// A follower that was only made ready for the next frame has seen no filters: its index does not do yet.
+template <int D, typename Real>
+const BoxIndex<D, Real>* AdaptiveTracker<D, Real>::algorithm_index() const noexcept {
+  return were_few_ || !was_followed_ ? nullptr : this->index_of(*follower_);
+}
+
 template <int D, typename Real>
 std::size_t AdaptiveTracker<D, Real>::algorithm_bytes() const noexcept {
   std::size_t bytes = (pairs_.capacity() + found_.capacity()) * sizeof(Pair);

@@ -42,6 +42,7 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
   void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }
   std::size_t algorithm_bytes() const noexcept override;
+  const BoxIndex<D, Real>* algorithm_index() const noexcept override;
 
   bool are_few(std::size_t boxes) const;
   void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);

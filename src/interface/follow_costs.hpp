@@ -44,8 +44,8 @@ inline constexpr FollowCosts quadtree_following = {.start = 100,
                                                    .further_test = 1.2};
 template <int D>
 inline constexpr FollowCosts bvh_following = {.start = 100,
-                                              .mover = D == 2 ? 133 : 260,
-                                              .mover_alone = D == 2 ? 80 : 170,
+                                              .mover = D == 2 ? 160 : 250,
+                                              .mover_alone = D == 2 ? 138 : 215,
                                               .test = 0.9,
                                               .further_test = 0.9};
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/prefetch.hpp"
+
 namespace broadside::core {
 namespace {
 
@@ -15,8 +17,8 @@ constexpr std::size_t ahead = 16;
 
 template <typename Box>
 void call_for(std::span<const Box> boxes, Pair pair) {
-  __builtin_prefetch(&boxes[index(pair.first)]);
-  __builtin_prefetch(&boxes[index(pair.second)]);
+  prefetch(&boxes[index(pair.first)]);
+  prefetch(&boxes[index(pair.second)]);
 }
 
 /// Whether two boxes, each of them present or absent, overlap: without a branch, since nobody can foretell.

@@ -130,24 +130,14 @@ template <int D>
 bool met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   const Cast<D> cast(query);
   const FloatVector limit = Cast<D>::limit(found.t_max);
-  std::uint32_t waiting[(longest_path + 1) * fan_out];
-  std::size_t count = 1;
-  waiting[0] = tree.root;
-  while (count > 0) {
-    const std::uint32_t number = waiting[--count];
-    const Block<D>& node = tree.nodes[number & ~leaf_bit];
-    if ((number & leaf_bit) != 0) {
-      cast.leaf(node, found, limit);
-      if (found.count >= found.full && !found.take()) return false;
-      continue;
-    }
-    for (std::size_t at = 0; at < fan_out; at += lanes) {
-      FloatVector enter;
-      const FloatMask hits = cast.may_meet(node, at, limit, enter);
-      count += append(node, at, hits, waiting + count);
-    }
-  }
-  return true;
+  const auto may_meet = [&](const Block<D>& node, std::size_t at) HWY_ATTR {
+    FloatVector enter;
+    return cast.may_meet(node, at, limit, enter);
+  };
+  return traverse(tree, may_meet, [&](const Block<D>& node) HWY_ATTR {
+    cast.leaf(node, found, limit);
+    return found.count < found.full || found.take();
+  });
 }
 
 /// A node that waits, and where it is entered, in the high half: bits of positive floats order as they do.

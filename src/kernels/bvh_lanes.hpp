@@ -42,6 +42,27 @@ HWY_INLINE std::size_t append(const Block<D>& node, std::size_t at, FloatMask ma
   return hn::CountTrue(Floats(), mask);
 }
 
+/// A depth-first traversal: goes on to the children that `may_hold(node, at)` lets through, a mask of those
+/// from `at` on, and calls `leaf` with each leaf that it reaches, until that returns false. Returns whether
+/// it did not.
+template <int D, typename MayHold, typename Leaf>
+HWY_INLINE bool traverse(const BvhView<D>& tree, const MayHold& may_hold, const Leaf& leaf) {
+  std::uint32_t waiting[(longest_path + 1) * fan_out];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const Block<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      if (!leaf(node)) return false;
+      continue;
+    }
+    for (std::size_t at = 0; at < fan_out; at += lanes)
+      count += append(node, at, may_hold(node, at), waiting + count);
+  }
+  return true;
+}
+
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -16,24 +16,15 @@ namespace {
 template <int D>
 bool overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found) {
   const BroadcastBox<D> query(box);
-  std::uint32_t waiting[(longest_path + 1) * fan_out];
-  std::size_t count = 1;
-  waiting[0] = tree.root;
-  while (count > 0) {
-    const std::uint32_t number = waiting[--count];
-    const Block<D>& node = tree.nodes[number & ~leaf_bit];
-    if ((number & leaf_bit) == 0) {
-      for (std::size_t at = 0; at < fan_out; at += lanes)
-        count += append(node, at, query.overlaps(node, at), waiting + count);
-      continue;
-    }
+  const auto overlaps = [&](const Block<D>& node, std::size_t at)
+                            HWY_ATTR { return query.overlaps(node, at); };
+  return traverse(tree, overlaps, [&](const Block<D>& node) HWY_ATTR {
     std::size_t hits = found.count;
     for (std::size_t at = 0; at < fan_out; at += lanes)
       hits += append(node, at, query.overlaps(node, at), found.ids.data() + hits);
     found.count = hits;
-    if (hits >= found.full && !found.take()) return false;
-  }
-  return true;
+    return hits < found.full || found.take();
+  });
 }
 
 template <int D>

@@ -85,16 +85,16 @@ class PairWriter {
     // A pair is its first id in the low half of 64 bits and its second one in the high half.
     const hn::Half<Ids> half;
     const hn::RepartitionToWide<Ids> wide;
-    auto* const to = reinterpret_cast<std::uint64_t*>(out_);
-    hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, first)),
-                      hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::LowerHalf(half, second)))),
-               wide, to);
+    // As bytes, which may be written to any object.
+    const hn::Repartition<std::uint8_t, Ids> bytes;
+    const auto write_half = [&](auto firsts, auto seconds, Pair* to) HWY_ATTR {
+      const auto pairs = hn::Or(hn::PromoteTo(wide, firsts), hn::ShiftLeft<32>(hn::PromoteTo(wide, seconds)));
+      hn::StoreU(hn::BitCast(bytes, pairs), bytes, reinterpret_cast<std::uint8_t*>(to));
+    };
+    write_half(hn::LowerHalf(half, first), hn::LowerHalf(half, second), out_);
     // Of many lanes few are hits.
-    if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide))) {
-      hn::StoreU(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, first)),
-                        hn::ShiftLeft<32>(hn::PromoteTo(wide, hn::UpperHalf(half, second)))),
-                 wide, to + hn::Lanes(wide));
-    }
+    if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide)))
+      write_half(hn::UpperHalf(half, first), hn::UpperHalf(half, second), out_ + hn::Lanes(wide));
 #endif
     out_ += count;
   }

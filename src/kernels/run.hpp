@@ -25,10 +25,10 @@ struct Run {
   std::array<const float*, D> max;
   const BoxId* id;
 
-  /// Two boxes with a bit of `apart` in common are not reported. Bit b is set if the box starts before the
-  /// run's cell on the cell's axis b: two that both do share an earlier cell, and their pair is reported
+  /// Two boxes with a bit of `dedup_mask` in common are not reported. Bit b is set if the box starts before
+  /// the run's cell on the cell's axis b: two that both do share an earlier cell, and their pair is reported
   /// there. The topmost bits are those of side_bit().
-  const std::uint32_t* apart;
+  const std::uint32_t* dedup_mask;
 
   std::size_t size;
 
@@ -51,14 +51,14 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
     run.max[axis] += begin;
   }
   run.id += begin;
-  run.apart += begin;
+  run.dedup_mask += begin;
   run.size -= begin;
   run.rows = end - begin;
   return run;
 }
 
-/// What to set of `apart` for a box of a search between two sets, of which the first `left_count` boxes are
-/// the left one: boxes of one set have it in common. Nothing if `left_count` is 0.
+/// What to set of `dedup_mask` for a box of a search between two sets, of which the first `left_count` boxes
+/// are the left one: boxes of one set have it in common. Nothing if `left_count` is 0.
 constexpr std::uint32_t side_bit(BoxId id, std::size_t left_count) noexcept {
   if (left_count == 0) return 0;
   return index(id) < left_count ? 1U << 30 : 1U << 31;
@@ -70,7 +70,7 @@ struct RunArrays {
   std::array<float*, D> min;
   std::array<float*, D> max;
   BoxId* id;
-  std::uint32_t* apart;
+  std::uint32_t* dedup_mask;
 };
 
 /// The memory of a run; it keeps what it has allocated.
@@ -83,24 +83,24 @@ class RunBuffer {
 
   /// Makes room for `count` boxes, so that append() need not.
   void reserve(std::size_t count) {
-    // `apart_` grows last: where it has room all have, also after memory ran out in between.
-    if (count + read_ahead <= apart_.size()) return;
+    // `dedup_mask_` grows last: where it has room all have, also after memory ran out in between.
+    if (count + read_ahead <= dedup_mask_.size()) return;
     for (int axis = 0; axis < D; ++axis) {
       min_[axis].resize(count + read_ahead);
       max_[axis].resize(count + read_ahead);
     }
     id_.resize(count + read_ahead);
-    apart_.resize(count + read_ahead);
+    dedup_mask_.resize(count + read_ahead);
   }
 
   /// Adds a box whose axes are already in the run's order. reserve() must have made the room.
-  void append(const Box<D>& box, BoxId id, std::uint32_t apart = 0) {
+  void append(const Box<D>& box, BoxId id, std::uint32_t dedup_mask = 0) {
     for (int axis = 0; axis < D; ++axis) {
       min_[axis][size_] = box.min[axis];
       max_[axis][size_] = box.max[axis];
     }
     id_[size_] = id;
-    apart_[size_] = apart;
+    dedup_mask_[size_] = dedup_mask;
     ++size_;
   }
 
@@ -112,7 +112,7 @@ class RunBuffer {
       arrays.max[axis] = max_[axis].data();
     }
     arrays.id = id_.data();
-    arrays.apart = apart_.data();
+    arrays.dedup_mask = dedup_mask_.data();
     return arrays;
   }
 
@@ -136,7 +136,7 @@ class RunBuffer {
       run.max[axis] = max_[axis].data();
     }
     run.id = id_.data();
-    run.apart = apart_.data();
+    run.dedup_mask = dedup_mask_.data();
     run.size = size_;
     run.slack = slack;
     return run;
@@ -149,13 +149,13 @@ class RunBuffer {
       std::swap(max_[axis][a], max_[axis][b]);
     }
     std::swap(id_[a], id_[b]);
-    std::swap(apart_[a], apart_[b]);
+    std::swap(dedup_mask_[a], dedup_mask_[b]);
   }
 
   std::array<std::vector<float>, D> min_;
   std::array<std::vector<float>, D> max_;
   std::vector<BoxId> id_;
-  std::vector<std::uint32_t> apart_;
+  std::vector<std::uint32_t> dedup_mask_;
   std::size_t size_ = 0;
 };
 

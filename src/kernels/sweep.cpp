@@ -34,7 +34,7 @@ static_assert(together == Writer::at_once);
 template <int D>
 struct Query {
   HWY_INLINE Query(const Run<D>& run, std::size_t i)
-      : id(hn::Set(Ids(), index(run.id[i]))), apart(hn::Set(Ids(), run.apart[i])) {
+      : id(hn::Set(Ids(), index(run.id[i]))), dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {
     for (int axis = 0; axis < D; ++axis) {
       min[axis] = hn::Set(Floats(), run.min[axis][i]);
       max[axis] = hn::Set(Floats(), run.max[axis][i]);
@@ -44,7 +44,7 @@ struct Query {
   FloatVector min[D];
   FloatVector max[D];
   IdVector id;
-  IdVector apart;
+  IdVector dedup_mask;
 };
 
 /// Which of the boxes from `at` on begin on axis 0 no later than the query ends.
@@ -65,7 +65,7 @@ HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t a
   }
   const Hits hits = hn::RebindMask(Ids(), touching);
   if constexpr (!Apart) return hits;
-  const IdVector common = hn::And(query.apart, hn::LoadU(Ids(), run.apart + at));
+  const IdVector common = hn::And(query.dedup_mask, hn::LoadU(Ids(), run.dedup_mask + at));
   return hn::And(hits, hn::Eq(common, hn::Zero(Ids())));
 }
 
@@ -101,7 +101,7 @@ struct Group {
 
   HWY_INLINE void load(const Run<D>& run, std::size_t at) {
     id = ids(run, at);
-    apart = hn::LoadU(Ids(), run.apart + at);
+    dedup_mask = hn::LoadU(Ids(), run.dedup_mask + at);
     for (int axis = 0; axis < D; ++axis) {
       min[axis] = hn::LoadU(Floats(), run.min[axis] + at);
       max[axis] = hn::LoadU(Floats(), run.max[axis] + at);
@@ -111,7 +111,7 @@ struct Group {
   FloatVector min[D];
   FloatVector max[D];
   IdVector id;
-  IdVector apart;
+  IdVector dedup_mask;
 };
 
 /// Compares `together` boxes with the ones `distance` places behind each, then with the next ones, and so on
@@ -145,7 +145,7 @@ HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::si
           touching = hn::And(touching, hn::Le(other.min[axis], group.max[axis]));
           touching = hn::And(touching, hn::Le(group.min[axis], other.max[axis]));
         }
-        const auto together_here = hn::Eq(hn::And(group.apart, other.apart), hn::Zero(Ids()));
+        const auto together_here = hn::Eq(hn::And(group.dedup_mask, other.dedup_mask), hn::Zero(Ids()));
         pairs.write(group.id, other.id, hn::And(hn::RebindMask(Ids(), touching), together_here));
       }
       if (open == 0 || (open <= few_windows && distance >= together)) return open;

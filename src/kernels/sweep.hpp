@@ -9,8 +9,8 @@
 
 namespace broadside::kernels {
 
-/// Reports the pairs of overlapping boxes within a run that is sorted by min[0], but for those that `apart`
-/// keeps apart. Returns the number of pairs of boxes compared.
+/// Reports the pairs of overlapping boxes within a run that is sorted by min[0], except those that
+/// `dedup_mask` rules out. Returns the number of pairs of boxes compared.
 template <int D>
 std::uint64_t sweep(const Run<D>& run, PairSink& pairs);
 
@@ -18,8 +18,8 @@ std::uint64_t sweep(const Run<D>& run, PairSink& pairs);
 template <int D>
 std::uint64_t sweep(const Run<D>& a, const Run<D>& b, PairSink& pairs);
 
-/// Reports the pairs of overlapping boxes within a run in any order, by comparing all of them; `apart` is not
-/// looked at.
+/// Reports the pairs of overlapping boxes within a run in any order, by comparing all of them; `dedup_mask`
+/// is not looked at.
 template <int D>
 std::uint64_t compare_all(const Run<D>& run, PairSink& pairs);
 

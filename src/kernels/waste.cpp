@@ -56,7 +56,7 @@ bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
     const std::size_t end = end_of(run.min[0], run.size, at, run.max[0][at]);
     const std::size_t stride = (end - at) / most_tests_of_one + 1;
     for (std::size_t other = at + 1; other < end; other += stride) {
-      bool overlaps = (run.apart[at] & run.apart[other]) == 0;
+      bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
       for (int axis = 0; axis < D; ++axis)
         overlaps &= run.min[axis][other] <= run.max[axis][at] && run.min[axis][at] <= run.max[axis][other];
       own_tests += stride;

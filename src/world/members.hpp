@@ -4,6 +4,7 @@
 
 #include "world/members/batch.hpp"
 #include "world/members/boxes.hpp"
+#include "world/members/construction.hpp"
 #include "world/members/filters.hpp"
 #include "world/members/memory.hpp"
 #include "world/members/pairs.hpp"

@@ -1,8 +1,7 @@
-// auto: looks at a sample of the boxes, and lets the algorithm search that suits them.
+// auto: looks at a sample of the boxes, and chooses the algorithm that suits them.
 //
-// The rules are from measurements over the generated scenes and the maps, with 16 to 1,000,000 boxes; how
-// near they come is a line of every comparison. They ask for what boxes are like, never for a clock: the same
-// boxes are always searched the same way.
+// The rules ask what the boxes are like, never a clock: the same boxes are always searched in the same way.
+// Their thresholds, and where these come from, are in thresholds.hpp.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -19,6 +18,7 @@
 
 #include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_join.hpp"
+#include "algorithms/auto/thresholds.hpp"
 #include "algorithms/descriptions.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -31,62 +31,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Up to here comparing all costs less than any order.
-template <int D>
-constexpr std::size_t few_boxes = D == 2 ? 256 : 400;
-
-/// And up to here where this part of all pairs overlaps, which then are most of the work.
-constexpr std::size_t few_boxes_in_one_place = 1000;
-constexpr double most_pairs = 0.5;
-
-/// Up to here a grid's cells cost more to lay out than they save over a tree.
-constexpr std::size_t boxes_for_cells = 6000;
-
-/// But for shapes for which a tree's bounds overlap, and for boxes of one size in 3D: cells pay from fewer
-/// boxes on where a box's longest side is so many times its shortest, where the mean of the sides' squares is
-/// so many times their mean's square, and where so many pairs overlap on some axis.
-constexpr double long_boxes = 4;
-constexpr double uneven_boxes = 1.6;
-constexpr double most_uneven_boxes = 40;
-constexpr double of_one_size = 1.0001;
-constexpr double flat = 0.9;
-template <int D>
-constexpr std::size_t long_boxes_for_cells = D == 2 ? 4000 : 1000;
-template <int D>
-constexpr std::size_t uneven_boxes_for_cells = D == 2 ? 3500 : 3000;
-constexpr std::size_t most_uneven_boxes_for_cells = 1000;
-constexpr std::size_t flat_boxes_for_cells = 1100;
-constexpr double most_overlaps_for_their_shape = 50;
-
-/// Up to so many tests a box a sweep beats a tree over boxes that stand in a line: those of which this part
-/// overlaps on each other axis.
-constexpr double tests_of_a_line = 16;
-constexpr double in_line = 0.5;
-constexpr std::size_t boxes_of_a_line = 800;
-
-/// Up to this many tests a box, a sweep along one axis needs no help.
-constexpr double tests_of_a_good_axis = 4;
-
-/// From so many overlaps a box on, most of what a cell tests is a pair, and filing boxes in several cells
-/// only repeats it.
-template <int D>
-constexpr double many_overlaps = D == 2 ? 6 : 200;
-
-/// From so many times as many boxes near each other on all axes as the single axes would let expect, cells
-/// that suit the clusters would be too many.
-template <int D>
-constexpr double clustered = D == 2 ? 2.2 : 3;
-
-/// Boxes of a sample are near if they begin within this part of its range, on every axis.
-constexpr float near = 1.0F / 16;
-
-constexpr std::size_t most_compared = 96;
-
-/// Below so many overlaps among the sampled boxes, how many there are is chance: one of them stands for n /
-/// 9,000 tests a box.
-constexpr double telling_overlaps = 8;
-
-/// What is chosen, and what for.
+/// Why an algorithm is chosen; which one, chosen_algorithm says.
 enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
 
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
@@ -94,6 +39,8 @@ constexpr std::array<std::string_view, 9> chosen_algorithm = {
 
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D> {
+  using Limits = AutoThresholds<D>;
+
  public:
   Outlined<D>* outlined() noexcept override { return this; }
 
@@ -102,8 +49,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     if (has_handed_over_)
       text +=
           "; it gave up, since its tests were far more than boxes and pairs account for, and a segment tree "
-          "found "
-          "what was left";
+          "found what was left";
     return text;
   }
 
@@ -177,56 +123,57 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   }
 
   Choice choose(std::span<const Box<D>> boxes) {
-    if (boxes.size() <= few_boxes<D>) return Choice::few;
-    if (boxes.size() <= boxes_for_cells) return choose_by_estimate(boxes);
-    sample_.take(boxes, most_compared);
+    if (boxes.size() <= Limits::few_boxes) return Choice::few;
+    if (boxes.size() <= Limits::boxes_for_cells) return choose_by_estimate(boxes);
+    sample_.take(boxes, Limits::most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
     tests_ = tests_along(best, count);
-    if (tests_ <= tests_of_a_good_axis) return Choice::one_axis;
+    if (tests_ <= Limits::tests_of_a_good_axis) return Choice::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
-    if (overlaps_ >= most_pairs * count / 2) return Choice::one_place;
-    if (overlaps_ >= many_overlaps<D>) return Choice::dense;
+    if (overlaps_ >= Limits::most_pairs * count / 2) return Choice::one_place;
+    if (overlaps_ >= Limits::many_overlaps) return Choice::dense;
     std::array<float, D> reach;
     for (int axis = 0; axis < D; ++axis)
-      reach[axis] =
-          static_cast<float>(double{near} * (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-    estimate_.take(boxes, most_compared);
+      reach[axis] = static_cast<float>(double{Limits::near} *
+                                       (static_cast<double>(sample_[axis].high) - sample_[axis].low));
+    estimate_.take(boxes, Limits::most_compared);
     clustering_ = estimate_.clustering(reach);
-    return clustering_ >= clustered<D> ? Choice::clusters : Choice::cells;
+    return clustering_ >= Limits::clustered ? Choice::clusters : Choice::cells;
   }
 
-  /// Chooses for so few boxes that to sort a sample of them would take a good part of the time.
+  /// Chooses for up to boxes_for_cells boxes, of which sorting a sample would take a good part of the time.
   Choice choose_by_estimate(std::span<const Box<D>> boxes) {
     const std::size_t size = boxes.size();
     const auto half = static_cast<double>(size) / 2;
-    estimate_.take(boxes, size < 2 * boxes_of_a_line ? 32 : 48);
+    estimate_.take(boxes, size < 2 * Limits::boxes_of_a_line ? 32 : 48);
     estimate_.compare();
     overlaps_ = half * estimate_.overlap_on_all();
-    if (estimate_.overlap_on_all() >= most_pairs)
-      return size <= few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
-    if (size < boxes_of_a_line) return Choice::tree;
+    if (estimate_.overlap_on_all() >= Limits::most_pairs)
+      return size <= Limits::few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
+    if (size < Limits::boxes_of_a_line) return Choice::tree;
     std::array<double, D> overlap = estimate_.overlap();
     std::ranges::sort(overlap);
     tests_ = half * overlap[0];
-    if (overlap[1] >= in_line && tests_ <= tests_of_a_line) return Choice::one_axis;
+    if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return Choice::one_axis;
     if (!shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
     std::array<float, D> reach = estimate_.range();
-    for (float& distance : reach) distance *= near;
+    for (float& distance : reach) distance *= Limits::near;
     clustering_ = estimate_.clustering(reach);
-    return clustering_ >= clustered<D> ? Choice::clusters : Choice::shapes;
+    return clustering_ >= Limits::clustered ? Choice::clusters : Choice::shapes;
   }
 
   bool shapes_suit_cells(std::span<const Box<D>> boxes, double most_on_an_axis) const {
     const std::size_t size = boxes.size();
-    if (overlaps_ >= most_overlaps_for_their_shape) return false;
-    if (D == 3 && size >= flat_boxes_for_cells && most_on_an_axis >= flat) return true;
-    if (size < most_uneven_boxes_for_cells) return false;
+    if (overlaps_ >= Limits::most_overlaps_for_their_shape) return false;
+    if (D == 3 && size >= Limits::flat_boxes_for_cells && most_on_an_axis >= Limits::flat) return true;
+    if (size < Limits::most_uneven_boxes_for_cells) return false;
     const core::ExtentStats sides = core::extent_stats<D>(boxes);
-    if (sides.unevenness >= most_uneven_boxes || (D == 3 && sides.unevenness <= of_one_size)) return true;
-    return (size >= long_boxes_for_cells<D> && sides.longest_over_shortest >= long_boxes) ||
-           (size >= uneven_boxes_for_cells<D> && sides.unevenness >= uneven_boxes);
+    if (sides.unevenness >= Limits::most_uneven_boxes || (D == 3 && sides.unevenness <= Limits::of_one_size))
+      return true;
+    return (size >= Limits::long_boxes_for_cells && sides.longest_over_shortest >= Limits::long_boxes) ||
+           (size >= Limits::uneven_boxes_for_cells && sides.unevenness >= Limits::uneven_boxes);
   }
 
   /// About how many tests a box a sweep of `count` boxes along the axis takes.
@@ -235,15 +182,15 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     const std::vector<float>& minima = sample.minima;
     const auto size = static_cast<double>(minima.size());
     const double measured = count * sample.overlap / 2;
-    if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps) return measured;
+    if (sample.overlap * size * (size - 1) / 2 >= Limits::telling_overlaps) return measured;
     // How many begin within a box's extent, by how close the sampled boxes near it stand to each other: so
     // clusters count for what they are.
-    constexpr std::size_t apart = 4;
+    constexpr std::size_t steps = 4;
     double density = 0;  // of all boxes, those that begin in a unit of length
-    for (std::size_t i = 0; i + apart < minima.size(); ++i) {
-      const double distance = static_cast<double>(minima[i + apart]) - minima[i];
+    for (std::size_t i = 0; i + steps < minima.size(); ++i) {
+      const double distance = static_cast<double>(minima[i + steps]) - minima[i];
       if (!(distance > 0)) return measured;
-      density += (apart - 1) / (distance * size * (size - apart));
+      density += (steps - 1) / (distance * size * (size - steps));
     }
     return count * density * sample.mean_extent;
   }
@@ -265,14 +212,14 @@ std::unique_ptr<PairFinder<D>> make(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
-/// Those after the first take over where it makes too many tests.
+/// The later ones take over where the first makes too many tests.
 template <int D>
 std::vector<core::Follower<D, float>> followers() {
   return {
       {"grid", [] { return make_tracker<D>("grid:update=follow"); }, core::grid_following<D>},
       {"quadtree", [] { return make_tracker<D>("quadtree:update=follow"); },
        core::quadtree_following_for_auto},
-      {"bvh", [] { return make_tracker<D>("bvh:update=reinsert"); }, core::bvh_following_for_auto},
+      {"bvh", [] { return make_tracker<D>("bvh:update=follow"); }, core::bvh_following_for_auto},
   };
 }
 
@@ -298,8 +245,7 @@ Algorithm automatic() {
   return {
       .name = "auto",
       .summary =
-          "looks at a sample of the boxes and chooses among the others; where boxes move, from frame to "
-          "frame",
+          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
       .source = "Broadside's measurements",
       .tunables = {core::threads_tunable(), core::update_tunable()},
       .finder_2d = make<2>,

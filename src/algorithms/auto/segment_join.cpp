@@ -93,7 +93,7 @@ void SegmentJoin<D>::cut_in_two(const Node& node, const Cut& cut) {
   const std::size_t top = stack_.size();
   const auto join_covering = [&](const List& covering, const List& others) {
     if (covering.size() == 0) return;
-    const auto begins = [&](const Reference& reference) { return (reference.apart & bit) == 0; };
+    const auto begins = [&](const Reference& reference) { return (reference.dedup_mask & bit) == 0; };
     search({covering, push(others, begins), false, node.open & ~bit, node.depth + 1});
     stack_.resize(top);
   };
@@ -115,14 +115,14 @@ auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
   for (const Reference& reference : std::span(stack_).subspan(list.begin, size)) {
     const float min = box(reference).min[cut.axis];
     const float max = box(reference).max[cut.axis];
-    const std::uint32_t has_begun = reference.apart >> cut.axis & 1U;
+    const std::uint32_t has_begun = reference.dedup_mask >> cut.axis & 1U;
     const bool covers = has_begun != 0 && max >= cut.high;
     // Written in any case, and kept if it belongs there: no predictor could know.
     *out[0] = reference;
     out[0] += covers ? 1 : 0;
     *out[1] = reference;
     out[1] += !covers && min < cut.at && max >= cut.low ? 1 : 0;
-    *out[2] = {reference.place, reference.apart | (min < cut.at ? 1U << cut.axis : 0U)};
+    *out[2] = {reference.place, reference.dedup_mask | (min < cut.at ? 1U << cut.axis : 0U)};
     out[2] += !covers && max >= cut.at ? 1 : 0;
   }
   // Without the gaps between them.
@@ -169,7 +169,7 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
     std::array<float, samples> minima;
     std::size_t count = 0;
     for (const Reference& reference : sampled) {
-      if ((reference.apart >> axis & 1U) == 0) minima[count++] = box(reference).min[axis];
+      if ((reference.dedup_mask >> axis & 1U) == 0) minima[count++] = box(reference).min[axis];
     }
     std::sort(minima.begin(), minima.begin() + count);
     const float at = count == 0 ? 0 : minima[count / 2];
@@ -177,7 +177,7 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
     std::size_t parted = 1;
     for (const Reference& reference : sampled) {
       const Box<D>& b = box(reference);
-      const bool is_covering = (reference.apart >> axis & 1U) != 0 && b.max[axis] >= high;
+      const bool is_covering = (reference.dedup_mask >> axis & 1U) != 0 && b.max[axis] >= high;
       parted += static_cast<std::size_t>(is_covering || !(b.min[axis] < at && b.max[axis] >= at));
     }
     if (count > 0 && minima[0] == high) parted = 1;
@@ -199,7 +199,7 @@ bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
   bool any = false;
   const auto look_at = [&](const List& list) {
     for (std::size_t i = list.begin; i < list.end; ++i) {
-      if ((stack_[i].apart >> cut.axis & 1U) != 0) continue;
+      if ((stack_[i].dedup_mask >> cut.axis & 1U) != 0) continue;
       any = true;
       const float min = box(stack_[i]).min[cut.axis];
       low = std::min(low, min);
@@ -216,7 +216,7 @@ bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
     const auto look_again = [&](const List& list) {
       for (std::size_t i = list.begin; i < list.end; ++i) {
         const float min = box(stack_[i]).min[cut.axis];
-        if ((stack_[i].apart >> cut.axis & 1U) == 0 && min > low) next = std::min(next, min);
+        if ((stack_[i].dedup_mask >> cut.axis & 1U) == 0 && min > low) next = std::min(next, min);
       }
     };
     look_again(node.a);
@@ -231,7 +231,7 @@ void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
   minima_.clear();
   const auto take = [&](const List& list) {
     for (std::size_t i = list.begin; i < list.end; ++i) {
-      if ((stack_[i].apart >> cut.axis & 1U) == 0) minima_.push_back(box(stack_[i]).min[cut.axis]);
+      if ((stack_[i].dedup_mask >> cut.axis & 1U) == 0) minima_.push_back(box(stack_[i]).min[cut.axis]);
     }
   };
   take(node.a);
@@ -262,7 +262,7 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
     Box<D> swept = box(reference);
     std::swap(swept.min[0], swept.min[axis]);
     std::swap(swept.max[0], swept.max[axis]);
-    run.append(swept, sorted_boxes_[reference.place].id, reference.apart);
+    run.append(swept, sorted_boxes_[reference.place].id, reference.dedup_mask);
   };
   const std::span<Reference> references = std::span(stack_).subspan(list.begin, list.size());
   if (axis == 0) {

@@ -30,11 +30,11 @@ class SegmentJoin {
   Statistics join(std::span<const Box<D>> boxes, std::size_t left_count, PairSink& pairs);
 
  private:
-  /// A box in a node. Bit a of `apart` is set if the box begins before the node's region on axis a; the rest
-  /// as in a run.
+  /// A box in a node. Bit a of `dedup_mask` is set if the box begins before the node's region on axis a; the
+  /// rest as in a run.
   struct Reference {
     std::uint32_t place;  // among the sorted boxes
-    std::uint32_t apart;
+    std::uint32_t dedup_mask;
   };
 
   /// References that follow each other on the stack, in the order of the sorted boxes.

@@ -13,6 +13,8 @@
 #include "algorithms/bvh/packer.hpp"
 #include "algorithms/bvh/tracker.hpp"
 #include "algorithms/descriptions.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/follow_costs.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/bvh_join.hpp"
@@ -79,8 +81,15 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
 };
 
 template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings&) {
+  return std::make_unique<Bvh<D>>();
+}
+
+template <int D>
 std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
-  return make_bvh_tracker<D>(settings, std::make_unique<Bvh<D>>());
+  return std::make_unique<core::AdaptiveTracker<D>>(
+      core::update_of(settings), make<D>(settings), core::tree_finding<D>,
+      std::vector<core::Follower<D, float>>{{"bvh", make_bvh_tracker<D>, core::bvh_following<D>}});
 }
 
 }  // namespace
@@ -90,9 +99,9 @@ Algorithm bvh() {
       .name = "bvh",
       .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
       .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
-      .tunables = bvh_tracking(),
-      .finder_2d = [](const Settings&) { return std::make_unique<Bvh<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<Bvh<3>>(); },
+      .tunables = {core::update_tunable()},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
       .tracker_2d = make_tracker<2>,
       .tracker_3d = make_tracker<3>,
   };

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <type_traits>
 
+#include "algorithms/bvh/found.hpp"
 #include "interface/squared_distance.hpp"
 
 namespace broadside::algorithm {
@@ -16,101 +16,6 @@ namespace {
 using kernels::fan_out;
 using kernels::FoundBoxes;
 using kernels::leaf_bit;
-
-template <typename Real>
-constexpr bool is_float = std::is_same_v<Real, float>;
-
-template <int D, typename Real>
-using Eligible = typename BvhIndex<D, Real>::Eligible;
-
-template <int D, typename Real>
-class Overlapping final : public FoundBoxes {
- public:
-  Overlapping(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, Visitor<BoxId>& visitor,
-              const Eligible<D, Real>& eligible)
-      : boxes_(boxes), box_(box), visitor_(visitor), eligible_(eligible) {}
-
-  bool take() override {
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const BoxId id{ids[i]};
-      result_[size] = id;
-      bool counts = boxes_.may_find(id, eligible_);
-      if constexpr (!is_float<Real>) counts = counts && overlap(box_, boxes_.exact(id));
-      size += static_cast<std::size_t>(counts);
-    }
-    count = 0;
-    full = std::min(2 * full, most);
-    return size == 0 || visitor_.visit({result_.data(), size});
-  }
-
- private:
-  const BvhIndex<D, Real>& boxes_;
-  const Box<D, Real>& box_;
-  Visitor<BoxId>& visitor_;
-  const Eligible<D, Real>& eligible_;
-  std::array<BoxId, most + 2 * fan_out> result_;
-};
-
-template <int D, typename Real>
-class Met final : public FoundBoxes {
- public:
-  Met(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-      const Eligible<D, Real>& eligible)
-      : boxes_(boxes), cast_(cast), visitor_(visitor), eligible_(eligible) {}
-
-  bool take() override {
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!boxes_.may_find(BoxId{ids[i]}, eligible_)) continue;
-      if (const std::optional<Real> enter = boxes_.t_enter_of(cast_, *this, i))
-        result_[size++] = {BoxId{ids[i]}, *enter};
-    }
-    count = 0;
-    full = std::min(2 * full, most);
-    return size == 0 || visitor_.visit({result_.data(), size});
-  }
-
- private:
-  const BvhIndex<D, Real>& boxes_;
-  const BoxCast<D, Real>& cast_;
-  Visitor<Hit<Real>>& visitor_;
-  const Eligible<D, Real>& eligible_;
-  std::array<Hit<Real>, most + 2 * fan_out> result_;
-};
-
-template <int D, typename Real>
-class First final : public FoundBoxes {
- public:
-  First(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, const Eligible<D, Real>& eligible,
-        int exponent)
-      : boxes_(boxes), cast_(cast), eligible_(eligible), exponent_(exponent) {}
-
-  bool take() override {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!boxes_.may_find(BoxId{ids[i]}, eligible_)) continue;
-      const std::optional<Real> enter = boxes_.t_enter_of(cast_, *this, i);
-      if (!enter) continue;
-      const BoxId id{ids[i]};
-      if (best && (*enter > best->t_enter || (*enter == best->t_enter && id > best->box))) continue;
-      best = {id, *enter};
-      if constexpr (is_float<Real>)
-        t_max = *enter;
-      else
-        t_max = rounded_up(std::ldexp(*enter, exponent_));
-    }
-    count = 0;
-    return true;
-  }
-
-  std::optional<Hit<Real>> best;
-
- private:
-  const BvhIndex<D, Real>& boxes_;
-  const BoxCast<D, Real>& cast_;
-  const Eligible<D, Real>& eligible_;
-  int exponent_;
-};
 
 /// A parameter in the tree, where it is 2^exponent times the caller's.
 template <typename Real>

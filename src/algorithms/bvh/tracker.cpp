@@ -9,23 +9,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <utility>
+#include <vector>
 
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
 #include "algorithms/bvh/index.hpp"
-#include "interface/incremental_tracker.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/bvh_follow.hpp"
 
 namespace broadside::algorithm {
 namespace {
-
-/// The fraction of changed boxes from which finding all pairs anew is not slower.
-template <int D>
-constexpr double worthwhile = D == 2 ? 0.3 : 0.25;
 
 /// Of the boxes that leave the bounds of their leaf, one in this many is reinserted; for the others the
 /// bounds grow. Of 1, 2, 4, 8, 16 and 32, the greater were the faster for 20,000 drifting boxes (2D and 3D, 1
@@ -67,15 +61,9 @@ class Toggled final : public PairSink {
 };
 
 template <int D>
-class BvhTracker final : public core::IncrementalTracker<D> {
-  using Base = core::IncrementalTracker<D>;
-
- public:
-  BvhTracker(typename Base::Way way, std::unique_ptr<PairFinder<D>> finder)
-      : Base(way, worthwhile<D>, std::move(finder)) {}
-
+class BvhTracker final : public PairTracker<D> {
  private:
-  void follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || needs_rebuild(change)) build(change);
     Toggled<D> begins(change, true, begun, ended);
     Toggled<D> ends(change, false, begun, ended);
@@ -165,11 +153,9 @@ class BvhTracker final : public core::IncrementalTracker<D> {
            (is_worse_ || tree_.nodes() * kernels::fan_out > 4 * tree_.size() + 4096);
   }
 
-  const BoxIndex<D, float>* algorithm_index() const noexcept override {
-    return this->is_following() ? &index_ : nullptr;
-  }
+  const BoxIndex<D, float>* algorithm_index() const noexcept override { return &index_; }
 
-  std::size_t structure_bytes() const noexcept override {
+  std::size_t algorithm_bytes() const noexcept override {
     return index_.bytes() + moved_.capacity() * sizeof(kernels::MovedBox<D>) +
            packed_.capacity() * sizeof(Box<D>) + calls_for_.capacity();
   }
@@ -191,26 +177,12 @@ class BvhTracker final : public core::IncrementalTracker<D> {
 
 }  // namespace
 
-std::vector<Tunable> bvh_tracking() {
-  return {{.name = "update",
-           .summary =
-               "for tracking only: boxes that leave the bounds of their leaf are inserted anew, or all "
-               "pairs are found anew",
-           .standard = "auto",
-           .type = Tunable::Type::choice,
-           .choices = {"reinsert", "rebuild"}}};
-}
-
 template <int D>
-std::unique_ptr<PairTracker<D>> make_bvh_tracker(const Settings& settings,
-                                                 std::unique_ptr<PairFinder<D>> finder) {
-  using Way = typename core::IncrementalTracker<D>::Way;
-  const std::string& update = settings.text("update");
-  const Way way = update == "auto" ? Way::choose : update == "rebuild" ? Way::rebuild : Way::follow;
-  return std::make_unique<BvhTracker<D>>(way, std::move(finder));
+std::unique_ptr<PairTracker<D>> make_bvh_tracker() {
+  return std::make_unique<BvhTracker<D>>();
 }
 
-template std::unique_ptr<PairTracker<2>> make_bvh_tracker(const Settings&, std::unique_ptr<PairFinder<2>>);
-template std::unique_ptr<PairTracker<3>> make_bvh_tracker(const Settings&, std::unique_ptr<PairFinder<3>>);
+template std::unique_ptr<PairTracker<2>> make_bvh_tracker();
+template std::unique_ptr<PairTracker<3>> make_bvh_tracker();
 
 }  // namespace broadside::algorithm

@@ -188,8 +188,8 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
         const Box<D>& box = boxes[i];
         const auto id = static_cast<BoxId>(i);
         const std::uint32_t side = kernels::side_bit(id, this->left_count());
-        for_each_place(box, [&](std::size_t cell, std::uint32_t apart) {
-          entries[next[cell]++] = {box, id, side | apart};
+        for_each_place(box, [&](std::size_t cell, std::uint32_t dedup_mask) {
+          entries[next[cell]++] = {box, id, side | dedup_mask};
         });
       }
     });

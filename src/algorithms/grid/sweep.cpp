@@ -174,11 +174,11 @@ void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& bu
     ++counts[bucket];
     // Written in any case and kept if it goes on: no predictor could know.
     *up = entry;
-    up->apart |= 1U << row_axis;
+    up->dedup_mask |= 1U << row_axis;
     up += entry.box.max[row_axis] >= row_border ? 1 : 0;
     if constexpr (Along) {
       *along = entry;
-      along->apart |= 1U << column_axis;
+      along->dedup_mask |= 1U << column_axis;
       along += entry.box.max[column_axis] >= column_border ? 1 : 0;
     }
   }
@@ -247,7 +247,7 @@ void GridSweep<D>::scatter(const Lists& lists) {
         run.max[axis][place] = entry.box.max[axes[axis]];
       }
       run.id[place] = entry.id;
-      run.apart[place] = entry.apart;
+      run.dedup_mask[place] = entry.dedup_mask;
     }
   }
 }
@@ -275,7 +275,7 @@ void GridSweep<D>::sort(const Lists& lists, std::size_t count) {
       box.min[axis] = entry.box.min[axes_[axis]];
       box.max[axis] = entry.box.max[axes_[axis]];
     }
-    run_.append(box, entry.id, entry.apart);
+    run_.append(box, entry.id, entry.dedup_mask);
   }
 }
 

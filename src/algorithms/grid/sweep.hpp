@@ -19,13 +19,13 @@
 
 namespace broadside::algorithm {
 
-/// A box in a cell. Bit a of `apart` is set if it begins before the cell on axis a; the rest as in a
+/// A box in a cell. Bit a of `dedup_mask` is set if it begins before the cell on axis a; the rest as in a
 /// run.
 template <int D>
 struct CellEntry {
   Box<D> box;
   BoxId id;
-  std::uint32_t apart;
+  std::uint32_t dedup_mask;
 };
 
 /// The boxes of a grid by the cell that holds their minimum (and, for those that reach into other slabs, also

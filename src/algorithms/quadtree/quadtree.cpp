@@ -240,7 +240,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     for (std::size_t i = begin; i < end; ++i) {
       if (!wanted(i - begin)) continue;
       const core::SortedBox<D>& sorted = sorted_boxes_[worker.stack.references[i].place];
-      run.append(sorted.box, sorted.id, worker.stack.references[i].apart);
+      run.append(sorted.box, sorted.id, worker.stack.references[i].dedup_mask);
     }
   }
 

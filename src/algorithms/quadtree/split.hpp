@@ -15,11 +15,11 @@
 
 namespace broadside::algorithm {
 
-/// A box in a node. Bit a of `apart` is set if the box starts before the node's region on axis a; the rest
-/// as in a run.
+/// A box in a node. Bit a of `dedup_mask` is set if the box starts before the node's region on axis a; the
+/// rest as in a run.
 struct QuadtreeReference {
   std::uint32_t place;  ///< among the sorted boxes
-  std::uint32_t apart;
+  std::uint32_t dedup_mask;
 };
 
 /// Where a node is split; axes not in the list are not.
@@ -75,13 +75,13 @@ class QuadtreeStack {
       const QuadtreeReference reference = references[i];
       for (std::uint32_t mask = children[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
         if ((mask & 1U) == 0) continue;
-        std::uint32_t apart = reference.apart;
+        std::uint32_t dedup_mask = reference.dedup_mask;
         for (int at = 0; at < split.axis_count; ++at) {
           const int axis = split.axes[at];
           const bool is_before = boxes[reference.place].box.min[axis] < split.at[axis];
-          if ((child >> at & 1U) != 0 && is_before) apart |= 1U << axis;
+          if ((child >> at & 1U) != 0 && is_before) dedup_mask |= 1U << axis;
         }
-        references[next[child]++] = {reference.place, apart};
+        references[next[child]++] = {reference.place, dedup_mask};
       }
     }
   }

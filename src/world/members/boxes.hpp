@@ -1,10 +1,7 @@
 // World: slots, their boxes, and the handles that name them.
 #pragma once
 
-#include <cmath>
-#include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "broadside/debug/shadow.hpp"
 #include "broadside/error.hpp"
@@ -28,65 +25,10 @@ Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
   return box;
 }
 
-template <typename Real>
-Real rounded(const double& number) noexcept {
-  const core::DefaultEnvironment environment;
-  const volatile Real result = static_cast<Real>(number);
-  return result;
-}
-
 /// An enlarged box that exceeds its box by more margins than this is replaced: the box has shrunk.
 constexpr int most_margins = 4;
 
-WorldOptions with_algorithm(std::string_view spec) {
-  WorldOptions options;
-  options.algorithm = spec;
-  return options;
-}
-
 }  // namespace
-
-template <int D, typename Real>
-World<D, Real>::World(std::string_view spec) : World(with_algorithm(spec)) {}
-
-template <int D, typename Real>
-World<D, Real>::World(const WorldOptions& options)
-    : state_(std::make_unique<State>(State::make_own_tracker(options), options, true)) {}
-
-template <int D, typename Real>
-World<D, Real>::World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options)
-    : state_(std::make_unique<State>(std::move(tracker), options, false)) {}
-
-template <int D, typename Real>
-World<D, Real>::World(World&& other) noexcept = default;
-template <int D, typename Real>
-World<D, Real>& World<D, Real>::operator=(World&& other) noexcept = default;
-template <int D, typename Real>
-World<D, Real>::~World() = default;
-
-template <int D, typename Real>
-World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
-                             const WorldOptions& its_options, bool is_own)
-    : options(its_options),
-      margin(rounded<Real>(its_options.margin)),
-      is_own_tracker(is_own),
-      tracker(is_own || !its_tracker || !its_options.shadow
-                  ? std::move(its_tracker)
-                  : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
-      first_generation(its_options.first_generation),
-      is_refining(margin > 0) {
-  if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
-  if (!(margin >= 0) || !std::isfinite(margin)) {
-    throw std::invalid_argument("the margin of a world is " + std::to_string(options.margin) +
-                                "; expected a finite number of at least 0");
-  }
-}
-
-template <int D, typename Real>
-std::unique_ptr<PairTracker<D, Real>> World<D, Real>::State::make_own_tracker(const WorldOptions& options) {
-  if (options.shadow) return std::make_unique<ShadowTracker<D, Real>>(options.algorithm);
-  return make_tracker<D, Real>(options.algorithm);
-}
 
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
@@ -147,16 +89,6 @@ void World<D, Real>::set_user_data(Handle handle, std::uint64_t user_data) {
 template <int D, typename Real>
 std::size_t World<D, Real>::size() const noexcept {
   return state_->size;
-}
-
-template <int D, typename Real>
-const Workers& World<D, Real>::workers() const noexcept {
-  return state_->tracker->workers();
-}
-
-template <int D, typename Real>
-void World<D, Real>::set_workers(const Workers& workers) {
-  state_->tracker->set_workers(workers);
 }
 
 template <int D, typename Real>

@@ -126,6 +126,13 @@ TEST(Registry, RefusesAValueThatIsWrong) {
             "planar: unknown tunable 'size'; expected one of: cell");
 }
 
+TEST(Registry, TakesNamesOfEarlierVersions) {
+  ASSERT_NE(find_algorithm("hierarchical_grid"), nullptr);
+  EXPECT_EQ(find_algorithm("hierarchical_grid")->name, "grid");
+  EXPECT_NO_THROW(make_tracker<2>("bvh:update=reinsert"));
+  EXPECT_THROW(make_tracker<2>("grid:update=reinsert"), InvalidSpec);
+}
+
 TEST(AlgorithmKind, HasANameForEachKind) {
   EXPECT_EQ(name(AlgorithmKind::own), "own");
   EXPECT_EQ(name(AlgorithmKind::paper), "paper");

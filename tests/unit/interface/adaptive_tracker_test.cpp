@@ -18,7 +18,8 @@ namespace {
 using testing::StartsWith;
 
 const std::vector<std::string> following = {"brute_force:update=follow", "grid:update=follow",
-                                            "sweep_and_prune:update=follow", "quadtree:update=follow"};
+                                            "sweep_and_prune:update=follow", "quadtree:update=follow",
+                                            "bvh:update=follow"};
 
 /// Unit boxes in a square that has room for four times as many.
 std::vector<Box2> scattered(std::size_t count) {
@@ -54,7 +55,7 @@ std::uint64_t count_events(PairTracker<2>& tracker, const std::vector<Box2>& box
 }
 
 TEST(AdaptiveTracker, ComparesAMoverWithItsNeighbourhoodOnly) {
-  for (const std::string spec : {"grid", "sweep_and_prune", "quadtree"}) {
+  for (const std::string spec : {"grid", "sweep_and_prune", "quadtree", "bvh"}) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(20'000);
     count_events(*tracker, boxes, {});
@@ -131,7 +132,7 @@ TEST(AdaptiveTracker, DoesNotGrowWhileEverythingDriftsFarAway) {
 }
 
 TEST(AdaptiveTracker, FollowsFewChangesAndFindsAllPairsAnewWhereMostChange) {
-  for (const std::string spec : {"brute_force", "grid", "sweep_and_prune", "quadtree"}) {
+  for (const std::string spec : {"brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"}) {
     const auto tracker = make_tracker<2>(spec);
     std::vector<Box2> boxes = scattered(2000);
     count_events(*tracker, boxes, {});
@@ -142,6 +143,21 @@ TEST(AdaptiveTracker, FollowsFewChangesAndFindsAllPairsAnewWhereMostChange) {
     for (Box2& box : boxes) shift(box, 1);
     count_events(*tracker, boxes, every_place(boxes.size(), 1));
     EXPECT_THAT(tracker->explanation(), StartsWith("all pairs found anew")) << spec;
+  }
+}
+
+TEST(AdaptiveTracker, OffersItsFollowersIndexWhileItFollows) {
+  for (const bool has_index : {false, true}) {
+    const auto tracker = make_tracker<2>(has_index ? "bvh" : "grid");
+    std::vector<Box2> boxes = scattered(2000);
+    count_events(*tracker, boxes, {});
+    EXPECT_EQ(tracker->box_index(), nullptr) << "all pairs found anew";
+    shift(boxes[3], 1);
+    count_events(*tracker, boxes, {BoxId(3)});
+    EXPECT_EQ(tracker->box_index() != nullptr, has_index);
+    for (Box2& box : boxes) shift(box, 1);
+    count_events(*tracker, boxes, every_place(boxes.size(), 1));
+    EXPECT_EQ(tracker->box_index(), nullptr) << "all pairs found anew";
   }
 }
 

@@ -29,7 +29,7 @@ template <int D>
 struct Entry {
   Box<D> box;
   BoxId id;
-  std::uint32_t apart;
+  std::uint32_t dedup_mask;
 };
 
 template <int D>
@@ -44,9 +44,9 @@ struct Result {
 
 /// Compares two entries as a kernel does. Whether `a` and `b` were a test is returned.
 template <int D>
-bool test(const Entry<D>& a, const Entry<D>& b, bool looks_at_apart, Result& result) {
+bool test(const Entry<D>& a, const Entry<D>& b, bool looks_at_mask, Result& result) {
   if (b.box.min[0] > a.box.max[0]) return false;
-  if (overlap(a.box, b.box) && (!looks_at_apart || (a.apart & b.apart) == 0))
+  if (overlap(a.box, b.box) && (!looks_at_mask || (a.dedup_mask & b.dedup_mask) == 0))
     result.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
   return true;
 }
@@ -120,7 +120,7 @@ template <int D>
 Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, float slack = 0) {
   buffer.clear();
   buffer.reserve(entries.size());
-  for (const Entry<D>& entry : entries) buffer.append(entry.box, entry.id, entry.apart);
+  for (const Entry<D>& entry : entries) buffer.append(entry.box, entry.id, entry.dedup_mask);
   return buffer.view(slack);
 }
 
@@ -129,8 +129,8 @@ struct Kind {
   std::string name;
   int values;  ///< coordinates are whole numbers below this one: where they are few, many are equal
   int most_extent;
-  bool infinite;        ///< some reach to infinity, on either side or both
-  std::uint32_t apart;  ///< these bits of `apart` are set at random
+  bool infinite;             ///< some reach to infinity, on either side or both
+  std::uint32_t dedup_mask;  ///< these bits of `dedup_mask` are set at random
 };
 
 const std::vector<Kind> kinds = {
@@ -159,7 +159,7 @@ Entries<D> entries_of(const Kind& kind, std::size_t count, std::uint32_t first_i
       if (sides != 1) min = sides == 2 ? infinity : -infinity;
     }
     entries[i].id = BoxId(first_id + i);
-    entries[i].apart = static_cast<std::uint32_t>(random()) & kind.apart;
+    entries[i].dedup_mask = static_cast<std::uint32_t>(random()) & kind.dedup_mask;
   }
   std::ranges::shuffle(entries, random);  // ids must not rise with the places
   return entries;

@@ -110,7 +110,7 @@ TEST(WorldQueries, LeaveOutOneBox) {
 }
 
 TEST(WorldQueries, UseTheTrackersIndexWhereItHasOne) {
-  std::unique_ptr<PairTracker<2>> made = make_tracker<2>("bvh:update=reinsert");
+  std::unique_ptr<PairTracker<2>> made = make_tracker<2>("bvh:update=follow");
   const PairTracker<2>& tracker = *made;
   World2 world(std::move(made));
   const Handle a = world.add({{0, 0}, {1, 1}});
@@ -130,7 +130,7 @@ TEST(WorldQueries, UseTheTrackersIndexWhereItHasOne) {
 
 class WorldQueriesBy : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Algorithm, WorldQueriesBy, testing::Values("auto", "bvh", "bvh:update=reinsert"));
+INSTANTIATE_TEST_SUITE_P(Algorithm, WorldQueriesBy, testing::Values("auto", "bvh", "bvh:update=follow"));
 
 TEST_P(WorldQueriesBy, FollowChurn) {
   World2 world(GetParam());
