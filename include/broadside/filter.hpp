@@ -51,6 +51,9 @@ class IgnoredPairs {
   std::size_t size() const noexcept { return keys_.size(); }
   void clear() noexcept { keys_.clear(); }
 
+  /// About how many bytes it holds: for each pair a node and its place in the table.
+  std::size_t bytes() const noexcept { return 40 * size(); }
+
   /// Calls `visit(pair)` for each pair, in no order that means anything.
   template <typename Visit>
   void for_each(Visit visit) const {

@@ -10,9 +10,11 @@ namespace {
 
 constexpr int digits = 3;
 constexpr int digit_bits = 11;
-constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+constexpr std::size_t digit_values = std::size_t{1} << digit_bits;
 
-constexpr std::size_t digit(std::uint32_t key, int at) { return key >> (at * digit_bits) & (buckets - 1); }
+constexpr std::size_t digit(std::uint32_t key, int at) {
+  return key >> (at * digit_bits) & (digit_values - 1);
+}
 
 }  // namespace
 
@@ -24,7 +26,7 @@ std::span<KeyedPlace> RadixSort::places(std::size_t count) {
 
 std::span<const KeyedPlace> RadixSort::sort() {
   // All histograms in one pass; a digit that all keys share needs no pass of its own.
-  std::array<std::array<std::uint32_t, buckets>, digits> counts{};
+  std::array<std::array<std::uint32_t, digit_values>, digits> counts{};
   for (const KeyedPlace& place : places_) {
     for (int at = 0; at < digits; ++at) ++counts[at][digit(place.key, at)];
   }
@@ -50,21 +52,21 @@ std::span<const KeyedPlace> RadixSort::sort(Parallel& parallel) {
 
 void RadixSort::sort_by_ranges(Parallel& parallel, int at) {
   const std::size_t ranges = parallel.range_count();
-  counts_.resize(ranges * buckets);
+  counts_.resize(ranges * digit_values);
   parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
-    std::array<std::uint32_t, buckets> counts{};  // no other worker's cache line
+    std::array<std::uint32_t, digit_values> counts{};  // no other worker's cache line
     for (std::size_t i = range.begin; i < range.end; ++i) ++counts[digit(places_[i].key, at)];
-    std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * buckets));
+    std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * digit_values));
   });
   std::uint32_t total = 0;
-  for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+  for (std::size_t bucket = 0; bucket < digit_values; ++bucket) {
     const std::uint32_t before = total;
     for (std::size_t number = 0; number < ranges; ++number)
-      total += std::exchange(counts_[number * buckets + bucket], total);
+      total += std::exchange(counts_[number * digit_values + bucket], total);
     if (total - before == places_.size()) return;  // a digit that all keys share
   }
   parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
-    std::uint32_t* const next = &counts_[number * buckets];
+    std::uint32_t* const next = &counts_[number * digit_values];
     for (std::size_t i = range.begin; i < range.end; ++i)
       other_[next[digit(places_[i].key, at)]++] = places_[i];
   });

@@ -24,8 +24,8 @@ constexpr std::size_t tried_movers = 64;
 
 /// Up to this many boxes, comparing each mover with all others costs less than keeping cells. Hysteresis:
 /// leave a bit later than you enter, so that boxes that come and go by turns do not flip it each frame.
-constexpr std::size_t few_boxes = 320;
-constexpr std::size_t most_few_boxes = 400;
+constexpr std::size_t boxes_for_brute_force = 320;
+constexpr std::size_t most_boxes_for_brute_force = 400;
 
 template <int D, typename Real>
 std::vector<FollowCosts> costs_of(const std::vector<Follower<D, Real>>& followers) {
@@ -116,7 +116,7 @@ void AdaptiveTracker<D, Real>::try_out(std::span<const Box<D, Real>> boxes) {
 template <int D, typename Real>
 bool AdaptiveTracker<D, Real>::are_few(std::size_t boxes) const {
   return for_few_ && policy_.update() == Update::automatic &&
-         boxes <= (were_few_ ? most_few_boxes : few_boxes);
+         boxes <= (were_few_ ? most_boxes_for_brute_force : boxes_for_brute_force);
 }
 
 template <int D, typename Real>

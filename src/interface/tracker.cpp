@@ -17,12 +17,6 @@
 #include "interface/input_check.hpp"
 
 namespace broadside {
-namespace {
-
-/// About what an IgnoredPairs holds for each pair: a node and its place in the table.
-constexpr std::size_t ignored_pair_bytes = 40;
-
-}  // namespace
 
 template <int D, typename Real>
 class PairTracker<D, Real>::State {
@@ -250,7 +244,7 @@ std::size_t PairTracker<D, Real>::State::bytes() const noexcept {
          (changed_.capacity() + invalid_.capacity() + quarantined_.capacity()) * sizeof(BoxId) +
          flags_.capacity() +
          (begun_.capacity() + ended_.capacity() + sorting_.capacity() + toggled_.capacity()) * sizeof(Pair) +
-         ignored_.size() * ignored_pair_bytes;
+         ignored_.bytes();
 }
 
 template <int D, typename Real>

@@ -208,7 +208,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings&) {
+std::unique_ptr<PairFinder<D>> make_auto(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
@@ -224,14 +224,14 @@ std::vector<core::Follower<D, float>> followers() {
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_auto_tracker(const Settings& settings) {
   return std::make_unique<core::AdaptiveTracker<D>>(core::update_of(settings), std::make_unique<Auto<D>>(),
                                                     core::grid_finding<D>, followers<D>(),
                                                     make_tracker<D>("brute_force"));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D, double>> make_double_tracking(const Settings& settings) {
+std::unique_ptr<PairTracker<D, double>> make_auto_double_tracker(const Settings& settings) {
   const auto follower = [] { return std::make_unique<DoubleFollower<D>>(grid_candidates<D>()); };
   return std::make_unique<core::AdaptiveTracker<D, double>>(
       core::update_of(settings), std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
@@ -248,12 +248,12 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
       .source = "Broadside's measurements",
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracking<2>,
-      .tracker_3d = make_tracking<3>,
-      .double_tracker_2d = make_double_tracking<2>,
-      .double_tracker_3d = make_double_tracking<3>,
+      .finder_2d = make_auto<2>,
+      .finder_3d = make_auto<3>,
+      .tracker_2d = make_auto_tracker<2>,
+      .tracker_3d = make_auto_tracker<3>,
+      .double_tracker_2d = make_auto_double_tracker<2>,
+      .double_tracker_3d = make_auto_double_tracker<3>,
   };
 }
 

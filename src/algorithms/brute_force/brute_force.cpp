@@ -59,14 +59,14 @@ class BruteForce final : public PairFinder<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings&) {
+std::unique_ptr<PairFinder<D>> make_brute_force(const Settings&) {
   return std::make_unique<BruteForce<D>>();
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_brute_force_tracking(const Settings& settings) {
   return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make<D>(settings), core::brute_force_finding,
+      core::update_of(settings), make_brute_force<D>(settings), core::brute_force_finding,
       std::vector<core::Follower<D, float>>{
           {"brute_force", make_brute_force_tracker<D>, core::brute_force_following}});
 }
@@ -79,10 +79,10 @@ Algorithm brute_force() {
       .summary = "every box against every other, over a structure of arrays",
       .source = "paper.md, sections II and VI-A",
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracker<2>,
-      .tracker_3d = make_tracker<3>,
+      .finder_2d = make_brute_force<2>,
+      .finder_3d = make_brute_force<3>,
+      .tracker_2d = make_brute_force_tracking<2>,
+      .tracker_3d = make_brute_force_tracking<3>,
   };
 }
 

@@ -9,7 +9,7 @@
 
 namespace broadside::algorithm {
 
-inline constexpr std::size_t most_buckets = 2048;
+inline constexpr std::size_t most_bvh_buckets = 2048;
 
 /// The root of `value` >= 0 of that degree, 1 to 3, in operations that are rounded alike everywhere: which
 /// leaf a box is in must not depend on the machine.

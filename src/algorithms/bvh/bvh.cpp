@@ -81,14 +81,14 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings&) {
+std::unique_ptr<PairFinder<D>> make_bvh(const Settings&) {
   return std::make_unique<Bvh<D>>();
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_bvh_tracking(const Settings& settings) {
   return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make<D>(settings), core::tree_finding<D>,
+      core::update_of(settings), make_bvh<D>(settings), core::tree_finding<D>,
       std::vector<core::Follower<D, float>>{{"bvh", make_bvh_tracker<D>, core::bvh_following<D>}});
 }
 
@@ -100,10 +100,10 @@ Algorithm bvh() {
       .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
       .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
       .tunables = {core::update_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracker<2>,
-      .tracker_3d = make_tracker<3>,
+      .finder_2d = make_bvh<2>,
+      .finder_3d = make_bvh<3>,
+      .tracker_2d = make_bvh_tracking<2>,
+      .tracker_3d = make_bvh_tracking<3>,
   };
 }
 

@@ -43,7 +43,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
     typical_[axis] = std::max(sample_[axis].extent, spacing(boxes.size(), axis) / 2);
     inverse[axis] = typical_[axis] > 0 ? 1 / typical_[axis] : std::numeric_limits<float>::max();
   }
-  const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, most_buckets);
+  const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, most_bvh_buckets);
   choose_axes(boxes.size());
   const int first = axes_[0];
   const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
@@ -212,8 +212,8 @@ void BvhPacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
     high = std::max(high, entry(i).box.min[axis]);
   }
   const Buckets buckets(std::max(low, sample_[axis].low), std::min(high, sample_[axis].high),
-                        std::min(count / 2, most_buckets));
-  std::array<std::uint32_t, most_buckets> places;
+                        std::min(count / 2, most_bvh_buckets));
+  std::array<std::uint32_t, most_bvh_buckets> places;
   std::fill_n(places.begin(), buckets.count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t bucket = buckets(entry(i).box.min[axis]);

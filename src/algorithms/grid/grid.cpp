@@ -207,21 +207,21 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
   std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
-std::optional<double> cell_of(const Settings& settings) {
+std::optional<double> cell_edge(const Settings& settings) {
   if (settings.is_auto("cell")) return std::nullopt;
   return settings.number("cell");
 }
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
-  return std::make_unique<Grid<D>>(cell_of(settings));
+std::unique_ptr<PairFinder<D>> make_grid(const Settings& settings) {
+  return std::make_unique<Grid<D>>(cell_edge(settings));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
-  const std::optional<double> cell = cell_of(settings);
+std::unique_ptr<PairTracker<D>> make_grid_tracking(const Settings& settings) {
+  const std::optional<double> cell = cell_edge(settings);
   return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make<D>(settings), core::grid_finding<D>,
+      core::update_of(settings), make_grid<D>(settings), core::grid_finding<D>,
       std::vector<core::Follower<D, float>>{
           {"grid", [cell] { return std::make_unique<GridTracker<D>>(cell); }, core::grid_following<D>}});
 }
@@ -245,10 +245,10 @@ Algorithm grid() {
                     .least = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracker<2>,
-      .tracker_3d = make_tracker<3>,
+      .finder_2d = make_grid<2>,
+      .finder_3d = make_grid<3>,
+      .tracker_2d = make_grid_tracking<2>,
+      .tracker_3d = make_grid_tracking<3>,
   };
 }
 

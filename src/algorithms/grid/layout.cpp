@@ -23,7 +23,7 @@ constexpr double least_boxes_per_cell = 16;
 constexpr double most_cells_per_box = 4;
 
 /// What a search costs, in tests of two boxes: to file a box in a cell once more, beyond the tests there.
-constexpr double reference_cost = 20;
+constexpr double grid_reference_cost = 20;
 
 /// Slabs are for threads: enough to share out, each of some rows, since what reaches into another is filed
 /// there once more.
@@ -96,7 +96,7 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
       references *= more;
       sharing *= std::min(1.0, more * chance_within(on_axis, size) / 2);
     }
-    return references * (reference_cost + swept * sharing);
+    return references * (grid_reference_cost + swept * sharing);
   };
   std::array<double, gridded> best{};
   best.fill(1);

@@ -31,8 +31,6 @@ constexpr std::size_t most_in_bucket = 48;
 /// all.
 constexpr std::size_t crowd = 1024;
 
-constexpr float largest = std::numeric_limits<float>::max();
-
 /// What it costs to look at a box in one more cell, in tests of two boxes.
 constexpr std::uint64_t tests_per_reference = 32;
 
@@ -148,13 +146,13 @@ typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::s
       static_cast<float>(std::bit_ceil(std::clamp(count, least_buckets, most_buckets)));
   const float length = range.high - range.low;
   // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
-  const float per_unit =
-      std::clamp(length > 0 ? count_in_range / length : 1, std::numeric_limits<float>::min(), largest);
+  const float per_unit = std::clamp(length > 0 ? count_in_range / length : 1,
+                                    std::numeric_limits<float>::min(), std::numeric_limits<float>::max());
   // A bucket's width and what rounding may add to it.
   constexpr float rounding = 1e-6F;
   const float width = std::max(1 / per_unit, length / count_in_range);
-  const float slack =
-      std::min(width * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high)), largest);
+  const float slack = std::min(width * 1.01F + rounding * std::max(std::abs(range.low), std::abs(range.high)),
+                               std::numeric_limits<float>::max());
   return {{.low = range.low, .per_unit = per_unit, .last = count_in_range - 1}, slack};
 }
 

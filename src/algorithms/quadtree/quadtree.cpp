@@ -256,19 +256,19 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<PairFinder<D>> make_quadtree(const Settings& settings) {
   return std::make_unique<Quadtree<D>>(settings.is_auto("capacity")
                                            ? standard_capacity<D>
                                            : static_cast<std::size_t>(settings.integer("capacity")));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_quadtree_tracking(const Settings& settings) {
   const auto capacity = settings.is_auto("capacity")
                             ? tracking_capacity
                             : static_cast<std::uint32_t>(settings.integer("capacity"));
   return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make<D>(settings), core::tree_finding<D>,
+      core::update_of(settings), make_quadtree<D>(settings), core::tree_finding<D>,
       std::vector<core::Follower<D, float>>{{"quadtree",
                                              [capacity] { return make_quadtree_tracker<D>(capacity); },
                                              core::quadtree_following<D>}});
@@ -289,10 +289,10 @@ Algorithm quadtree() {
                     .most = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracker<2>,
-      .tracker_3d = make_tracker<3>,
+      .finder_2d = make_quadtree<2>,
+      .finder_3d = make_quadtree<3>,
+      .tracker_2d = make_quadtree_tracking<2>,
+      .tracker_3d = make_quadtree_tracking<3>,
   };
 }
 

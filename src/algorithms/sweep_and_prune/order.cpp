@@ -9,13 +9,11 @@
 namespace broadside::algorithm {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 /// The greatest of some numbers, NaN not counting: by several chains, since one waits for itself.
 float greatest(const float* numbers, std::size_t count) {
   constexpr std::size_t chains = 8;
   std::array<float, chains> most;
-  most.fill(-infinity);
+  most.fill(-std::numeric_limits<float>::infinity());
   std::size_t i = 0;
   for (; i + chains <= count; i += chains) {
     for (std::size_t chain = 0; chain < chains; ++chain)
@@ -147,7 +145,7 @@ void SweepOrder<D>::take_other() {
   if (size_ > 0)
     set_reach(0, (size_ - 1) / fan);
   else
-    high_reach_[0] = -infinity;
+    high_reach_[0] = -std::numeric_limits<float>::infinity();
 }
 
 template <int D>

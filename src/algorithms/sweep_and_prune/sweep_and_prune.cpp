@@ -36,12 +36,12 @@ namespace broadside::algorithm {
 namespace {
 
 /// What filing a box once more costs, in tests of two boxes.
-constexpr double reference_cost = 64;
+constexpr double stripe_reference_cost = 64;
 
 constexpr std::size_t most_stripes = 256;
 
 /// Boxes that one thread sweeps at a time, where there are no stripes.
-constexpr std::size_t rows_at_once = 64;
+constexpr std::size_t swept_at_once = 64;
 
 template <int D>
 class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
@@ -112,7 +112,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
     const auto cost = [&](std::size_t stripes) {
       const auto count = static_cast<double>(boxes);
       const double references = count * (1 + static_cast<double>(stripes - 1) * striped.overlap / 2);
-      return reference_cost * references +
+      return stripe_reference_cost * references +
              references * references * swept.overlap / 2 / static_cast<double>(stripes);
     };
     std::size_t best = axes_ == 2 ? 2 : 1;
@@ -139,11 +139,11 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
       return;
     }
     const auto sweep = [&](core::Range some, std::size_t, PairSink& sink) {
-      const std::size_t begin = some.begin * rows_at_once;
-      const std::size_t end = std::min(some.end * rows_at_once, run.size);
+      const std::size_t begin = some.begin * swept_at_once;
+      const std::size_t end = std::min(some.end * swept_at_once, run.size);
       return Statistics{.tests = kernels::sweep(kernels::rows_of(run, begin, end), sink)};
     };
-    Statistics statistics = parallel_.search((run.size + rows_at_once - 1) / rows_at_once, pairs, sweep);
+    Statistics statistics = parallel_.search((run.size + swept_at_once - 1) / swept_at_once, pairs, sweep);
     statistics.references = run.size;
     this->count(statistics);
   }
@@ -207,15 +207,15 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<PairFinder<D>> make_sweep_and_prune(const Settings& settings) {
   return std::make_unique<SweepAndPrune<D>>(settings);
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracker(const Settings& settings) {
+std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracking(const Settings& settings) {
   const int axis = settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
   return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make<D>(settings), core::sweep_finding<D>,
+      core::update_of(settings), make_sweep_and_prune<D>(settings), core::sweep_finding<D>,
       std::vector<core::Follower<D, float>>{{"sweep_and_prune",
                                              [axis] { return make_sweep_and_prune_tracker<D>(axis); },
                                              core::sweep_following<D>}});
@@ -242,10 +242,10 @@ Algorithm sweep_and_prune() {
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracker<2>,
-      .tracker_3d = make_tracker<3>,
+      .finder_2d = make_sweep_and_prune<2>,
+      .finder_3d = make_sweep_and_prune<3>,
+      .tracker_2d = make_sweep_and_prune_tracking<2>,
+      .tracker_3d = make_sweep_and_prune_tracking<3>,
   };
 }
 

@@ -16,9 +16,6 @@ namespace {
 constexpr std::size_t few_slots = 64;
 constexpr std::size_t few_slots_of_memory = 4096;
 
-/// About what an IgnoredPairs holds for each pair: a node and its place in the table.
-constexpr std::size_t ignored_pair_bytes = 40;
-
 template <typename... Vectors>
 void shrink(Vectors&... vectors) {
   (vectors.shrink_to_fit(), ...);
@@ -115,8 +112,8 @@ WorldStatistics World<D, Real>::statistics() const {
   bytes.boxes = bytes_of(state.boxes, state.enlarged, state.removed, state.reported);
   bytes.slots = bytes_of(state.generations, state.slots, state.user_data, state.changed, state.moved) +
                 state.free.bytes();
-  bytes.filters = bytes_of(state.filters, state.ignored_changed) + state.ignored_edges.bytes() +
-                  state.ignored.size() * ignored_pair_bytes;
+  bytes.filters =
+      bytes_of(state.filters, state.ignored_changed) + state.ignored_edges.bytes() + state.ignored.bytes();
   bytes.pairs = bytes_of(state.begun, state.ended, state.persisting, state.candidates.begun,
                          state.candidates.ended, state.refined.begun, state.refined.ended, state.sorting) +
                 bytes_of(state.begun_data, state.ended_data, state.touched, state.questions, state.fresh,
