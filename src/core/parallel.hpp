@@ -16,7 +16,7 @@ namespace broadside::core {
 /// The tunable `threads`, which every algorithm has that uses several; make_finder() hands it to the finder.
 Tunable threads_tunable();
 
-/// Half-open, of whatever is counted.
+/// A half-open range of indices.
 struct Range {
   std::size_t begin;
   std::size_t end;
@@ -35,7 +35,7 @@ class Parallel {
   Parallel(const Parallel&) = delete;
   Parallel& operator=(const Parallel&) = delete;
 
-  /// Sets the number of workers for a search whose work is that of looking at so many boxes.
+  /// Sets the number of workers for a search that takes about as long as looking at `boxes` boxes.
   void start(const Workers& workers, std::size_t boxes);
 
   std::size_t workers() const noexcept { return workers_; }

@@ -79,7 +79,7 @@ class FollowPolicy {
   bool follows_ = false;
   std::size_t current_ = 0;
   double saved_ = 0;     // what following would have saved since it was last done, or another structure
-  double patience_ = 1;  // grows with each change of structures, so that they do not take turns
+  double patience_ = 1;  // hysteresis: grows with each change of structures, so that they do not take turns
   std::uint64_t seen_movers_ = 0;  // since the structure was last weighed
   double seen_tests_ = 0;
   double seen_hits_ = 0;

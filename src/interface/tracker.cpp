@@ -45,13 +45,13 @@ void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, 
   drop_ignored(change);
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
-  // Those that are ignored from now on come first.
+  // The pairs that are ignored from now on come first.
   const auto middle = std::partition(toggled_.begin(), toggled_.end(),
                                      [this](Pair pair) { return !ignored_.contains(pair); });
   const std::span<const Pair> newly(toggled_.begin(), middle);
   const std::span<const Pair> no_longer(middle, toggled_.end());
   try {
-    // Whatever takes memory comes before the events are told: what is told has been taken.
+    // All memory is taken before the events are delivered, so that nothing can fail after them.
     for (const Pair pair : newly) ignored_.insert(pair);
     quarantined_.reserve(quarantined_.size() + invalid_.size());
     const core::CallersEnvironment callers;
@@ -147,7 +147,7 @@ void PairTracker<D, Real>::take_ignored(const Frame<D, Real>& frame, bool rebuil
   core::sort_unique(toggled_, sorting_);
 }
 
-/// Takes from the events those of pairs that are ignored, and adds those of pairs that became it or were it.
+/// Drops the events of ignored pairs, and adds events of pairs that became ignored or no longer are.
 template <int D, typename Real>
 void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
   if (toggled_.empty() && ignored_.empty()) return;
@@ -166,7 +166,7 @@ void PairTracker<D, Real>::drop_ignored(const Change<D, Real>& change) {
   }
 }
 
-/// Makes this frame the one before, but for what is ignored. There is room in quarantined_.
+/// Makes this frame the one before, except for its ignored pairs. There is room in quarantined_.
 template <int D, typename Real>
 void PairTracker<D, Real>::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();

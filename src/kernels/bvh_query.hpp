@@ -61,17 +61,17 @@ struct DistanceQuery {
   float most = 0;
 };
 
-/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; what is
-/// left below `full` at the end is still to be taken.
+/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; fewer
+/// than `full` boxes are left at the end, for the caller to take.
 template <int D>
 bool find_overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found);
 
-/// Writes the boxes that the cast meets up to `found.t_max`, in no order that means anything.
+/// Writes the boxes that the cast meets up to `found.t_max`, in no particular order.
 template <int D>
 bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Writes those boxes that the cast meets before or at `found.t_max`, nearer ones about first, and has
-/// them taken leaf by leaf, so that `t_max` can be lowered.
+/// Writes the boxes that the cast meets up to `found.t_max`, roughly the nearest first, and calls take() leaf
+/// by leaf, so that `t_max` can be lowered.
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 

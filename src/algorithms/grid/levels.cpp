@@ -45,7 +45,7 @@ void CellLevels<D>::choose(std::span<const Box<D>> like) {
                                  ? std::min(1 / typical_[axis], std::numeric_limits<float>::max())
                                  : std::numeric_limits<float>::max();
   }
-  // The last level, which is one cell, is for boxes that are about as long as all is.
+  // The last level, which is one cell, is for boxes about as long as the whole scene.
   float border = first_border;
   count_ = 1;
   const auto is_short = [&](int axis) {

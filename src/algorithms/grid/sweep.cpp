@@ -21,10 +21,10 @@ namespace {
 constexpr std::size_t least_buckets = 16;
 constexpr std::size_t most_buckets = 1 << 13;
 
-/// What lies beyond the range is in the buckets at the ends. So many boxes there are sorted one by one.
+/// Boxes beyond the range are in the buckets at the ends. Up to this many there are sorted one by one.
 constexpr std::size_t most_beyond = 32;
 
-/// A box may stand in a bucket with so many others on average, before it pays to sort them all.
+/// The mean number of other boxes in a box's bucket from which it pays to sort them all.
 constexpr std::size_t most_in_bucket = 48;
 
 /// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
@@ -172,7 +172,7 @@ void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& bu
     const auto bucket = static_cast<std::uint16_t>(buckets.of(entry.box.min[swept]));
     *bucket_of++ = bucket;
     ++counts[bucket];
-    // Written in any case and kept if it goes on: no predictor could know.
+    // Written in any case and kept if it goes on: a branch could not be predicted.
     *up = entry;
     up->dedup_mask |= 1U << row_axis;
     up += entry.box.max[row_axis] >= row_border ? 1 : 0;

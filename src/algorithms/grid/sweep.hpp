@@ -41,7 +41,7 @@ struct SweptRange {
   float high;
 };
 
-/// Sweeps slabs; holds the memory this takes. A box goes on from the cell that it is filed in to the others
+/// Sweeps slabs; holds the memory this takes. A box goes on from the cell it was inserted into to the others
 /// that it reaches: along the row, and up to the next row.
 template <int D>
 class GridSweep {

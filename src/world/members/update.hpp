@@ -20,7 +20,7 @@
 namespace broadside {
 namespace {
 
-/// Takes from both what is in both: events that were undone before anyone heard of them.
+/// Takes from both what is in both: events that were undone before they were delivered.
 void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair>& scratch) {
   core::sort(begun, scratch);
   core::sort(ended, scratch);
