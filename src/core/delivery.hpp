@@ -69,7 +69,7 @@ class Delivery {
   std::size_t next_ = 0;       // no piece before it is open
   std::size_t delivered_ = 0;  // written by the caller's thread alone
   bool delivering_ = false;
-  bool workers_left_ = false;  // in this round, for want of room
+  bool workers_left_ = false;  // in this round, since there was no room
   bool round_ends_ = false;
 };
 

@@ -1,4 +1,5 @@
-// Parallel: a search's work shared among threads, so that neither the pairs nor their order show how many.
+// Parallel: a search's work shared among threads, so that the pairs and their order do not depend on how
+// many.
 #pragma once
 
 #include <cstddef>

@@ -106,7 +106,8 @@ class Columns {
 
 LinearRounding::LinearRounding(double origin, double distance) : origin_(origin) {
   if (!(distance > 0)) return;
-  // Tunables such as a grid's cell are lengths in the boxes' unit, so that one is kept where floats can.
+  // Tunables such as a grid's cell are lengths in the boxes' unit, so the unit stays what it is where floats
+  // can hold such distances.
   constexpr int kept_exponent = 30;
   if (std::abs(std::ilogb(distance)) <= kept_exponent) return;
   // Beyond that the scale or its inverse would be none.

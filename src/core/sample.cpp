@@ -1,4 +1,4 @@
-// What a sample of the boxes says about each axis: the signals from which algorithms choose their tunables.
+// A sample of the boxes, axis by axis: the signals from which algorithms choose their tunables.
 #include "core/sample.hpp"
 
 #include <algorithm>

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t tried_movers = 64;
 
 /// Up to this many boxes, comparing each mover with all others costs less than keeping cells. Hysteresis:
-/// leave a bit later than you enter, so that boxes that come and go by turns do not flip it each frame.
+/// leave a bit later than you enter, so that a count near the limit does not flip it each frame.
 constexpr std::size_t few_boxes = 320;
 constexpr std::size_t most_few_boxes = 400;
 

@@ -59,8 +59,8 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   const double saving = now - movers * of_mover_[best];
   const bool goes_on = follows_ && now < finding;
   if (saving <= 0) return goes_on;
-  // To start following costs something as well. It is done at once where the frame is no dearer for it, and
-  // else as soon as it would have paid: so little is lost where few boxes and many move by turns.
+  // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
+  // soon as it would have paid: so little is lost where few and many boxes move in alternation.
   saved_ += saving;
   const double patience = best == current_ ? 1 : patience_;
   if (saved_ < patience * static_cast<double>(boxes) * following_[best].start) return goes_on;

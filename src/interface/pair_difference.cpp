@@ -1,4 +1,4 @@
-// What differs between the pairs of two frames, seen from their boxes.
+// The difference between the pairs of two frames, by their boxes.
 #include "interface/pair_difference.hpp"
 
 #include <algorithm>

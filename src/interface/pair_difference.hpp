@@ -1,4 +1,4 @@
-// What differs between the pairs of two frames.
+// The difference between the pairs of two frames.
 #pragma once
 
 #include <span>

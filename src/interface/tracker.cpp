@@ -103,7 +103,7 @@ void PairTracker<D, Real>::take(const Frame<D, Real>& frame, bool rebuild) {
     core::resize_by_eighths(filters_before_, size);
     core::resize_by_eighths(filters_now_, size);
   }
-  // Flags are all 0 between two updates, but where the last one failed.
+  // Flags are all 0 between two updates, unless the last one failed.
   if (rebuild) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
   core::resize_by_eighths(flags_, size);
   changed_.clear();

@@ -1,5 +1,4 @@
-// Block: sixteen boxes (AABBs) as a structure of arrays for SIMD, and what is known of a block without
-// looking into it.
+// Block: sixteen boxes (AABBs) as a structure of arrays for SIMD, and operations on a whole block.
 #pragma once
 
 #include <array>

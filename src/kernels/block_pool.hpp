@@ -14,7 +14,7 @@
 
 namespace broadside::kernels {
 
-/// What is known of a block without looking into it.
+/// Data about a block that a search can read without its boxes.
 struct BlockHead {
   std::uint32_t next;   ///< the next block of the same chain, or no_slot
   std::uint32_t owner;  ///< whose chain it is: a cell's or a node's number

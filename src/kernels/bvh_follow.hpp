@@ -12,7 +12,7 @@
 
 namespace broadside::kernels {
 
-/// What a move calls for in the tree, as bits.
+/// The repairs that a move calls for in the tree, as bits.
 inline constexpr std::uint8_t may_shrink = 1;  ///< the old box was at the border of its leaf's bounds
 inline constexpr std::uint8_t left_leaf = 2;   ///< the new box is not within the bounds that its leaf had
 

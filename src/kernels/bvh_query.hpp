@@ -1,4 +1,4 @@
-// Queries to a tree of bounds: what a box overlaps, what a cast box meets, and what is near a point.
+// Queries to a tree of bounds: the boxes that a box overlaps or a cast box meets, and those near a point.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class FoundBoxes {
   virtual bool take() = 0;
 
   std::size_t count = 0;
-  std::size_t full = fan_out;  ///< take() is called once there are as many
+  std::size_t full = fan_out;  ///< take() is called once this many are found
   float t_max = 0;             ///< of a cast: the greatest parameter at which a box counts
   alignas(64) std::array<std::uint32_t, most + 2 * fan_out> ids;
   alignas(64) std::array<float, most + 2 * fan_out> t_enter;  ///< of an exact cast

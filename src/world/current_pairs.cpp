@@ -55,7 +55,7 @@ void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended,
 
 void CurrentPairs::merge(Generations generations) {
   if (log_.empty()) return;
-  // What can throw comes first.
+  // Everything that can throw comes first.
   if (!std::ranges::is_sorted(log_)) sort(log_, scratch_);
   if (pairs_.capacity() < size_) pairs_.reserve(std::max(size_, pairs_.capacity() + pairs_.capacity() / 2));
   insert_begun(drop_and_refresh(generations), generations);

@@ -13,7 +13,7 @@
 
 namespace broadside::core {
 
-/// Pairs with a mark each. All O(1) but where they say otherwise; some 40 to 50 bytes a pair.
+/// Pairs with a mark each. All O(1) unless they say otherwise; some 40 to 50 bytes a pair.
 class PairGraph {
  public:
   using EdgeId = std::uint32_t;
@@ -21,7 +21,7 @@ class PairGraph {
   /// No edge.
   static constexpr EdgeId none = std::numeric_limits<EdgeId>::max();
 
-  /// What its owner keeps of a pair.
+  /// The owner's data about a pair.
   struct Mark {
     bool overlaps = false;    ///< whether the boxes themselves overlap
     bool accepted = false;    ///< what the predicate said since they do

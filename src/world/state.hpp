@@ -1,4 +1,4 @@
-// What a World keeps. Its member functions are in members/, a header for each concern.
+// The state of a World. Its member functions are in members/, a header for each concern.
 #pragma once
 
 #include <algorithm>

@@ -64,7 +64,7 @@ class SegmentJoin {
     float high;
   };
 
-  /// What a cut makes of a list.
+  /// The parts into which a cut divides a list.
   struct Parts {
     List covering;
     List below;

@@ -32,7 +32,7 @@ void HierarchicalCells<D>::build(std::span<const Box<D>> boxes, std::span<const 
       slot_[i] = levels_[levels_.level_of(boxes[i])].cell(boxes[i].min);
       ++counts_[slot_[i]];
     }
-  } while (levels_.disperse_crowds(counts_));
+  } while (levels_.shrink_crowded_cells(counts_));
   fill(boxes);
 }
 

@@ -32,13 +32,13 @@ class CellLevels {
   /// Chooses levels that suit `like`. O(n).
   void choose(std::span<const Box<D>> like);
 
-  /// Lays out the cells of the levels chosen, smaller ones where disperse_crowds() has said so. Returns how
-  /// many there are on all levels.
+  /// Lays out the cells of the levels chosen, smaller ones where shrink_crowded_cells() has said so. Returns
+  /// how many there are on all levels.
   std::uint32_t lay_out();
 
   /// Makes a level's cells smaller from the next layout on if a typical box shares its cell with too many
   /// others, by `counts` of boxes in each cell. Returns whether a level's was. O(cells).
-  bool disperse_crowds(std::span<const std::uint32_t> counts);
+  bool shrink_crowded_cells(std::span<const std::uint32_t> counts);
 
   /// Says that there are no boxes on any level.
   void clear() {

@@ -29,11 +29,11 @@ constexpr std::size_t most_in_bucket = 48;
 
 /// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
 /// all.
-constexpr std::size_t crowd = 1024;
+constexpr std::size_t many_boxes = 1024;
 
 constexpr float largest = std::numeric_limits<float>::max();
 
-/// What it costs to look at a box in one more cell, in tests of two boxes.
+/// The cost of a box in one more cell, in tests of two boxes.
 constexpr std::uint64_t tests_per_reference = 32;
 
 /// Passes pairs on and counts them.
@@ -73,7 +73,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   swept_to_ = layout.slab_begin(slab) * length;
   CountingSink counted(pairs);
   for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
-    // What reaches into the next slab is there already.
+    // Boxes that reach into the next slab are there already.
     const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
     along_.size = 0;
     for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
@@ -117,9 +117,9 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   for (std::size_t i = 0; i < lists.size(); ++i) {
     // A box goes along the row where it is met first, and up from everywhere.
     if (D == 3 && i != 1)
-      look_at<true>(lists[i], buckets, column_border, row_border, bucket_of);
+      count_and_pass_on<true>(lists[i], buckets, column_border, row_border, bucket_of);
     else
-      look_at<false>(lists[i], buckets, column_border, row_border, bucket_of);
+      count_and_pass_on<false>(lists[i], buckets, column_border, row_border, bucket_of);
     bucket_of += lists[i].size();
   }
   if (count < 2) return true;
@@ -134,7 +134,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
 
 template <int D>
 std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, int axis, float border) {
-  if (count <= crowd) return count;
+  if (count <= many_boxes) return count;
   std::size_t reaching = 0;
   for (const auto& list : lists)
     reaching += static_cast<std::size_t>(std::ranges::count_if(
@@ -160,8 +160,8 @@ typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::s
 
 template <int D>
 template <bool Along>
-void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
-                           float row_border, std::uint16_t* bucket_of) {
+void GridSweep<D>::count_and_pass_on(std::span<const CellEntry<D>> list, const Buckets& buckets,
+                                     float column_border, float row_border, std::uint16_t* bucket_of) {
   const int swept = axes_[0];
   const int column_axis = axes_[1];
   const int row_axis = axes_[D - 1];

@@ -53,7 +53,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
  private:
   using Split = QuadtreeSplit<D>;
 
-  /// What one thread searches with.
+  /// The memory of one thread.
   struct Worker {
     QuadtreeStack<D> stack;
     kernels::RunBuffer<D> run;
