@@ -1,4 +1,4 @@
-// The one list of algorithms, and how a spec becomes a finder or a tracker.
+// The one list of broad-phase algorithms, and how a spec becomes a finder or a tracker.
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -1,4 +1,5 @@
-// CellLists: lists of boxes by cell, made by counting: each list is one stretch of one array.
+// CellLists: lists of boxes by cell, made by a counting sort (prefix sums): each list is one stretch of one
+// array.
 //
 // Several threads may count and append at once, each for a range of the items: ranges have counts of their
 // own, and in a list the items of one range stand before those of the next.

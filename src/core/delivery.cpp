@@ -17,7 +17,7 @@ constexpr std::size_t nearly_empty = PairBlocks::most / 8;
 
 void Delivery::begin_round() {
   const std::lock_guard lock(mutex_);
-  lanes_left_ = false;
+  workers_left_ = false;
   round_ends_ = false;
 }
 
@@ -25,11 +25,11 @@ std::optional<Delivery::Piece> Delivery::take() {
   const std::lock_guard lock(mutex_);
   while (next_ < pieces_.size() && pieces_[next_].state != State::open) ++next_;
   const std::size_t used = blocks_->used();
-  if (lanes_left_ && used < nearly_empty && is_callers_thread()) round_ends_ = true;
+  if (workers_left_ && used < nearly_empty && is_callers_thread()) round_ends_ = true;
   if (next_ == pieces_.size() || round_ends_) return std::nullopt;
   const bool is_direct = next_ == delivered_ && is_callers_thread() && !delivering_;
   if (!is_direct && used >= nearly_full) {
-    lanes_left_ = true;
+    workers_left_ = true;
     return std::nullopt;
   }
   if (is_direct) delivering_ = true;  // by this very piece
@@ -50,7 +50,7 @@ void Delivery::give_up(const Piece& piece) {
   const std::lock_guard lock(mutex_);
   pieces_[piece.number].state = State::open;
   next_ = std::min(next_, piece.number);
-  lanes_left_ = true;
+  workers_left_ = true;
 }
 
 bool Delivery::deliver_next() {

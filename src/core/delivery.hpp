@@ -13,9 +13,9 @@
 
 namespace broadside::core {
 
-/// Lanes take pieces in order and end them in any; the pairs go to the sink in order, in the thread that made
-/// the delivery: the caller's. That thread searches straight into the sink where nothing waits before its
-/// piece; all other pieces keep their pairs in blocks until it comes to deliver them.
+/// Workers take pieces in order and finish them in any order; the pairs go to the sink in order, in the
+/// thread that made the delivery: the caller's. That thread searches straight into the sink where nothing
+/// waits before its piece; all other pieces keep their pairs in blocks until it comes to deliver them.
 ///
 /// No worker waits for another. One that finds no room takes no further piece, and a piece that outgrows the
 /// room is given up, to be searched again. So a search goes by rounds of all workers; a round after which
@@ -69,7 +69,7 @@ class Delivery {
   std::size_t next_ = 0;       // no piece before it is open
   std::size_t delivered_ = 0;  // written by the caller's thread alone
   bool delivering_ = false;
-  bool lanes_left_ = false;  // in this round, for want of room
+  bool workers_left_ = false;  // in this round, since there was no room
   bool round_ends_ = false;
 };
 

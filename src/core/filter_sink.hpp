@@ -7,7 +7,7 @@
 
 namespace broadside::core {
 
-/// What consume() does must depend on the pairs alone and change nothing but the target, so that several
+/// consume() must depend on the pairs alone and change only the target, so that several
 /// threads can filter at the same time, each with a filter of its own onto a target of its own.
 class FilterSink : public PairSink {
  public:

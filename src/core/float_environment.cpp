@@ -23,7 +23,7 @@ void DefaultEnvironment::leave() const noexcept {
 
 CallersEnvironment::CallersEnvironment() noexcept : callers_(callers_control) {
   if (callers_.is_standard()) return;
-  // What is called back may call the library again, as any caller.
+  // A callback may call the library again, as any caller.
   callers_control = FloatControl::standard();
   callers_.set();
 }

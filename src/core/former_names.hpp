@@ -6,10 +6,10 @@
 
 namespace broadside::core {
 
-/// What an algorithm of that name is called now; the name itself where it is no former one.
+/// The current name of an algorithm; `name` itself if it is no former one.
 std::string_view current_algorithm(std::string_view name) noexcept;
 
-/// What a value of an algorithm's tunable is called now, where only its name changed; else the value itself.
+/// The current name of a value of an algorithm's tunable, if only its name changed; else `value` itself.
 std::string_view current_value(std::string_view algorithm, std::string_view tunable,
                                std::string_view value) noexcept;
 
@@ -17,10 +17,11 @@ std::string_view current_value(std::string_view algorithm, std::string_view tuna
 /// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
 std::string current_spec(std::string_view spec);
 
-/// What became of a value that a tunable once had, as the end of an error message; empty if it never had it.
+/// The reason why a tunable no longer has this value, as the end of an error message; empty if it never had
+/// it.
 std::string former_value(std::string_view tunable, std::string_view value);
 
-/// What became of a tunable that algorithms once had, likewise.
+/// The reason why algorithms no longer have this tunable, likewise.
 std::string former_tunable(std::string_view tunable);
 
 }  // namespace broadside::core

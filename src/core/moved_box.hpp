@@ -30,7 +30,7 @@ struct MovedBox {
   /// they mean.
   bool filter_changed;
 
-  /// Whether the two boxes are so far apart that each is to be looked up by itself. For the algorithm to set.
+  /// Whether the two boxes are too far from each other to be looked up as one. For the algorithm to set.
   bool is_far = false;
 };
 
@@ -44,7 +44,7 @@ struct ChangeSinks {
   const std::uint8_t* moves;
 };
 
-/// What a search went through.
+/// The work of a search.
 struct ChangeWork {
   std::uint64_t tests = 0;   ///< pairs of boxes compared
   std::uint64_t blocks = 0;  ///< blocks looked at

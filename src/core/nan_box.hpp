@@ -8,7 +8,7 @@
 namespace broadside::core {
 
 /// A box of NaNs: overlaps nothing, not even an infinite box, without asking whether it is present. So it
-/// pads unused SIMD lanes. The absent box does not do there: it overlaps an infinite one.
+/// pads unused SIMD lanes. The absent box would not do: it overlaps an infinite one.
 template <int D>
 constexpr Box<D> nan_box() noexcept {
   Box<D> box{};

@@ -1,4 +1,4 @@
-// What of PairSink is not inline.
+// PairSink: its functions that are not inline.
 #include <stdexcept>
 
 #include "broadside/pair.hpp"

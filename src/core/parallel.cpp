@@ -1,4 +1,5 @@
-// Parallel: a search's work shared among threads, so that neither the pairs nor their order show how many.
+// Parallel: a search's work shared among threads, so that the pairs and their order do not depend on how
+// many.
 #include "core/parallel.hpp"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ Tunable threads_tunable() {
           .most = 1024};
 }
 
-/// What went wrong in tasks that run at the same time: the first in their order is kept.
+/// The exceptions of tasks that run at the same time: the first in the tasks' order is kept.
 class Parallel::Errors {
  public:
   /// In a handler, for the exception handled.

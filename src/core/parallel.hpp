@@ -1,4 +1,5 @@
-// Parallel: a search's work shared among threads, so that neither the pairs nor their order show how many.
+// Parallel: a search's work shared among threads, so that the pairs and their order do not depend on how
+// many.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace broadside::core {
 /// The tunable `threads`, which every algorithm has that uses several; make_finder() hands it to the finder.
 Tunable threads_tunable();
 
-/// Half-open, of whatever is counted.
+/// A half-open range of indices.
 struct Range {
   std::size_t begin;
   std::size_t end;
@@ -36,7 +37,7 @@ class Parallel {
   Parallel(const Parallel&) = delete;
   Parallel& operator=(const Parallel&) = delete;
 
-  /// Sets the number of workers for a search whose work is that of looking at so many boxes.
+  /// Sets the number of workers for a search that takes about as long as looking at `boxes` boxes.
   void start(const Workers& workers, std::size_t boxes);
 
   std::size_t workers() const noexcept { return workers_; }

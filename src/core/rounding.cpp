@@ -20,21 +20,21 @@ constexpr std::size_t most_fitted = 256;
 constexpr std::size_t boxes_per_knot = 16;
 constexpr std::size_t most_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
 
-/// So many false pairs a box cost about what another rounding does.
+/// False pairs a box that cost about what another rounding does.
 constexpr double most_false_pairs = 8;
 
 /// Each false pair among the boxes that are compared stands for 4/3 a box.
 constexpr double compared_share = 0.75;
 constexpr std::size_t least_compared = 64;
 
-/// Shifts a sample: it depends on all boxes and their order, so that arrays with a pattern do not hide behind
-/// it. A hash that is easy to turn round is enough for that.
+/// Shifts a sample: it depends on all boxes and their order, so that no pattern of the array can evade it. A
+/// weak hash is enough for that.
 template <int D>
 std::uint32_t sample_shift(std::span<const Box<D, double>> boxes) {
   constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
   std::uint64_t hash = boxes.size();
   for (const Box<D, double>& box : boxes) {
-    // Both zeros are one.
+    // -0.0 and 0.0 are the same.
     hash = (hash ^ std::bit_cast<std::uint64_t>(box.max[0] + 0.0)) * golden;
     hash ^= hash >> 32;
   }
@@ -106,7 +106,8 @@ class Columns {
 
 LinearRounding::LinearRounding(double origin, double distance) : origin_(origin) {
   if (!(distance > 0)) return;
-  // Tunables such as a grid's cell are lengths in the boxes' unit, so that one is kept where floats can.
+  // Tunables such as a grid's cell are lengths in the boxes' unit, so the unit stays what it is where floats
+  // can hold such distances.
   constexpr int kept_exponent = 30;
   if (std::abs(std::ilogb(distance)) <= kept_exponent) return;
   // Beyond that the scale or its inverse would be none.

@@ -68,7 +68,7 @@ struct LinearFit {
   double high;
 };
 
-/// A rounding for each axis that suits most of those boxes that are present, by a sample.
+/// A rounding for each axis that suits most of the present boxes, by a sample.
 template <int D>
 std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes);
 

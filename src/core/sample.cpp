@@ -1,4 +1,4 @@
-// What a sample of the boxes says about each axis: the signals from which algorithms choose their tunables.
+// A sample of the boxes, axis by axis: the signals from which algorithms choose their tunables.
 #include "core/sample.hpp"
 
 #include <algorithm>
@@ -12,23 +12,23 @@ namespace {
 
 constexpr float largest = std::numeric_limits<float>::max();
 
-/// A few boxes are sampled densely; of many, so few that sampling is a small part of the work.
+/// Few boxes are sampled densely, many so sparsely that sampling is a small part of the work.
 std::size_t sample_count(std::size_t boxes, std::size_t most) {
   return std::min({boxes, 64 + boxes / 16, most});
 }
 
 /// The part of the pairs among `minima.size()` intervals that overlap; both ends sorted, each for itself.
 double overlapping_part(std::span<const float> minima, std::span<const float> maxima) {
-  // Of all pairs, those whose one ends before the other begins are apart.
-  std::uint64_t apart = 0;
+  // Two intervals are disjoint if one ends before the other begins.
+  std::uint64_t disjoint = 0;
   std::size_t ended = 0;
   for (const float min : minima) {
     while (ended < maxima.size() && maxima[ended] < min) ++ended;
-    apart += ended;
+    disjoint += ended;
   }
   const auto count = static_cast<double>(minima.size());
   const double pairs = count * (count - 1) / 2;
-  return pairs > 0 ? 1 - static_cast<double>(apart) / pairs : 1;
+  return pairs > 0 ? 1 - static_cast<double>(disjoint) / pairs : 1;
 }
 
 /// Sets the bounds of a sample from its ends, both sorted: those of the middle three quarters, and as much

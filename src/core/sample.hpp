@@ -1,4 +1,4 @@
-// What a sample of the boxes says about each axis: the signals from which algorithms choose their tunables.
+// A sample of the boxes, axis by axis: the signals from which algorithms choose their tunables.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct AxisSample {
   /// about n / 2 times this many pairs a box.
   double overlap = 1;
 
-  float low = 0;           ///< the finite bounds between which the sampled boxes lie, but for far outliers
+  float low = 0;           ///< the finite bounds between which the sampled boxes lie, except far outliers
   float high = 0;          ///<
   float extent = 0;        ///< the median of the boxes' extents, at most FLT_MAX
   double mean_extent = 0;  ///< and their mean, an extent counting as no more than the bounds' distance

@@ -60,7 +60,7 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   }
   const Digits first(greatest_first);
   const Digits second(greatest_second);
-  // Whatever the order, a digit's values are as many as they are: all are counted at once.
+  // The counts of a digit's values do not depend on the order, so all digits are counted at once.
   std::array<Counts, most_steps> of_first;
   std::array<Counts, most_steps> of_second;
   for (int step = 0; step < first.steps(); ++step) std::fill_n(of_first[step].begin(), first.values(), 0);
@@ -83,7 +83,7 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 }  // namespace
 
 void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
-  // What is 2^32 or more does not fit the counts, and is never seen.
+  // Counts of 2^32 or more would not fit, and never occur.
   if (pairs.size() <= few || pairs.size() > 0xffffffffU) {
     std::sort(pairs.begin(), pairs.end());
   } else {

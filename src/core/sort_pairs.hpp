@@ -11,7 +11,7 @@ namespace broadside::core {
 /// the bits in which they differ.
 void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
 
-/// Likewise, and drops those that are there twice.
+/// Likewise, and drops duplicates.
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
 
 }  // namespace broadside::core

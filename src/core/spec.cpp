@@ -38,7 +38,7 @@ double most(const Tunable& tunable) {
   return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
 }
 
-/// What a tunable takes, to be said where `found` was given.
+/// The values that a tunable takes, for a message about `found`.
 std::string range(const Tunable& tunable, double found) {
   const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();

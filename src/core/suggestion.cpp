@@ -38,7 +38,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
-  // No name is longer; what is may be a whole file, whose distances would take long.
+  // No name is longer; a longer text may be a whole file, whose distances would take long.
   constexpr std::size_t most_letters = 64;
   constexpr std::size_t least_beginning = 3;
   if (found.size() > most_letters) return "";

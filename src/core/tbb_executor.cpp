@@ -15,7 +15,7 @@ class TbbExecutor final : public Executor {
   }
 
   void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
-    // While this thread waits it must not take up work of its caller's, who may hold a lock.
+    // While this thread waits it must not run other tasks of its caller, which may hold a lock.
     tbb::this_task_arena::isolate(
         [&] { tbb::parallel_for(std::size_t{0}, count, task, tbb::simple_partitioner()); });
   }

@@ -17,7 +17,7 @@ constexpr std::size_t few_boxes = 256;
 /// lines of floats.
 constexpr std::size_t boxes_per_bucket = 64;
 
-/// Limits the buckets to as many as a bucket_of_ can tell apart.
+/// Limits the buckets to as many as a bucket_of_ can number.
 template <int D>
 constexpr std::size_t most_buckets_per_side = D == 2 ? 181 : 31;
 
@@ -90,7 +90,7 @@ bool DoubleFinder<D>::measure(std::span<const Box<D, double>> boxes, const Fit& 
       std::uint32_t bucket = i < this->left_count() ? 0 : 1;
       for (int axis = 0; axis < D; ++axis) {
         exact = exact && is_exact(box.min[axis], axis) && is_exact(box.max[axis], axis);
-        // Neither lets a NaN through, which infinite boxes and minima that are all equal make.
+        // Neither std::min nor std::max passes on a NaN, which infinite boxes or equal minima lead to.
         const double at = std::min(last, std::max(0.0, (box.min[axis] - fit[axis].low) * per_unit[axis]));
         bucket = bucket * static_cast<std::uint32_t>(per_side) + static_cast<std::uint32_t>(at);
       }
@@ -106,7 +106,7 @@ template <int D>
 template <typename RoundingOf>
 std::size_t DoubleFinder<D>::gather(std::span<const Box<D, double>> boxes, RoundingOf rounding_of) {
   // Pairs are of boxes near each other, and each is looked up again: where the boxes are more than a cache
-  // holds, that would be a miss for each pair if they lay as they came.
+  // holds, each pair would be a cache miss if they stayed in the caller's order.
   const std::size_t buckets = 2 * bucket_count_;
   std::uint32_t total = 0;
   for (std::size_t bucket = 0; bucket < buckets; ++bucket) {

@@ -21,9 +21,9 @@ namespace broadside::core {
 ///
 /// Rounding never puts two coordinates into the wrong order, at worst it makes them equal. So boxes that
 /// overlap in double overlap in float as well; and boxes that overlap in float by more than touching overlap
-/// in double. What is left is to test in double those of the float finder's pairs that only touch, unless
-/// rounding has lost nothing. That costs much only where rounding makes many boxes touch that lie apart;
-/// there coordinates are rounded by their quantiles, which tell apart what one scale does not.
+/// in double. So only the float finder's pairs that touch need a test in double, and none if rounding has
+/// lost nothing. That costs much only where rounding makes many separate boxes touch; there coordinates are
+/// rounded by their quantiles, which distinguish more of them than one scale does.
 template <int D>
 class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, double> {
  public:
@@ -42,7 +42,7 @@ class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, doub
   Outline<D, double> lay_out(std::span<const Box<D, double>> boxes) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }
 
-  /// Puts each box into a bucket of near ones. Returns whether floats tell all coordinates apart that differ.
+  /// Puts each box into a bucket of near ones. Returns whether coordinates that differ do so as floats.
   bool measure(std::span<const Box<D, double>> boxes, const Fit& fit);
 
   /// Sets ids_ and floats_, bucket by bucket. Returns how many boxes are of the left set.

@@ -60,7 +60,7 @@ void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& 
   this->count(statistics);
 }
 
-/// Rounds all boxes of the frame before, in a way that suits this one.
+/// Rounds all boxes of the frame before, by a rounding that suits this one.
 template <int D>
 void DoubleFollower<D>::start(const Change<D, double>& change) {
   false_candidates_ = 0;

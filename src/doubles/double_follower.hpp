@@ -16,11 +16,10 @@
 
 namespace broadside::algorithm {
 
-/// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So all pairs
-/// that began or ended are among those of a changed box with what it overlaps as floats, or did. How
-/// coordinates are rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have
-/// moved to where that makes too many false candidates. Cost: that of the floats, and a test in double for
-/// each candidate.
+/// Rounding keeps order, as in core::DoubleFinder: boxes that overlap in double do in float. So every pair
+/// that began or ended is of a changed box and one that it overlaps, or did, as floats. How coordinates are
+/// rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have moved to where
+/// that makes too many false candidates. Cost: that of the floats, and a test in double for each candidate.
 template <int D>
 class DoubleFollower final : public PairTracker<D, double> {
  public:

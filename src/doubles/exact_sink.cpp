@@ -10,7 +10,7 @@
 namespace broadside::core {
 namespace {
 
-/// So many pairs before a box is looked up, its floats are asked for.
+/// How many pairs ahead of its use a box is prefetched.
 constexpr std::size_t looked_ahead = 32;
 
 /// Whether the floats tell that two boxes are a pair: they do unless the boxes touch.
@@ -39,8 +39,8 @@ void ExactSink<D>::consume(std::span<const Pair> pairs) {
 /// Writes those of up to max_room pairs that are to be kept, as ids, and returns how many.
 template <int D>
 std::size_t ExactSink<D>::keep(std::span<const Pair> pairs, Pair* out) const {
-  // Without jumps, since what a predictor cannot know are the order of ids and, where many boxes touch,
-  // which pairs are certain.
+  // Without branches: no predictor can know the order of ids or, where many boxes touch, which pairs are
+  // certain.
   std::array<Pair, max_room> uncertain;
   std::array<std::uint32_t, max_room> before;  // how many are kept before it
   std::size_t uncertain_count = 0;
@@ -81,7 +81,7 @@ std::size_t ExactSink<D>::keep(std::span<const Pair> pairs, Pair* out) const {
   return kept + accepted;
 }
 
-/// Starts to load what is looked up of a box.
+/// Prefetches what is looked up of a box.
 template <int D>
 void ExactSink<D>::fetch(std::size_t place) const {
   prefetch(&of_.ids[place]);

@@ -1,4 +1,4 @@
-// ExactSink: of the pairs that a finder of floats reports, those of boxes that overlap in double.
+// ExactSink: passes on those pairs of a finder of floats that overlap in double.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct RoundedBoxes {
   std::span<const std::uint32_t> ids;  ///< places among the boxes, by place among the floats
   std::span<const Box<D>> floats;
   std::size_t left_count;  ///< as in a PairFinder; pairs are then places among left and among right floats
-  bool exact;              ///< whether floats tell all coordinates apart that differ
+  bool exact;              ///< whether coordinates that differ do so as floats
 };
 
 /// Passes on, as ids, the pairs that overlap in double. The order stays.

@@ -2,9 +2,9 @@
 //
 // When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
 // as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
-// memory", VLDB 2013). What ended in a frame that finds all pairs anew is seen from the pairs of the frame
-// before. These are not kept while boxes are followed: that would cost as much again in some frames as it
-// saves in one, the first that finds all anew, which finds those of the frame before as well.
+// memory", VLDB 2013). A frame that finds all pairs anew needs those of the frame before, to tell which
+// ended. They are not kept up to date while boxes are followed, which would cost more than it saves: the
+// first frame that finds all pairs anew finds those of the frame before as well.
 #include "interface/adaptive_tracker.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@
 namespace broadside::core {
 namespace {
 
-/// So many boxes are followed at first to see what a mover costs.
+/// Boxes that are followed at first to see what a mover costs.
 constexpr std::size_t tried_movers = 64;
 
 /// Up to this many boxes, comparing each mover with all others costs less than keeping cells. Hysteresis:
-/// leave a bit later than you enter, so that boxes that come and go by turns do not flip it each frame.
+/// leave a bit later than you enter, so that a count near the limit does not flip it each frame.
 constexpr std::size_t boxes_for_brute_force = 320;
 constexpr std::size_t most_boxes_for_brute_force = 400;
 
@@ -161,7 +161,8 @@ std::string AdaptiveTracker<D, Real>::explanation() const {
   return found + "; " + changed + ", and it pays to follow boxes up to " + break_even;
 }
 
-/// A follower that was only made ready for the next frame has seen no filters: its index does not do yet.
+/// A follower that was only made ready for the next frame has seen no filters, so its index cannot be used
+/// yet.
 template <int D, typename Real>
 const BoxIndex<D, Real>* AdaptiveTracker<D, Real>::algorithm_index() const noexcept {
   return were_few_ || !was_followed_ ? nullptr : this->index_of(*follower_);

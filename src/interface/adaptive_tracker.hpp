@@ -30,8 +30,8 @@ struct Follower {
 template <int D, typename Real = float>
 class AdaptiveTracker final : public PairTracker<D, Real> {
  public:
-  /// All are of the library: what finds all pairs; what may follow boxes, at least one; and what does all of
-  /// it where boxes are few, or null for none.
+  /// `finder` finds all pairs anew; `followers`, at least one, are the structures to choose from; `for_few`,
+  /// if not null, does everything where boxes are few.
   AdaptiveTracker(Update update, std::unique_ptr<PairFinder<D, Real>> finder, const FindCosts& finding,
                   std::vector<Follower<D, Real>> followers,
                   std::unique_ptr<PairTracker<D, Real>> for_few = nullptr);

@@ -10,7 +10,7 @@ namespace broadside::core {
 template <int D, typename Real>
 std::string text_of(const Box<D, Real>& box) {
   std::ostringstream text;
-  text.imbue(std::locale::classic());  // whatever the program has made of the global one
+  text.imbue(std::locale::classic());  // the global locale may be another
   text.precision(std::numeric_limits<Real>::max_digits10);
   const auto print = [&text](const std::array<Real, D>& point) {
     for (int axis = 0; axis < D; ++axis) text << (axis == 0 ? "(" : ", ") << point[axis];

@@ -17,8 +17,8 @@
 namespace broadside {
 namespace {
 
-/// Passes pairs on under other ids, and of those between two sets only the ones that do cross. The ids rise
-/// with the places they stand for within a set, so that pairs of one set stay ordered.
+/// Passes pairs on under other ids; between two sets, only pairs of a box of each. Within a set the ids
+/// ascend with the places they stand for, so that its pairs stay ordered.
 class RenamingSink final : public core::FilterSink {
  public:
   RenamingSink(std::span<const BoxId> ids, std::size_t left_count, PairSink& target)
@@ -259,7 +259,7 @@ std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) cons
   core::Parallel parallel;
   parallel.start(workers_, boxes.size());
   std::atomic<std::size_t> absent = 0;
-  // A range that throws names its first box at fault, and of ranges the first one's counts.
+  // Each range that throws names its first box at fault; the first such range's exception is the one thrown.
   parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
     absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input_),
                      std::memory_order_relaxed);

@@ -13,8 +13,8 @@ constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
 constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide
 
-/// What part of the way back to its expected value a structure's cost goes each time that another one is
-/// weighed: boxes may have changed their character.
+/// The part of the way back to its expected value that a structure's cost takes each time another one is
+/// weighed: the boxes may have changed.
 constexpr double forgotten = 0.01;
 
 /// Fewer movers say little about what one costs.
@@ -50,7 +50,7 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   break_even_ =
       std::max(few_movers, static_cast<std::size_t>(finding / of_mover_[follows_ ? current_ : best]));
   if (update_ != Update::automatic) return update_ == Update::follow;
-  // Of the first frame all boxes are new, and after a failed one nothing is known.
+  // In the first frame all boxes are new, and after a failed one nothing is known.
   if (rebuild) return false;
   const bool is_best = follows_ && best == current_;
   if (changed <= few_movers && is_best) return true;
@@ -59,8 +59,8 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   const double saving = now - movers * of_mover_[best];
   const bool goes_on = follows_ && now < finding;
   if (saving <= 0) return goes_on;
-  // To start following costs something as well. It is done at once where the frame is no dearer for it, and
-  // else as soon as it would have paid: so little is lost where few boxes and many move by turns.
+  // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
+  // soon as it would have paid: so little is lost where few and many boxes move in alternation.
   saved_ += saving;
   const double patience = best == current_ ? 1 : patience_;
   if (saved_ < patience * static_cast<double>(boxes) * following_[best].start) return goes_on;

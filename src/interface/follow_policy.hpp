@@ -17,7 +17,7 @@ enum class Update { automatic, follow, rebuild };
 Tunable update_tunable();
 Update update_of(const Settings& settings);
 
-/// What it costs to follow boxes in a structure, in nanoseconds of one machine: only ratios matter.
+/// The cost of following boxes in a structure, in nanoseconds of one machine: only ratios matter.
 struct FollowCosts {
   double start;         ///< to build the structure, a box
   double mover;         ///< to follow a box that moves, before any was followed
@@ -26,7 +26,7 @@ struct FollowCosts {
   double further_test;  ///< each further one
 };
 
-/// What it costs to find all pairs anew, likewise.
+/// The cost of finding all pairs anew, likewise.
 struct FindCosts {
   double box;                     ///< a box, without its pairs, with 64 tests and 4 references
   double further_test = 0.5;      ///< each further test of a box
@@ -79,7 +79,7 @@ class FollowPolicy {
   bool follows_ = false;
   std::size_t current_ = 0;
   double saved_ = 0;     // what following would have saved since it was last done, or another structure
-  double patience_ = 1;  // grows with each change of structures, so that they do not take turns
+  double patience_ = 1;  // hysteresis: grows with each change of structures, so that they do not take turns
   std::uint64_t seen_movers_ = 0;  // since the structure was last weighed
   double seen_tests_ = 0;
   double seen_hits_ = 0;

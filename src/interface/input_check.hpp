@@ -21,7 +21,7 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
 template <int D, typename Real>
 bool is_present_by_value(const Box<D, Real>& box) noexcept;
 
-/// What is wrong with a box that is not present, for an exception: its values, which `name` goes before.
+/// The message of an exception for a box that is not present: `name`, then its values.
 template <int D, typename Real>
 std::string fault_of(const Box<D, Real>& box, const std::string& name);
 

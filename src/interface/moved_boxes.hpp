@@ -10,9 +10,9 @@
 
 namespace broadside::core {
 
-/// Appends those of the `ids`, which are some of `change.changed`, whose boxes or filters differ and that are
-/// present before or now. With `every_pair` nothing that is present is left out, and each counts as one whose
-/// filter changed: for callers that judge pairs by more than these boxes, such as the doubles behind them.
+/// Appends the boxes of `ids`, some of `change.changed`, whose box or filter differs and that are present
+/// before or now. With `every_pair` all that are present are appended, each as if its filter had changed: for
+/// callers that judge pairs by more than these boxes, such as the doubles behind them.
 template <int D>
 void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved,
                   bool every_pair = false);

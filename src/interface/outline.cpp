@@ -1,4 +1,4 @@
-// What outline() does around an algorithm.
+// outline(): checks the boxes, lets the algorithm lay itself out, and ends it at their bounds.
 #include "broadside/debug/outline.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What captions of outlines are made of.
+// The parts of outlines' captions.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What differs between the pairs of two frames, seen from their boxes.
+// The difference between the pairs of two frames, by their boxes.
 #include "interface/pair_difference.hpp"
 
 #include <algorithm>
@@ -11,17 +11,18 @@
 namespace broadside::core {
 namespace {
 
-/// How many pairs ahead boxes are called for: finders write neighbours one after the other, but boxes stand
+/// How many pairs ahead boxes are prefetched: finders write neighbours one after the other, but boxes may be
 /// anywhere in their array.
 constexpr std::size_t ahead = 16;
 
 template <typename Box>
-void call_for(std::span<const Box> boxes, Pair pair) {
+void prefetch_boxes(std::span<const Box> boxes, Pair pair) {
   prefetch(&boxes[index(pair.first)]);
   prefetch(&boxes[index(pair.second)]);
 }
 
-/// Whether two boxes, each of them present or absent, overlap: without a branch, since nobody can foretell.
+/// Whether two boxes, each of them present or absent, overlap: without a branch, which no predictor could
+/// foresee.
 template <int D, typename Real>
 unsigned overlapping(const Box<D, Real>& a, const Box<D, Real>& b) {
   unsigned all = static_cast<unsigned>(a.min[0] <= a.max[0]) & static_cast<unsigned>(b.min[0] <= b.max[0]);
@@ -32,8 +33,8 @@ unsigned overlapping(const Box<D, Real>& a, const Box<D, Real>& b) {
   return all;
 }
 
-/// Calls `report` for those of `pairs` of which a box changed, and whose boxes do not overlap in `boxes`; for
-/// the others of which one changed as well if there are filters.
+/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; if there are
+/// filters, for every one with a changed box.
 template <int D, typename Real, typename Report>
 void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
                    std::span<const Box<D, Real>> boxes, Report report) {
@@ -44,7 +45,7 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
     const std::size_t end = std::min(begin + at_once, pairs.size());
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (i + ahead < pairs.size()) call_for(boxes, pairs[i + ahead]);
+      if (i + ahead < pairs.size()) prefetch_boxes(boxes, pairs[i + ahead]);
       const std::uint32_t a = index(pairs[i].first);
       const std::uint32_t b = index(pairs[i].second);
       const unsigned goes_on = overlapping(boxes[a], boxes[b]) & by_boxes;

@@ -80,13 +80,13 @@ void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Re
   drop_ignored(change);
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
-  // Those that are ignored from now on come first.
+  // The pairs that are ignored from now on come first.
   const auto middle = std::partition(toggled_.begin(), toggled_.end(),
                                      [this](Pair pair) { return !ignored_.contains(pair); });
   const std::span<const Pair> newly(toggled_.begin(), middle);
   const std::span<const Pair> no_longer(middle, toggled_.end());
   try {
-    // Whatever takes memory comes before the events are told: what is told has been taken.
+    // All memory is taken before the events are delivered, so that nothing can fail after them.
     for (const Pair pair : newly) ignored_.insert(pair);
     quarantined_.reserve(quarantined_.size() + invalid_.size());
     const core::CallersEnvironment callers;
@@ -138,7 +138,7 @@ void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild
     core::resize_by_eighths(filters_before_, size);
     core::resize_by_eighths(filters_now_, size);
   }
-  // Flags are all 0 between two updates, but where the last one failed.
+  // Flags are all 0 between two updates, unless the last one failed.
   if (rebuild) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
   core::resize_by_eighths(flags_, size);
   changed_.clear();
@@ -182,7 +182,7 @@ void PairTracker<D, Real>::State::take_ignored(const Frame<D, Real>& frame, bool
   core::sort_unique(toggled_, sorting_);
 }
 
-/// Takes from the events those of pairs that are ignored, and adds those of pairs that became it or were it.
+/// Drops the events of ignored pairs, and adds events of pairs that became ignored or no longer are.
 template <int D, typename Real>
 void PairTracker<D, Real>::State::drop_ignored(const Change<D, Real>& change) {
   if (toggled_.empty() && ignored_.empty()) return;
@@ -201,7 +201,7 @@ void PairTracker<D, Real>::State::drop_ignored(const Change<D, Real>& change) {
   }
 }
 
-/// Makes this frame the one before, but for what is ignored. There is room in quarantined_.
+/// Makes this frame the one before, except for its ignored pairs. There is room in quarantined_.
 template <int D, typename Real>
 void PairTracker<D, Real>::State::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();

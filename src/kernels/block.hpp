@@ -1,4 +1,4 @@
-// Block: sixteen boxes as a structure of arrays, and what is known of a block without looking into it.
+// Block: sixteen boxes (AABBs) as a structure of arrays for SIMD, and operations on a whole block.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ template <int D>
 struct alignas(64) Block {
   std::array<std::array<float, block_size>, D> min;
   std::array<std::array<float, block_size>, D> max;
-  std::array<std::uint32_t, block_size> id;  ///< whatever number the owner gives its boxes
+  std::array<std::uint32_t, block_size> id;  ///< the owner's numbers of its boxes
 
   void set(std::size_t lane, const Box<D>& box) {
     for (int axis = 0; axis < D; ++axis) {

@@ -14,7 +14,7 @@
 
 namespace broadside::kernels {
 
-/// What is known of a block without looking into it.
+/// Data about a block that a search can read without its boxes.
 struct BlockHead {
   std::uint32_t next;   ///< the next block of the same chain, or no_slot
   std::uint32_t owner;  ///< whose chain it is: a cell's or a node's number
@@ -101,8 +101,8 @@ class BlockPool {
   }
   bool is_marked(std::uint32_t slot) const { return (heads_[slot / width].moving & bit(slot)) != 0; }
 
-  /// Memory for an eighth more blocks than `count`. They are the most of what a structure keeps: twice as
-  /// many, as a vector takes by itself, would be too many.
+  /// Reserves memory for an eighth more blocks than `count`. Blocks are most of what a structure keeps, so it
+  /// should not double as a vector does.
   void reserve(std::size_t count) {
     constexpr std::size_t spare = 16;
     heads_.reserve(count + count / 8 + spare);

@@ -1,4 +1,5 @@
-// BroadcastBox: one box against a vector of others, for files that Highway compiles for each instruction set.
+// BroadcastBox: one box against a SIMD vector of others, for files that Highway compiles for each instruction
+// set.
 //
 // Included once an instruction set, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_BROADCAST_BOX) == defined(HWY_TARGET_TOGGLE)

@@ -1,5 +1,5 @@
-// What one node of a tree of bounds tells, sixteen children at a time, written once for every instruction
-// set.
+// Bounds and choices of one node of a tree of bounds, sixteen children at a time, written once for every
+// instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh.cpp"
 #include "kernels/bvh.hpp"

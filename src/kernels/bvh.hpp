@@ -1,5 +1,5 @@
-// The node of a dynamic bounding volume hierarchy, the views of one that kernels take, and what one node
-// tells.
+// The node of a dynamic bounding volume hierarchy (an AABB tree), the views of one that kernels take, and
+// what one node tells.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ inline constexpr std::size_t longest_path = 32;
 /// Set in the number of a node that is a leaf, whose children are boxes.
 inline constexpr std::uint32_t leaf_bit = 0x80000000U;
 
-/// What a search does not read of a node. The node itself is a block: the bounds of its children, or boxes in
-/// a leaf, and as ids the children's numbers with their leaf_bit, or the boxes' ids.
+/// The part of a node that a search does not read. The node itself is a block: the bounds of its children, or
+/// boxes in a leaf, and as ids the children's numbers with their leaf_bit, or the boxes' ids.
 struct BvhNodeInfo {
   std::uint32_t parent;  ///< slot in the parent: the node above * fan_out + lane; no_slot for the root
   std::uint8_t count;    ///< children, in the first lanes

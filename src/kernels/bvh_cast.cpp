@@ -1,4 +1,4 @@
-// Casts through a tree of boxes, sixteen children at a time, written once for every instruction set.
+// Traversal of a tree of boxes by casts, sixteen children at a time, written once for every instruction set.
 //
 // Slabs after T. Kay and J. Kajiya, "Ray tracing complex scenes" (1986). Bounds are tested with
 // multiplications by an inverse and a margin above what these can be wrong by, so that no box is lost that
@@ -17,12 +17,11 @@ HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-/// By how much what is multiplied may differ from what is divided: some roundings, and some of numbers that
-/// are not normal.
+/// How far a product with the inverse may be from the quotient: a few roundings, also of subnormal numbers.
 constexpr float margin = 1 + 0x1p-20f;
 constexpr float least = 0x1p-126f;
 
-/// Appends as append() does, and to `entries_to` where these children are entered.
+/// Appends as append() does, and to `entries_to` the parameters at which these children are entered.
 template <int D>
 HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, FloatMask mask,
                                       FloatVector entries, std::uint32_t* to, float* entries_to) {
@@ -39,7 +38,7 @@ struct Cast {
     for (int axis = 0; axis < D; ++axis) {
       const bool is_back = query.course[axis] == Course::backward ||
                            (query.course[axis] == Course::unknown && query.direction[axis] < 0);
-      // What comes first of the cast box meets what comes first of the other one.
+      // The leading side of the cast box meets the near side of the other one.
       near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
       far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
       inverse_[axis] = all(query.inverse[axis]);
@@ -48,7 +47,7 @@ struct Cast {
     }
   }
 
-  /// Which children from `at` on may be met up to `t_max`, which is what `limit` is made of.
+  /// Which children from `at` on may be met up to the `t_max` that `limit` is made of.
   HWY_INLINE FloatMask may_meet(const Block<D>& node, std::size_t at, FloatVector limit,
                                 FloatVector& enter) const {
     FloatVector leave = all(infinity);
@@ -94,14 +93,14 @@ struct Cast {
         if (hn::AllFalse(Floats(), hits)) continue;
         hits = meets(node, at, t_max, enter);
       }
-      // What is -0.0 becomes 0.0.
+      // Makes -0.0 0.0.
       const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
       found.count += append_entries(node, at, hits, entries, found.ids.data() + found.count,
                                     found.t_enter.data() + found.count);
     }
   }
 
-  /// As far as bounds may count if boxes do up to `t_max`.
+  /// The parameter up to which bounds count, if boxes count up to `t_max`.
   static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + least); }
 
  private:
@@ -120,8 +119,7 @@ struct Cast {
   FloatVector near_side_[D];
   FloatVector far_side_[D];
   FloatVector inverse_[D];
-  // Where in a node the bounds stand that a cast meets first and last, counted in floats: no branch on a
-  // direction.
+  // Offsets in a node, in floats, of the bounds that a cast meets first and last: no branch on a direction.
   std::size_t near_bound_at_[D];
   std::size_t far_bound_at_[D];
 };
@@ -140,17 +138,18 @@ bool met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   });
 }
 
-/// A node that waits, and where it is entered, in the high half: bits of positive floats order as they do.
+/// A node to visit, with the parameter at which it is entered in the high half: the bits of positive floats
+/// sort as the floats do.
 using Waiting = std::uint64_t;
 
-HWY_INLINE float entry_of(Waiting waiting) {
+HWY_INLINE float t_enter_of(Waiting waiting) {
   const auto bits = static_cast<std::uint32_t>(waiting >> 32);
   float value;
   hwy::CopyBytes<sizeof(value)>(&bits, &value);
   return value;
 }
 
-/// Sorts in descending order. Nearly always there are two or three, which no branch is to depend on.
+/// Sorts in descending order. Nearly always there are two or three, which are sorted without branches.
 HWY_INLINE void sort_descending(Waiting* list, std::size_t count) {
   const auto order = [list](std::size_t i, std::size_t j) HWY_ATTR {
     const Waiting greater = std::max(list[i], list[j]);
@@ -181,7 +180,7 @@ void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& fo
   waiting[0] = tree.root;
   while (count > 0) {
     --count;
-    if (!(entry_of(waiting[count]) <= hn::GetLane(limit))) continue;
+    if (!(t_enter_of(waiting[count]) <= hn::GetLane(limit))) continue;
     const auto number = static_cast<std::uint32_t>(waiting[count]);
     const Block<D>& node = tree.nodes[number & ~leaf_bit];
     if ((number & leaf_bit) != 0) {

@@ -1,7 +1,7 @@
 // Boxes that moved, looked up in a tree of bounds and moved in it, written once for every instruction set.
 //
-// Which children a box's way touches is compressed to the end of the next level's list, without a branch on
-// what no predictor can know.
+// The children that a box's path touches are compressed to the end of the next level's list, without
+// branches, which no predictor could foresee.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_follow.cpp"
 #include "kernels/bvh_follow.hpp"
@@ -48,7 +48,7 @@ class Follow {
   }
 
  private:
-  /// Level by level: no predictor can know which of a list's nodes are leaves, if some are.
+  /// Level by level: if some of a list's nodes were leaves, no predictor could know which.
   HWY_INLINE void compare_in_leaves(const MovedBox<D>& box, const Box<D>& way) {
     const BroadcastBox<D> query(way);
     std::uint32_t* from = tree_.lists[0];
@@ -92,7 +92,7 @@ class Follow {
     }
   }
 
-  /// Enlarges the bounds around a box; what its move calls for.
+  /// Enlarges the bounds around a box. Returns what its move calls for.
   HWY_INLINE std::uint8_t enlarge(const MovedBox<D>& moved) {
     const Box<D>& box = moved.now;
     std::uint8_t calls_for = 0;

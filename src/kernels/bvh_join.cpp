@@ -1,11 +1,10 @@
 // The join of a packed tree of bounds with itself, written once for every instruction set.
 //
-// A node's children are compared with those of all nodes that its bounds touch, sixteen at a time, so that
-// what is found on one level is looked at on the next and each two nodes meet once: the one that stands first
-// looks at those behind it. In a leaf, sixteen boxes are compared at once with the bounds of another leaf;
-// those that touch them are collected over all such leaves and then compared with the boxes in them. Lists
-// are written without branches: hits are compressed to the front, and the end of the list moves on by as
-// many.
+// A node's children are compared with those of all nodes that its bounds touch, sixteen at a time; the hits
+// of one level are the candidates of the next. Each two nodes meet once: the earlier one is compared with the
+// later ones. In a leaf, sixteen boxes are compared at once with the bounds of another leaf; the boxes that
+// touch them are collected over all such leaves and then compared with the boxes in these. Lists are written
+// without branches: hits are compressed to the front, and the end of the list advances by their number.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_join.cpp"
 #include "kernels/bvh_join.hpp"

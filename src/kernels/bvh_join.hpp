@@ -15,7 +15,7 @@ namespace broadside::kernels {
 /// A tree over 2^32 boxes has no more levels.
 inline constexpr std::size_t most_levels = 9;
 
-/// What stands on one level: the boxes (level 0), or the bounds of sixteen things each of the level below.
+/// One level: the boxes (level 0), or bounds of sixteen elements each of the level below.
 /// Arrays hold a multiple of `fan_out` elements, those beyond `size` being NaN; so are places of level 0 that
 /// hold no box.
 template <int D>
@@ -53,7 +53,7 @@ struct JoinLimit {
   std::uint64_t tests_per_pair = 0;
 };
 
-/// What a join did.
+/// The work that a join did.
 struct JoinWork {
   std::uint64_t tests;  ///< pairs of boxes compared, where a leaf counts as full
   std::size_t places;   ///< the places of level 0 before this one were joined with all behind them

@@ -1,5 +1,5 @@
-// What overlaps a box and how far away children are, sixteen children at a time, written once for every
-// instruction set.
+// Traversal of a tree of boxes by overlap with a box, and distances to a node's children: sixteen children at
+// a time, written once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_query.cpp"
 #include "kernels/bvh_query.hpp"
@@ -36,7 +36,7 @@ void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::arra
       const FloatVector max = load(node.max[axis], at);
       const FloatVector low = all(query.point.min[axis]);
       const FloatVector high = all(query.point.max[axis]);
-      // No infinity is subtracted from itself where it counts.
+      // Selected so that no infinity is subtracted from itself.
       const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
       const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
       const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));

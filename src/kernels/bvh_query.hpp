@@ -1,4 +1,4 @@
-// Queries to a tree of bounds: what a box overlaps, what a cast box meets, and what is near a point.
+// Queries to a tree of bounds: the boxes that a box overlaps or a cast box meets, and those near a point.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class FoundBoxes {
   virtual bool take() = 0;
 
   std::size_t count = 0;
-  std::size_t full = fan_out;  ///< take() is called once there are as many
+  std::size_t full = fan_out;  ///< take() is called once this many are found
   float t_max = 0;             ///< of a cast: the greatest parameter at which a box counts
   alignas(64) std::array<std::uint32_t, most + 2 * fan_out> ids;
   alignas(64) std::array<float, most + 2 * fan_out> t_enter;  ///< of an exact cast
@@ -61,17 +61,17 @@ struct DistanceQuery {
   float most = 0;
 };
 
-/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; what is
-/// left below `full` at the end is still to be taken.
+/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; fewer
+/// than `full` boxes are left at the end, for the caller to take.
 template <int D>
 bool find_overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found);
 
-/// Writes the boxes that the cast meets up to `found.t_max`, in no order that means anything.
+/// Writes the boxes that the cast meets up to `found.t_max`, in no particular order.
 template <int D>
 bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Writes those boxes that the cast meets before or at `found.t_max`, nearer ones about first, and has
-/// them taken leaf by leaf, so that `t_max` can be lowered.
+/// Writes the boxes that the cast meets up to `found.t_max`, roughly the nearest first, and calls take() leaf
+/// by leaf, so that `t_max` can be lowered.
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 

@@ -41,7 +41,7 @@ struct LanesInSet {
 inline constexpr LanesInSet<8, 1> lanes_of_8;
 inline constexpr LanesInSet<4, 4> bytes_of_4;
 
-/// The numbers whose lanes are in `mask`, in order, at the front; whatever behind them.
+/// The numbers whose lanes are in `mask`, in order, at the front; what follows them is unspecified.
 template <typename Tag>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<Tag> compress(Tag tag, hwy::HWY_NAMESPACE::Vec<Tag> numbers,
                                                  hwy::HWY_NAMESPACE::Mask<Tag> mask) {

@@ -22,13 +22,13 @@ namespace broadside {
 namespace {
 
 #if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0
-// There is but one target, and Highway then calls it directly: whoever has the headers alone can link.
+// There is only one target, and Highway then calls it directly: its headers alone are enough to link.
 void choose(std::int64_t) {}
 
 std::vector<std::int64_t> targets() { return {HWY_TARGETS}; }
 #else
-/// Takes `target` for all that the processor has, or, if it is 0, what it has. Highway has no other way to
-/// narrow the choice at run time than the one for its own tests.
+/// Makes Highway take `target` for all that the processor has, or if it is 0, what it really has. Highway has
+/// no other way to narrow the choice at run time than the one for its own tests.
 void choose(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());

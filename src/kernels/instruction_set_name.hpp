@@ -1,4 +1,4 @@
-// What people call the instruction sets that Highway has names of its own for.
+// The usual names of the instruction sets (SIMD) that Highway names differently.
 #pragma once
 
 #include <algorithm>

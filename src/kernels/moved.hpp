@@ -51,9 +51,9 @@ struct BlockTask {
   std::uint32_t block;
 };
 
-/// Each finds what moved boxes meet and met, but for themselves. What overlaps one of the two boxes of a
-/// moved one and not the other is an event, so nothing is written of the many pairs that go on; but with a
-/// box that moves too, or where `filter_changed`, each pair that overlaps before or now is a candidate.
+/// Each finds what moved boxes overlap now or did before, except themselves. A box at rest that overlaps
+/// exactly one of a mover's two boxes is an event; the many pairs that go on are not written. With another
+/// mover, or where `filter_changed`, each pair that overlaps before or now is a candidate.
 ///
 /// In the blocks of tasks; in the cells of levels, where each box is in one cell.
 template <int D>
@@ -63,9 +63,9 @@ template <int D>
 core::ChangeWork find_changes(const CellsView<D>& cells, std::span<const MovedBox<D>> moved,
                               const core::ChangeSinks& sinks);
 
-/// Of one moved box, at the places [begin, end) of a run whose boxes stand as they are at its turn: some
-/// moved ones as they were, others as they are. If all moved boxes take their turns, each event of two shows
-/// in one.
+/// For one moved box, against the places [begin, end) of a run. At its turn some other movers are still where
+/// they were, and others where they are now; once all have had their turn, each event of two movers was found
+/// at one of them.
 template <int D>
 void find_changes(const Run<D>& run, std::size_t begin, std::size_t end, const MovedBox<D>& moved,
                   const core::ChangeSinks& sinks);

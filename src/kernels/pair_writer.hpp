@@ -1,4 +1,4 @@
-// Writing pairs that are hits, for files that Highway compiles for each instruction set.
+// Writes the pairs that are hits, for files that Highway compiles for each instruction set.
 //
 // Included once an instruction set, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_PAIR_WRITER) == defined(HWY_TARGET_TOGGLE)

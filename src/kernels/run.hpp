@@ -17,33 +17,31 @@ namespace broadside::kernels {
 /// must then be NaN.
 inline constexpr std::size_t read_ahead = 16;
 
-/// `size` boxes seen as arrays. Axis 0 of a run is the axis that is swept; which axis of the caller's boxes
-/// that is, is the caller's affair.
+/// `size` boxes as arrays. Axis 0 of a run is the swept axis, whichever axis of the caller's boxes that is.
 template <int D>
 struct Run {
   std::array<const float*, D> min;
   std::array<const float*, D> max;
   const BoxId* id;
 
-  /// Two boxes with a bit of `dedup_mask` in common are not reported. Bit b is set if the box starts before
-  /// the run's cell on the cell's axis b: two that both do share an earlier cell, and their pair is reported
-  /// there. The topmost bits are those of side_bit().
+  /// Two boxes that share a bit are not reported as a pair. Bit b is set if the box starts before the run's
+  /// cell on axis b: two such boxes share an earlier cell, which reports their pair. The topmost bits are
+  /// those of side_bit().
   const std::uint32_t* dedup_mask;
 
   std::size_t size;
 
-  /// By how much at most a box of a run that is swept may begin before one that stands before it: 0 where
+  /// The most by which a box may begin before an earlier one of the run: 0 where
   /// the run is sorted by min[0], a bucket's width where it is only sorted by buckets.
   float slack = 0;
 
-  /// Of a run with itself, only the first so many boxes are swept or compared, each with all after it. A
-  /// multiple of read_ahead, or no fewer than there are.
+  /// When a run is swept or compared with itself: the number of its first boxes that are, each with all after
+  /// it. A multiple of read_ahead, or no fewer than there are.
   std::size_t rows = std::numeric_limits<std::size_t>::max();
 };
 
-/// The run from box `begin` on, of which only those before `end` are swept or compared with it. Both are
-/// multiples of read_ahead, but where `end` is the run's end; then the pairs of all parts, in turn, are those
-/// of the whole.
+/// The run from box `begin` on, with the boxes before `end` as rows. Both are multiples of read_ahead, unless
+/// `end` is the run's end. The pairs of consecutive parts, in order, are those of the whole run.
 template <int D>
 Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
   for (int axis = 0; axis < D; ++axis) {
@@ -57,8 +55,8 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
   return run;
 }
 
-/// What to set of `dedup_mask` for a box of a search between two sets, of which the first `left_count` boxes
-/// are the left one: boxes of one set have it in common. Nothing if `left_count` is 0.
+/// The bit of `dedup_mask` for a box in a search between two sets, where the first `left_count` boxes are the
+/// left set: boxes of one set share it, so they are no pairs. 0 if `left_count` is 0.
 constexpr std::uint32_t side_bit(BoxId id, std::size_t left_count) noexcept {
   if (left_count == 0) return 0;
   return index(id) < left_count ? 1U << 30 : 1U << 31;

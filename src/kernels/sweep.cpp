@@ -1,9 +1,9 @@
-// The kernels: a sorted run swept against itself or against another, and all of a run compared.
+// The SIMD kernels: a sorted run swept against itself or against another, and all of a run compared.
 //
 // Written once with Highway, compiled for every instruction set it knows, chosen when the program runs. Hits
 // are written without a branch, since whether two candidates overlap is what no predictor can know: ids are
-// compressed to the front, a whole vector of pairs is stored, and the place to write moves on by as many as
-// were hits.
+// compressed to the front, a whole vector of pairs is stored, and the place to write advances by the number
+// of hits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/sweep.cpp"
 #include "kernels/sweep.hpp"
@@ -26,7 +26,8 @@ using IdVector = hn::Vec<Ids>;
 using Hits = hn::Mask<Ids>;
 using Writer = PairWriter<Ids>;
 
-/// Boxes of a run that are swept together: as many on every instruction set, since it fixes the order.
+/// Boxes of a run that are swept together: the same number on every instruction set, since it fixes the
+/// order.
 constexpr std::size_t together = read_ahead;
 static_assert(together == Writer::at_once);
 
@@ -53,7 +54,7 @@ HWY_INLINE hn::Mask<Floats> begins(const Query<D>& query, const Run<D>& run, std
   return hn::Le(hn::LoadU(Floats(), run.min[0] + at), query.max[0]);
 }
 
-/// Which of the boxes from `at` on overlap the query and are not kept apart from it.
+/// Which of the boxes from `at` on overlap the query and share no bit of its dedup_mask.
 template <bool Apart, int D>
 HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t at,
                          hn::Mask<Floats> candidates) {

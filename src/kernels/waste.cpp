@@ -7,7 +7,7 @@ namespace broadside::kernels {
 namespace {
 
 /// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
-/// stand in their buckets in any order, so the count is right but for a bucket.
+/// stand in their buckets in any order, so the count is exact to within a bucket.
 std::size_t end_of(const float* minima, std::size_t size, std::size_t from, float last) {
   std::size_t step = 16;
   while (from + step < size && minima[from + step] <= last) {
@@ -23,7 +23,8 @@ std::size_t place_of(std::size_t i, std::size_t size) {
   return static_cast<std::size_t>(static_cast<std::uint32_t>(i * 0x9e3779b9U) * std::uint64_t{size} >> 32);
 }
 
-/// At most how many tests a sweep makes, by the greatest maximum of each few boxes. Stops beyond `limit`.
+/// An upper bound of the tests that a sweep makes, by the greatest maximum of each few boxes. Stops beyond
+/// `limit`.
 template <int D>
 std::uint64_t most_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
   std::uint64_t tests = 0;

@@ -12,9 +12,9 @@ namespace broadside::kernels {
 inline constexpr std::uint64_t tests_per_box = 256;
 inline constexpr std::uint64_t tests_per_pair = 32;
 
-/// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: by a count
-/// of the tests, right but for a bucket of each box, and, where these are many, a look at some of them. Cost:
-/// O(n log n) at most, O(n / 16) where tests are few.
+/// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: counts the tests,
+/// to within a bucket of each box, and tries a sample of them where they are many. Cost: O(n log n) at most,
+/// O(n / 16) where tests are few.
 template <int D>
 bool is_wasteful(const Run<D>& run, std::uint64_t limit);
 

@@ -81,8 +81,8 @@ class ByteReader {
     return std::bit_cast<T>(bits);
   }
 
-  /// A count of things that take at least so many bytes each, which must be there: no claim takes more memory
-  /// than its bytes justify.
+  /// A count of items that take at least `bytes_each` bytes each, which must be there: so a false count
+  /// cannot make the reader allocate more than its bytes justify.
   std::size_t count(std::size_t bytes_each, const char* things) {
     const auto count = get<std::uint64_t>();
     need(bytes_each, count, things);

@@ -9,7 +9,7 @@
 namespace broadside::core {
 namespace {
 
-/// Below so many events a pass over the array is not worth it.
+/// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
 
 Pair slots(const HandlePair& pair) noexcept { return {BoxId{pair.first.slot}, BoxId{pair.second.slot}}; }
@@ -55,7 +55,7 @@ void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended,
 
 void CurrentPairs::merge(Generations generations) {
   if (log_.empty()) return;
-  // What can throw comes first.
+  // Everything that can throw comes first.
   if (!std::ranges::is_sorted(log_)) sort(log_, scratch_);
   if (pairs_.capacity() < size_) pairs_.reserve(std::max(size_, pairs_.capacity() + pairs_.capacity() / 2));
   insert_begun(drop_and_refresh(generations), generations);
@@ -63,8 +63,7 @@ void CurrentPairs::merge(Generations generations) {
 }
 
 /// Takes from the array what has ended; gives pairs that ended and began again the handles of now, since
-/// slots may have been used again. What has begun goes to the front of the log: returned is how many that
-/// are.
+/// slots may have been used again. Pairs that have begun go to the front of the log; returns how many.
 std::size_t CurrentPairs::drop_and_refresh(Generations generations) {
   HandlePair* const begin = pairs_.data();
   const HandlePair* const end = begin + pairs_.size();

@@ -11,7 +11,7 @@
 
 namespace broadside::core {
 
-/// An event toggles a pair, so what the log makes of one is whether it is there an odd number of times.
+/// An event toggles a pair, so a pair counts as changed if the log has it an odd number of times.
 class CurrentPairs {
  public:
   /// The generation of each slot.

@@ -49,7 +49,7 @@ void PairGraph::erase(EdgeId edge) noexcept {
   const std::size_t mask = table_.size() - 1;
   std::size_t hole = home(pair);
   while (table_[hole] != edge) hole = (hole + 1) & mask;
-  // What stands behind the hole moves into it, unless that is before its home.
+  // The entries behind the hole move into it, unless that is before their home.
   for (std::size_t place = (hole + 1) & mask; table_[place] != none; place = (place + 1) & mask) {
     const std::size_t distance = (place - home(edges_[table_[place]].pair)) & mask;
     if (distance >= ((place - hole) & mask)) table_[std::exchange(hole, place)] = table_[place];

@@ -13,7 +13,7 @@
 
 namespace broadside::core {
 
-/// Pairs with a mark each. All O(1) but where they say otherwise; some 40 to 50 bytes a pair.
+/// Pairs with a mark each. All O(1) unless they say otherwise; some 40 to 50 bytes a pair.
 class PairGraph {
  public:
   using EdgeId = std::uint32_t;
@@ -21,7 +21,7 @@ class PairGraph {
   /// No edge.
   static constexpr EdgeId none = std::numeric_limits<EdgeId>::max();
 
-  /// What its owner keeps of a pair.
+  /// The owner's data about a pair.
   struct Mark {
     bool overlaps = false;    ///< whether the boxes themselves overlap
     bool accepted = false;    ///< what the predicate said since they do
@@ -31,7 +31,7 @@ class PairGraph {
   std::size_t size() const noexcept { return size_; }
   bool contains(Pair pair) const noexcept { return find(pair) != none; }
 
-  /// Makes room for `size` pairs, and for boxes below `boxes`: inserting so many does not throw.
+  /// Makes room for `size` pairs, and for boxes below `boxes`: inserting these does not throw.
   void reserve(std::size_t size, std::size_t boxes);
 
   /// Puts in a pair that is not there. Throws std::bad_alloc, and then has changed nothing.
@@ -73,7 +73,7 @@ class PairGraph {
   std::size_t bytes() const noexcept;
 
  private:
-  /// One that is free has two equal boxes, and the next free one in next[0].
+  /// A free edge has two equal boxes, and the next of the free list in next[0].
   struct Edge {
     Pair pair;
     std::array<EdgeId, 2> next;  ///< in the list of its first box, and of its second
@@ -88,7 +88,7 @@ class PairGraph {
 
   std::vector<Edge> edges_;
   std::vector<EdgeId> first_;  // of each box
-  std::vector<EdgeId> table_;  // a power of two, at most half of it used
+  std::vector<EdgeId> table_;  // a power of two; load factor at most 1/2
   EdgeId free_ = none;
   std::size_t size_ = 0;
 };

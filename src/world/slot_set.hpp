@@ -1,4 +1,5 @@
-// A set of slots that knows its lowest: a bit for each, and a bit for every 64 of those below.
+// A free list that knows its lowest slot: a bit for each slot, and a bit for every 64 bits of the level
+// below.
 #pragma once
 
 #include <array>
@@ -59,7 +60,7 @@ class SlotSet {
     return place;
   }
 
-  /// Gives back the memory for slots from `count` on, none of which may be in the set.
+  /// Gives back the memory for slots from `count` on, which must not be in the set.
   void shrink_to(std::size_t count) {
     for (std::vector<std::uint64_t>& level : levels_) {
       count = (count + 63) / 64;

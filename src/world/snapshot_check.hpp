@@ -1,4 +1,4 @@
-// What is asked of a snapshot that is read: that its parts agree with each other.
+// Checks that the parts of a snapshot agree with each other.
 #pragma once
 
 #include <algorithm>

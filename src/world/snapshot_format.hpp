@@ -1,4 +1,4 @@
-// What both halves of World's snapshots know of their bytes: see docs/snapshot-format.md.
+// Constants of World's snapshot format, for its writer and its reader: see docs/snapshot-format.md.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 namespace broadside::snapshot {
 
 inline constexpr std::array<unsigned char, 8> magic = {0x89, 'B', 'W', 'S', '\r', '\n', 0x1a, '\n'};
-/// What is written. Version 1, which is read as well, had 32 bits for a filter's category and its mask.
+/// The version written. Version 1, which is read as well, had 32 bits for a filter's category and its mask.
 inline constexpr std::uint32_t version = 2;
 inline constexpr std::uint16_t byte_order = 0x0102;
 inline constexpr std::size_t checksum_bytes = 4;

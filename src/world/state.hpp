@@ -1,4 +1,4 @@
-// What a World keeps. Its member functions are in members/, a header for each concern.
+// The state of a World. Its member functions are in members/, a header for each concern.
 #pragma once
 
 #include <algorithm>
@@ -203,7 +203,7 @@ struct World<D, Real>::State {
   std::vector<UserDataPair> ended_data;
   std::size_t pair_count = 0;
 
-  // Readers, of which there may be several, bring these up to date when first asked.
+  // The first reader that needs these brings them up to date; there may be several readers.
   mutable std::mutex reading;
   mutable core::CurrentPairs current;
   mutable std::atomic<bool> is_current = true;
@@ -216,7 +216,7 @@ struct World<D, Real>::State {
   mutable std::atomic<bool> is_indexed = false;
 };
 
-/// Makes room for `extra` more elements, at least doubling, so that appending so many does not throw.
+/// Makes room for `extra` more elements, at least doubling, so that appending them does not throw.
 template <typename T>
 void make_room(std::vector<T>& vector, std::size_t extra) {
   if (vector.capacity() - vector.size() < extra)

@@ -1,4 +1,4 @@
-// What a few boxes, each held against each other, say of all: less than a sorted sample, and sooner.
+// OverlapEstimate: density and clustering, by testing a small sample all against all.
 #include "algorithms/auto/overlap_estimate.hpp"
 
 #include <algorithm>
@@ -69,7 +69,7 @@ double OverlapEstimate<D>::clustering(const std::array<float, D>& reach) const {
   const double pairs = static_cast<double>(count_ * (count_ - 1)) / 2;
   double expected = pairs;
   for (int axis = 0; axis < D; ++axis) expected *= on_axis[axis] / pairs;
-  // A few by chance say nothing.
+  // Up to four may be near each other by chance.
   return on_all / std::max(expected, 4.0);
 }
 

@@ -4,8 +4,8 @@
 // at a median, on one axis; a box goes to each side that it touches. A box that covers its region on the cut
 // axis and begins before it overlaps there every box that begins in the region: it is joined with these on
 // the other axes alone, and not cut any further. So a long box is in few regions, where a plain tree of cells
-// would hold it in all that it touches. Where one axis is left to tell boxes apart, a sweep along it tests
-// pairs that overlap, and no others.
+// would hold it in all that it touches. Where boxes can be disjoint on one axis only, a sweep along it tests
+// no pair that does not overlap.
 #include "algorithms/auto/segment_join.hpp"
 
 #include <algorithm>
@@ -19,15 +19,15 @@
 namespace broadside::algorithm {
 namespace {
 
-/// A sweep of so few boxes costs about what a further cut would.
+/// Up to this many boxes a sweep costs about what a further cut would.
 constexpr std::size_t leaf_size = 384;
 
-/// Of two lists, if one is as short as this, each of its boxes is swept against the other.
+/// If one of two lists is as short as this, each of its boxes is swept against the other list.
 constexpr std::size_t short_list = 64;
 
 constexpr std::size_t samples = 32;
 
-/// From here on, samples have not halved the boxes: exact medians do.
+/// From this depth on, medians of samples have failed to halve the boxes, and exact ones are taken.
 constexpr int depth_of_medians = 48;
 
 /// The least number of boxes for which a radix sort is faster than a comparison sort.
@@ -117,7 +117,7 @@ auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
     const float max = box(reference).max[cut.axis];
     const std::uint32_t has_begun = reference.dedup_mask >> cut.axis & 1U;
     const bool covers = has_begun != 0 && max >= cut.high;
-    // Written in any case, and kept if it belongs there: no predictor could know.
+    // Written in any case, and kept if it belongs there: a branch could not be predicted.
     *out[0] = reference;
     out[0] += covers ? 1 : 0;
     *out[1] = reference;
@@ -241,7 +241,7 @@ void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
   if (*middle > cut.low) cut.at = *middle;
 }
 
-/// Compares the node's boxes with each other, along an axis that may tell them apart.
+/// Compares the node's boxes with each other, along an axis on which they may be disjoint.
 template <int D>
 void SegmentJoin<D>::sweep(const Node& node) {
   const int axis = std::countr_zero(node.open);

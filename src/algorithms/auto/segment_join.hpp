@@ -1,7 +1,8 @@
-// The join that no boxes slow down: the streamed segment tree of A. Zomorodian and H. Edelsbrunner, "Fast
-// software for box intersections" (2002), with a choice of the axis at each node and sweeps at the leaves.
+// A join with a bound for the worst case: the streamed segment tree of A. Zomorodian and H. Edelsbrunner,
+// "Fast software for box intersections" (2002), with a choice of the axis at each node and sweeps at the
+// leaves.
 //
-// auto hands a search over to it where another algorithm turns out to make far too many tests.
+// auto hands a search over to it when another algorithm makes far too many tests.
 #pragma once
 
 #include <array>
@@ -49,7 +50,7 @@ class SegmentJoin {
     List a;
     List b;
     bool is_self;
-    std::uint32_t open;  // bit a: boxes of the node may be apart on axis a
+    std::uint32_t open;  // bit a: boxes of the node may be disjoint on axis a
     int depth;
 
     std::size_t size() const { return is_self ? a.size() : a.size() + b.size(); }
@@ -63,7 +64,7 @@ class SegmentJoin {
     float high;
   };
 
-  /// What a cut makes of a list.
+  /// The parts into which a cut divides a list.
   struct Parts {
     List covering;
     List below;

@@ -15,10 +15,10 @@
 namespace broadside::algorithm {
 namespace {
 
-/// What a box takes in an algorithm that is not this one, in boxes compared.
+/// The work for a box in algorithms other than this one, in boxes compared.
 constexpr std::size_t tests_per_box = 128;
 
-/// So many boxes are compared with all others by the same thread.
+/// Boxes that one thread compares with all others at a time.
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>

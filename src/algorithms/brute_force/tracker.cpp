@@ -16,7 +16,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// So many boxes are compared with all that changed, while they are in the nearest cache.
+/// Boxes that are compared with all changed ones at a time, while they are in the nearest cache.
 constexpr std::size_t boxes_at_once = 1024;
 
 template <int D>

@@ -11,7 +11,7 @@ namespace {
 
 using kernels::fan_out;
 
-/// Halves by the middles along the axis on which these lie farthest apart, again and again. Halves are
+/// Halves by the middles along the axis on which these are spread widest, recursively. Halves are
 /// whole numbers of full subtrees.
 template <int D>
 void halve(std::span<NumberedBox<D>> leaves) {

@@ -23,7 +23,7 @@ float middle(const Box<D>& box, int axis) {
   return std::clamp(box.min[axis], -most, most) + std::clamp(box.max[axis], -most, most);
 }
 
-/// Orders boxes by their middles along an axis; the same everywhere, since no two have one number.
+/// Orders boxes by their middles along an axis, then by number, so the order is the same everywhere.
 template <int D>
 struct BeforeAlong {
   int axis;
@@ -35,7 +35,7 @@ struct BeforeAlong {
   }
 };
 
-/// The axis on which the middles of some boxes, at least one, lie farthest apart.
+/// The axis on which the middles of some boxes, at least one, are spread widest.
 template <int D>
 int widest_axis(std::span<const NumberedBox<D>> boxes) {
   int widest = 0;

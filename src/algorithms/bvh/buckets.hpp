@@ -33,7 +33,7 @@ struct Buckets {
 
   std::uint32_t operator()(float value) const {
     const float at = (value - low) * scale;
-    // What is not a number goes into the first one, too.
+    // A NaN goes into the first one, too.
     return at > 0 ? static_cast<std::uint32_t>(std::min(at, static_cast<float>(count - 1))) : 0;
   }
 

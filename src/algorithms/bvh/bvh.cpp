@@ -1,4 +1,5 @@
-// A bounding volume hierarchy: sixteen boxes to a leaf, sixteen children to a node, joined with itself.
+// A bounding volume hierarchy (an AABB tree): sixteen boxes to a leaf, sixteen children to a node, joined
+// with itself.
 //
 // The builder is in packer.cpp, the join in kernels/bvh_join.cpp.
 #include <memory>

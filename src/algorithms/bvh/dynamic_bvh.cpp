@@ -1,8 +1,8 @@
 // The dynamic bounding volume hierarchy that the tracker and BoxIndex search: sixteen children to a node.
 //
 // Maintained as A. Guttman's "R-trees: a dynamic index structure for spatial searching" (SIGMOD 1984) is,
-// measured by sums of extents as in N. Beckmann et al., "The R*-tree" (SIGMOD 1990), so that boxes without
-// area or with infinite extents are compared as well.
+// measured by sums of extents as in N. Beckmann et al., "The R*-tree" (SIGMOD 1990), and not by a surface
+// area heuristic (SAH), so that boxes without area or with infinite extents are compared as well.
 #include "algorithms/bvh/dynamic_bvh.hpp"
 
 #include <algorithm>

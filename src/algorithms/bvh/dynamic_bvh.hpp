@@ -42,7 +42,7 @@ class DynamicBvh {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
 
-  /// Whether the insertions since the last build have made another build pay.
+  /// Whether another build pays, after the insertions since the last one.
   bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + 1024; }
 
   /// The number of boxes, and of nodes.

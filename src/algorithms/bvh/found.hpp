@@ -1,4 +1,5 @@
-// What the kernels' searches do with the boxes that they find: filter, test in double, hand on to the caller.
+// Sinks for the kernels' searches: they filter boxes found, test them in double, and hand them on to the
+// caller.
 #pragma once
 
 #include <algorithm>

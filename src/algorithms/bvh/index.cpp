@@ -17,7 +17,7 @@ using kernels::fan_out;
 using kernels::FoundBoxes;
 using kernels::leaf_bit;
 
-/// A parameter in the tree, where it is 2^exponent times the caller's.
+/// The parameter in the tree: 2^exponent times the caller's.
 template <typename Real>
 float in_tree(Real t_max, int exponent) {
   if constexpr (is_float<Real>)
@@ -90,8 +90,8 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
     }
     if (greatest != none) exponent = greatest;
   }
-  // Beyond these, a parameter that is computed by the definition may overflow or lose its last places, or
-  // an inverse may, and the tree's bounds would tell apart what the definition does not.
+  // Beyond these, a parameter computed by the definition, or an inverse, may overflow or lose its last
+  // places, and the tree's bounds would decide what the definition does not.
   constexpr Real least = is_float<Real> ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
   constexpr int most_exponent = 800;
   for (int axis = 0; axis < D; ++axis) {
@@ -155,8 +155,8 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
   query.weight.fill(1);
   query.point = in_tree(Box<D, Real>{point, point});
   query.most = std::numeric_limits<float>::infinity();
-  Real unit = 1;                    // a distance squared in the tree, where 1 is the caller's
-  if constexpr (!is_float<Real>) {  // then distances in the tree are to be no greater than they are
+  Real unit = 1;                    // the caller's squared distance 1 as one in the tree
+  if constexpr (!is_float<Real>) {  // distances in the tree must not exceed the true ones
     // Beyond these, the definition's squares may overflow or lose their last places.
     constexpr int most_exponent = 400;
     int exponent = most_exponent;
@@ -169,7 +169,7 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     query.share = 1 - 0x1p-18f;
     query.allowance = std::numeric_limits<float>::min();
   }
-  // `found` is a heap whose first is the one to give way.
+  // `found` is a max-heap: its front is the next one to be replaced.
   const auto is_before = [](const Neighbour<Real>& a, const Neighbour<Real>& b) {
     return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
   };

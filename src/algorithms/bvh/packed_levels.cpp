@@ -15,7 +15,7 @@ Element* grown(std::vector<Element>& memory, std::size_t size) {
   return memory.data();
 }
 
-/// What is neutral to bounds.
+/// The neutral element of bounds.
 template <int D>
 constexpr Box<D> none = absent_box<D>();
 

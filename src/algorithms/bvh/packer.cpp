@@ -84,7 +84,8 @@ void BvhPacker<D>::choose_axes(std::size_t boxes) {
   std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
 }
 
-/// Buckets of which a few hold most boxes do not tell them apart.
+/// Sorts the boxes within heavy buckets: where a few buckets hold most boxes, buckets alone hardly put them
+/// in order.
 template <int D>
 void BvhPacker<D>::sort_heavy_buckets() {
   std::uint32_t begin = 0;
@@ -130,7 +131,7 @@ void BvhPacker<D>::place_all() {
   }
 }
 
-/// Puts the boxes of one class into leaves, the first of which is at `place`.
+/// Puts the boxes of one class into leaves, from `place` on.
 template <int D>
 void BvhPacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
                                std::size_t size_class) {
@@ -175,7 +176,7 @@ std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) con
   }
   std::array<double, D> parts;
   parts.fill(1);
-  // An axis on which most boxes overlap tells nothing apart. One that is too short for a single cut leaves
+  // An axis on which most boxes overlap separates nothing. One that is too short for a single cut leaves
   // its share to the others.
   std::array<bool, D> cut;
   for (int axis = 0; axis < D; ++axis) cut[axis] = ratios[axis] > 2;

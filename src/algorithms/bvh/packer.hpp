@@ -36,14 +36,13 @@ class BvhPacker {
   /// beyond growth.
   void pack(std::span<const Box<D>> boxes, std::size_t left_count = 0);
 
-  /// The tree built last. Whoever changes what its levels hold keeps to what PackedBvh says of them.
+  /// The tree built last. A caller that changes its levels must keep what PackedBvh promises.
   const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
 
-  /// The ids on level 0, one for each of its places, to be renamed by who has other names; 0 where there is
-  /// no box.
+  /// Local ids on level 0, one for each place; the caller maps them to its own. 0 marks padding.
   std::span<BoxId> ids() noexcept { return levels_.ids(); }
 
-  /// The bytes held, of which building alone takes about half.
+  /// The bytes held; about half are only needed while building.
   std::size_t bytes() const noexcept;
 
  private:
@@ -61,7 +60,7 @@ class BvhPacker {
 
   core::Sample<D> sample_;
   std::array<int, D> axes_{};        // slabs are cut along the first one, and leaves along the last one
-  std::array<float, D> typical_{};   // a box's usual extents, or more where boxes lie further apart
+  std::array<float, D> typical_{};   // a box's usual extents, or more where boxes are sparse
   std::vector<std::uint16_t> keys_;  // a box's bucket
   std::vector<std::uint32_t> counts_;
   std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end

@@ -1,5 +1,5 @@
 // A dynamic bounding volume hierarchy as a tracker: boxes that moved are looked up in it and moved, and some
-// of those that left the bounds of their leaf are inserted anew.
+// that left the bounds of their leaf are inserted anew.
 //
 // Boxes move one after the other: each is compared with all others as these stand at its turn. So a pair of
 // boxes that both moved may be seen to begin and to end again; only such pairs are tested twice. When the
@@ -32,7 +32,7 @@ constexpr std::uint64_t movers_to_judge = 512;
 /// Boxes that are moved in one call of the kernel, so that they stay in the cache.
 constexpr std::size_t moves_at_once = 2048;
 
-/// Takes pairs that begin, or end, as they stand at one box's turn.
+/// Takes the pairs that begin, or end, at one box's turn.
 template <int D>
 class Toggled final : public PairSink {
  public:
@@ -91,7 +91,7 @@ class BvhTracker final : public PairTracker<D> {
     this->count(Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()});
   }
 
-  /// Builds the tree anew, of boxes as they were; those that come are in it already.
+  /// Builds the tree anew from the boxes as they were, with new ones where they are now.
   void build(const Change<D>& change) {
     packed_.assign(change.before.begin(), change.before.end());
     for (const BoxId id : change.changed) {
@@ -102,7 +102,7 @@ class BvhTracker final : public PairTracker<D> {
     is_worse_ = false;
   }
 
-  /// Boxes that come are inserted where they are now, and then count as moved there.
+  /// New boxes are inserted where they are now, and then count as moved there.
   void insert_arrivals() {
     for (const kernels::MovedBox<D>& box : moved_) {
       if (!box.was_present && tree_.slot(box.id) == kernels::no_slot) tree_.insert(box.id, box.now);
@@ -110,9 +110,9 @@ class BvhTracker final : public PairTracker<D> {
     for (kernels::MovedBox<D>& box : moved_) box.slot = tree_.slot(box.id);
   }
 
-  /// After boxes moved: removes those that went, makes bounds exact, and reinserts some of those that left
-  /// their leaves, and all that jumped. Removals come first: no other step may meet a lane without a box
-  /// among a node's children.
+  /// After boxes moved: removes boxes that went, refits bounds, and reinserts all boxes that jumped and some
+  /// of those that left their leaves. Removals come first: no other step may meet a lane without a box among
+  /// a node's children.
   void mend() {
     for (const kernels::MovedBox<D>& box : moved_) {
       if (!box.is_present) tree_.remove(box.id);
@@ -127,7 +127,7 @@ class BvhTracker final : public PairTracker<D> {
     }
   }
 
-  /// Compares how many boxes each mover is tested against now and was after the last build.
+  /// Compares the tests a mover takes now with those it took after the last build.
   void judge(std::uint64_t tests, std::size_t movers) {
     moves_ += movers;
     judged_tests_ += tests;
@@ -141,8 +141,8 @@ class BvhTracker final : public PairTracker<D> {
     judged_tests_ = judged_movers_ = 0;
   }
 
-  /// Whether a build pays: many boxes come, or as many have moved as there are, and searches visit too many
-  /// leaves or there are far more lanes than boxes.
+  /// Whether a build pays: many boxes come; or, once as many have moved as there are, searches visit too many
+  /// leaves or most lanes are empty.
   bool needs_rebuild(const Change<D>& change) const {
     std::size_t arrivals = 0;
     for (const BoxId id : change.changed)

@@ -1,9 +1,9 @@
 // HierarchicalCells.
 //
-// A box is in one cell, that of its minimum, on the level for its size. So a search for what a box meets
-// looks into the cells from its minimum less the level's greatest extent to its maximum. All blocks of a cell
-// but the first are full: a box is put into the first, or into a new one before it, and where one is taken
-// from another block, one of the first fills the hole.
+// A box is in one cell, that of its minimum, on the level for its size. So a search looks into the cells from
+// the box's minimum, less the level's greatest extent, to its maximum. All blocks of a cell but the first are
+// full: a box is put into the first, or into a new one before it, and where one is taken from another block,
+// one of the first fills the hole.
 #include "algorithms/grid/cells.hpp"
 
 #include <bit>
@@ -32,7 +32,7 @@ void HierarchicalCells<D>::build(std::span<const Box<D>> boxes, std::span<const 
       slot_[i] = levels_[levels_.level_of(boxes[i])].cell(boxes[i].min);
       ++counts_[slot_[i]];
     }
-  } while (levels_.disperse_crowds(counts_));
+  } while (levels_.shrink_crowded_cells(counts_));
   fill(boxes);
 }
 

@@ -1,4 +1,5 @@
-// HierarchicalCells: what the grid's tracker keeps: levels of cells with blocks of sixteen boxes.
+// HierarchicalCells: what the grid's tracker keeps, a hierarchical grid: levels of cells with blocks of
+// sixteen boxes.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace broadside::algorithm {
 template <int D>
 class HierarchicalCells {
  public:
-  /// Cells of the first level are `cell` wide, or as suits the boxes.
+  /// Cells of the first level are `cell` wide, or chosen by the boxes.
   explicit HierarchicalCells(std::optional<double> cell) : levels_(cell) {}
 
   /// Lays out cells that suit `like` and inserts the boxes of `boxes` that are present, each under its place.
@@ -36,7 +37,7 @@ class HierarchicalCells {
   /// Says that the box, which has moved before, is at rest here.
   void settle(BoxId id, const Box<D>& box);
 
-  /// Takes away what has moved elsewhere or is gone. O(as many).
+  /// Removes entries of boxes that have moved elsewhere or are gone. O(their number).
   void drop_stale();
 
   kernels::CellsView<D> view() const { return {levels_.all(), first_.data(), pool_.view()}; }

@@ -1,4 +1,5 @@
-// Grid: cells over all axes but one, and a sweep along that one in each.
+// Grid: uniform cells over all axes but one, and a sweep along that one in each. The cells are an array
+// fitted to the boxes, not a spatial hash.
 //
 // Section III of the paper, without its limits: the cells clamp what lies outside them, so no world is
 // declared. A box is put into the cell that holds its minimum, and goes on from there to the others that it
@@ -80,13 +81,13 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
     this->set_yielded(has_yielded);
   }
 
-  /// The slab's share of the tests for all boxes, by the boxes filed in it.
+  /// The slab's share of the tests for all boxes, by the boxes inserted into it.
   std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
     if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
     const std::size_t length = layout_.row_length();
-    const auto filed = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
-                                           begin_[layout_.slab_begin(slab) * length]);
-    const double share = filed / std::max<double>(1, begin_.back());
+    const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
+                                              begin_[layout_.slab_begin(slab) * length]);
+    const double share = inserted / std::max<double>(1, begin_.back());
     return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
   }
 
@@ -146,7 +147,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
             std::min(swept.high + more, std::numeric_limits<float>::max())};
   }
 
-  /// Calls `visit` with each cell that a box is put into and the bits that keep it apart there: the cell of
+  /// Calls `visit` with each cell that a box is put into and its dedup_mask there: the cell of
   /// its minimum, and the first row of each further slab that it reaches.
   template <typename Visit>
   void for_each_place(const Box<D>& box, Visit visit) const {

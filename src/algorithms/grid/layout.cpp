@@ -22,11 +22,11 @@ constexpr double least_boxes_per_cell = 16;
 /// Where cells are asked for by their size, there may be this many for each box.
 constexpr double most_cells_per_box = 4;
 
-/// What a search costs, in tests of two boxes: to file a box in a cell once more, beyond the tests there.
+/// The cost, in tests of two boxes, of inserting a box into one more cell, beyond the tests there.
 constexpr double grid_reference_cost = 20;
 
-/// Slabs are for threads: enough to share out, each of some rows, since what reaches into another is filed
-/// there once more.
+/// Slabs are for threads: enough to share out, each of some rows, since boxes that reach into another are
+/// inserted there again.
 constexpr std::size_t most_slabs = 16;
 constexpr std::size_t least_rows_per_slab = 4;
 

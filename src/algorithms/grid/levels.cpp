@@ -45,7 +45,7 @@ void CellLevels<D>::choose(std::span<const Box<D>> like) {
                                  ? std::min(1 / typical_[axis], std::numeric_limits<float>::max())
                                  : std::numeric_limits<float>::max();
   }
-  // The last level, which is one cell, is for boxes that are about as long as all is.
+  // The last level, which is one cell, is for boxes about as long as the whole scene.
   float border = first_border;
   count_ = 1;
   const auto is_short = [&](int axis) {
@@ -98,7 +98,7 @@ std::uint32_t CellLevels<D>::lay_out() {
 }
 
 /// Sets the cells of a level: as many as suit its boxes, but none shorter than they are; smaller ones from
-/// call to call, where disperse_crowds() has said so.
+/// call to call, where shrink_crowded_cells() has said so.
 template <int D>
 void CellLevels<D>::lay_out_level(std::size_t index) {
   Level& level = levels_[index];
@@ -149,7 +149,7 @@ void CellLevels<D>::lay_out_level(std::size_t index) {
 }
 
 template <int D>
-bool CellLevels<D>::disperse_crowds(std::span<const std::uint32_t> counts) {
+bool CellLevels<D>::shrink_crowded_cells(std::span<const std::uint32_t> counts) {
   bool any = false;
   for (std::size_t index = 0; index + 1 < count_ && !cell_; ++index) {
     const std::size_t end = index + 1 < count_ ? levels_[index + 1].first_cell : counts.size();

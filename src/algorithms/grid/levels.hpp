@@ -19,11 +19,11 @@
 
 namespace broadside::algorithm {
 
-/// The last level is one cell: it is for boxes that are about as long as all is.
+/// The last level is one cell: it is for boxes about as long as the whole scene.
 template <int D>
 class CellLevels {
  public:
-  /// Cells of the first level are `cell` wide, those of each further one four times as wide; or as suits the
+  /// Cells of the first level are `cell` wide, those of each further one four times as wide; or chosen by the
   /// boxes.
   explicit CellLevels(std::optional<double> cell) : cell_(cell) {}
 
@@ -32,13 +32,13 @@ class CellLevels {
   /// Chooses levels that suit `like`. O(n).
   void choose(std::span<const Box<D>> like);
 
-  /// Lays out the cells of the levels chosen, smaller ones where disperse_crowds() has said so. Returns how
-  /// many there are on all levels.
+  /// Lays out the cells of the levels chosen, smaller ones where shrink_crowded_cells() has said so. Returns
+  /// how many there are on all levels.
   std::uint32_t lay_out();
 
-  /// Where a box of a level is among too many others of its cell, by `counts` of boxes by cell, makes the
-  /// level's cells smaller from the next layout on. Whether there was one. O(cells).
-  bool disperse_crowds(std::span<const std::uint32_t> counts);
+  /// Makes a level's cells smaller from the next layout on if a typical box shares its cell with too many
+  /// others, by `counts` of boxes in each cell. Returns whether a level's was. O(cells).
+  bool shrink_crowded_cells(std::span<const std::uint32_t> counts);
 
   /// Says that there are no boxes on any level.
   void clear() {
@@ -87,7 +87,7 @@ class CellLevels {
   std::optional<double> cell_;
   core::Sample<D> sample_;
   std::vector<Box<D>> sampled_;
-  std::array<float, D> typical_{};  // lengths of boxes, or more where they lie further apart
+  std::array<float, D> typical_{};  // lengths of boxes, or more where boxes are sparse
   std::array<float, D> inverse_typical_{};
   std::array<float, D> smallest_{};
   std::array<Level, kernels::most_cell_levels> levels_{};

@@ -21,17 +21,17 @@ namespace {
 constexpr std::size_t least_buckets = 16;
 constexpr std::size_t most_buckets = 1 << 13;
 
-/// What lies beyond the range is in the buckets at the ends. So many boxes there are sorted one by one.
+/// Boxes beyond the range are in the buckets at the ends. Up to this many there are sorted one by one.
 constexpr std::size_t most_beyond = 32;
 
-/// A box may stand in a bucket with so many others on average, before it pays to sort them all.
+/// The mean number of other boxes in a box's bucket from which it pays to sort them all.
 constexpr std::size_t most_in_bucket = 48;
 
 /// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
 /// all.
-constexpr std::size_t crowd = 1024;
+constexpr std::size_t many_boxes = 1024;
 
-/// What it costs to look at a box in one more cell, in tests of two boxes.
+/// The cost of a box in one more cell, in tests of two boxes.
 constexpr std::uint64_t tests_per_reference = 32;
 
 /// Passes pairs on and counts them.
@@ -71,7 +71,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   swept_to_ = layout.slab_begin(slab) * length;
   CountingSink counted(pairs);
   for (std::size_t row = layout.slab_begin(slab); row < end; ++row) {
-    // What reaches into the next slab is there already.
+    // Boxes that reach into the next slab are there already.
     const float row_border = row + 1 < end ? layout.row_border(row) : std::numeric_limits<float>::quiet_NaN();
     along_.size = 0;
     for (std::size_t column = 0; column < length; ++column, ++swept_to_) {
@@ -115,9 +115,9 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   for (std::size_t i = 0; i < lists.size(); ++i) {
     // A box goes along the row where it is met first, and up from everywhere.
     if (D == 3 && i != 1)
-      look_at<true>(lists[i], buckets, column_border, row_border, bucket_of);
+      count_and_pass_on<true>(lists[i], buckets, column_border, row_border, bucket_of);
     else
-      look_at<false>(lists[i], buckets, column_border, row_border, bucket_of);
+      count_and_pass_on<false>(lists[i], buckets, column_border, row_border, bucket_of);
     bucket_of += lists[i].size();
   }
   if (count < 2) return true;
@@ -132,7 +132,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
 
 template <int D>
 std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, int axis, float border) {
-  if (count <= crowd) return count;
+  if (count <= many_boxes) return count;
   std::size_t reaching = 0;
   for (const auto& list : lists)
     reaching += static_cast<std::size_t>(std::ranges::count_if(
@@ -158,8 +158,8 @@ typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::s
 
 template <int D>
 template <bool Along>
-void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
-                           float row_border, std::uint16_t* bucket_of) {
+void GridSweep<D>::count_and_pass_on(std::span<const CellEntry<D>> list, const Buckets& buckets,
+                                     float column_border, float row_border, std::uint16_t* bucket_of) {
   const int swept = axes_[0];
   const int column_axis = axes_[1];
   const int row_axis = axes_[D - 1];
@@ -170,7 +170,7 @@ void GridSweep<D>::look_at(std::span<const CellEntry<D>> list, const Buckets& bu
     const auto bucket = static_cast<std::uint16_t>(buckets.of(entry.box.min[swept]));
     *bucket_of++ = bucket;
     ++counts[bucket];
-    // Written in any case and kept if it goes on: no predictor could know.
+    // Written in any case and kept if it goes on: a branch could not be predicted.
     *up = entry;
     up->dedup_mask |= 1U << row_axis;
     up += entry.box.max[row_axis] >= row_border ? 1 : 0;

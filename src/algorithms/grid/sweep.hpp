@@ -42,7 +42,7 @@ struct SweptRange {
   float high;
 };
 
-/// Sweeps slabs; holds the memory this takes. A box goes on from the cell that it is filed in to the others
+/// Sweeps slabs; holds the memory this takes. A box goes on from the cell it was inserted into to the others
 /// that it reaches: along the row, and up to the next row.
 template <int D>
 class GridSweep {
@@ -91,8 +91,8 @@ class GridSweep {
 
   /// Counts a list's boxes by bucket, and sends them on.
   template <bool Along>
-  void look_at(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
-               float row_border, std::uint16_t* bucket_of);
+  void count_and_pass_on(std::span<const CellEntry<D>> list, const Buckets& buckets, float column_border,
+                         float row_border, std::uint16_t* bucket_of);
 
   /// Sets run_ to the cell's boxes in the order of the sweep, by the buckets that were counted if they will
   /// do. Returns the run's slack.

@@ -1,4 +1,4 @@
-// The grid's tracker: moves boxes from cell to cell and looks for what those that moved meet.
+// The grid's tracker: moves boxes from cell to cell and searches for what the moved ones overlap.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace broadside::algorithm {
 
 /// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
-/// longer suit the boxes: not before searching has cost that much too much.
+/// longer suit the boxes, and their searches have cost that much more than usual.
 template <int D>
 class GridTracker final : public core::CandidateTracker<D> {
  public:

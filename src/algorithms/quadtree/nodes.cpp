@@ -80,7 +80,7 @@ std::size_t QuadtreeNodes<D>::bytes() const noexcept {
              sizeof(std::uint32_t);
 }
 
-/// Files the boxes of ids_ from `begin` on in a node that is an empty leaf, and takes them from ids_.
+/// Inserts the boxes of ids_ from `begin` on into a node that is an empty leaf, and removes them from ids_.
 template <int D>
 void QuadtreeNodes<D>::fill(std::uint32_t node, std::size_t begin, std::span<const Box<D>> boxes) {
   const std::size_t count = ids_.size() - begin;
@@ -170,12 +170,12 @@ bool QuadtreeNodes<D>::partition(const QuadtreeNode<D>& node, std::size_t begin,
     largest = std::max(largest, size);
     sum += size;
   }
-  // Boxes that are still to be filed elsewhere count too, by their references so far.
+  // Boxes still to be inserted elsewhere count too, by their references so far.
   return kept <= count / 2 && largest <= count / 8 * 7 && sum <= 3 * count &&
          references_ + sum <= most_references * homes_.size();
 }
 
-/// Files a box in a node, which is its home if it has none yet.
+/// Inserts a box into a node, which becomes its home if it has none yet.
 template <int D>
 void QuadtreeNodes<D>::put(std::uint32_t node, std::uint32_t id, const Box<D>& box) {
   QuadtreeNode<D>& to = nodes_[node];

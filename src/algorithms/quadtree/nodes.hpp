@@ -73,7 +73,7 @@ struct QuadtreeHome {
   std::uint32_t several : 1 = 0;  ///< whether it may be in other nodes too, or is not in a leaf
 };
 
-/// The tree. A box is filed in every leaf that it touches, as in the paper, but for one so large that it
+/// The tree. A box is inserted into every leaf that it touches, as in the paper, except one so large that it
 /// would be in many: see QuadtreeNode::keeps.
 template <int D>
 class QuadtreeNodes {
@@ -83,10 +83,10 @@ class QuadtreeNodes {
 
   explicit QuadtreeNodes(std::uint32_t capacity) : capacity_(capacity) {}
 
-  /// The tree anew, of all boxes that are present.
+  /// Builds the tree anew of all present boxes.
   void build(std::span<const Box<D>> boxes);
 
-  /// Makes room for so many boxes.
+  /// Makes room for ids below `boxes`.
   void resize(std::size_t boxes) { homes_.resize(boxes); }
 
   const QuadtreeNode<D>& operator[](std::uint32_t node) const { return nodes_[node]; }
@@ -102,7 +102,7 @@ class QuadtreeNodes {
   /// Splits nodes that have become too full and merges those that have emptied, since the last call.
   void tidy(std::span<const Box<D>> boxes);
 
-  /// Boxes that are not in leaves; while there are none, no search has to look for them.
+  /// The number of boxes that are not in leaves; while it is 0, no search has to look for them.
   std::size_t kept() const noexcept { return kept_; }
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
@@ -139,7 +139,7 @@ class QuadtreeNodes {
 
   std::vector<std::uint32_t> grown_;   // leaves that may be too full
   std::vector<std::uint32_t> shrunk_;  // inner nodes whose children may have emptied
-  std::vector<std::uint32_t> ids_;     // a stack of boxes still to be filed, node above node
+  std::vector<std::uint32_t> ids_;     // a stack of boxes still to be inserted, node above node
   std::vector<std::uint8_t> masks_;    // of the uppermost node's: the children that each one touches, or 0
 };
 

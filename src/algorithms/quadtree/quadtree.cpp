@@ -40,7 +40,7 @@ namespace {
 /// One thread splits nodes until each thread has this many.
 constexpr std::size_t parts_per_worker = 3;
 
-/// Leaves of this many boxes: a sweep of so few costs about what a further split would.
+/// Boxes in a leaf: up to about this many, a sweep costs what a further split would.
 template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 
@@ -54,7 +54,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
  private:
   using Split = QuadtreeSplit<D>;
 
-  /// What one thread searches with.
+  /// The memory of one thread.
   struct Worker {
     QuadtreeStack<D> stack;
     kernels::RunBuffer<D> run;

@@ -1,12 +1,12 @@
 // The tracker of the quadtree, in 3D an octree: it stays from frame to frame.
 //
-// Sections VI-A and VI-D of the paper, in the one of their ways that is fastest: a box that moves is looked
-// for relative to where it was, from its node up through parents until a node holds all of the way that it
-// went, and from there down. While it stays in one leaf, nothing changes places at all. What is near a mover
-// is in the nodes that it was and is in: there it is compared with everything.
+// Sections VI-A and VI-D of the paper, in the fastest of their ways: a box that moves is looked for relative
+// to where it was, from its node up through parents until a node contains its old and its new place, and from
+// there down. While it stays in one leaf, no entry moves. Whatever it may overlap is in the nodes that it was
+// and is in: there it is compared with everything.
 //
 // A frame has three parts. Movers are inserted wherever they go, as bounds of the old and the new box; then
-// all of them are compared; then they leave where they were. So two that move see each other.
+// all of them are compared; then they leave where they were. So two movers find each other.
 #include "algorithms/quadtree/tracker.hpp"
 
 #include <algorithm>
@@ -65,8 +65,8 @@ class QuadtreeTracker final : public PairTracker<D> {
     tree_.resize(boxes);
     core::EventSinks<D> events(change, begun, ended);
     std::uint64_t tests = 0;
-    // Into an empty tree go some, then as many again as are in it, so that no leaf is long much too full: all
-    // at once would be compared with each other.
+    // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
+    // once would be compared with each other.
     constexpr std::uint32_t first_few = 256;
     const auto count = static_cast<std::uint32_t>(movers_.size());
     std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
@@ -75,7 +75,7 @@ class QuadtreeTracker final : public PairTracker<D> {
     this->count(Statistics{.tests = tests, .references = tree_.references(), .cells = tree_.node_count()});
   }
 
-  /// Takes some of the movers, by their numbers; how many boxes they were compared with.
+  /// Takes some of the movers, by their numbers. Returns how many boxes they were compared with.
   std::uint64_t take(std::uint32_t begin, std::uint32_t end, core::EventSinks<D>& events,
                      const Change<D>& change) {
     entries_.clear();
@@ -125,7 +125,7 @@ class QuadtreeTracker final : public PairTracker<D> {
       tree_.home(index(mover.id)).several = 1;
   }
 
-  /// Goes down from a node to all in which the mover is or will be, and where something may be near it.
+  /// Descends from a node to all that the mover was in, will be in or may find something near it in.
   void visit(std::uint32_t number, std::uint32_t at, const Parts& parts) {
     const QuadtreeNode<D>& node = tree_[at];
     const core::MovedBox<D>& mover = movers_[number];
@@ -150,7 +150,7 @@ class QuadtreeTracker final : public PairTracker<D> {
     }
   }
 
-  /// Sees to it that a mover is in a node.
+  /// Makes sure that a mover is in a node.
   void place(std::uint32_t number, std::uint32_t node, const Parts& parts) {
     const core::MovedBox<D>& mover = movers_[number];
     std::uint32_t slot;
@@ -171,8 +171,7 @@ class QuadtreeTracker final : public PairTracker<D> {
     entries_.push_back({node, slot, number, stays});
   }
 
-  /// Makes tasks of all that is to be looked at: now that every mover is inserted, else one would not see
-  /// another that is inserted after it.
+  /// Makes the tasks, after every mover was inserted: else one would not find another inserted after it.
   void look_all() {
     tasks_.clear();
     const auto look = [this](std::uint32_t mover, std::uint32_t node) {

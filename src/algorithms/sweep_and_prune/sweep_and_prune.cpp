@@ -35,7 +35,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// What filing a box once more costs, in tests of two boxes.
+/// The cost of inserting a box into one more stripe, in tests of two boxes.
 constexpr double stripe_reference_cost = 64;
 
 constexpr std::size_t most_stripes = 256;

@@ -1,6 +1,6 @@
-// The tracker of sweep and prune: boxes stay in order along an axis, and those that move change places.
+// The tracker of sweep and prune: boxes stay in order along an axis, and movers change places.
 //
-// Section VI-C of the paper, in the one of its ways that is fastest: a mover is compared with the boxes that
+// Section VI-C of the paper, in the fastest of its ways: a mover is compared with the boxes that
 // touch its old or its new box on the axis, and then put into its new place by binary search, so that only
 // the boxes between its two places make way.
 #include "algorithms/sweep_and_prune/tracker.hpp"
@@ -67,7 +67,7 @@ class SweepAndPruneTracker final : public PairTracker<D> {
     return turned;
   }
 
-  /// Takes the boxes that went out of the order, and merges in those that came.
+  /// Removes boxes that went from the order, and merges new ones in.
   void merge(const Change<D>& change) {
     entries_.clear();
     coming_.clear();

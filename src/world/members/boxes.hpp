@@ -203,7 +203,7 @@ void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& give
   seen = enlarge(box, margin);
 }
 
-/// Makes all the room that removing so many boxes takes, which may be part of so many ignored pairs.
+/// Makes all the room that removing `count` boxes takes, which may be part of `ignored_count` ignored pairs.
 template <int D, typename Real>
 void World<D, Real>::State::reserve_removals(std::size_t count, std::size_t ignored_count) {
   make_room(changed, count);

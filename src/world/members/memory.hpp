@@ -35,7 +35,7 @@ void World<D, Real>::shrink_to_fit() {
   if (state_->is_settled) state_->release();
 }
 
-/// Drops free slots at the end once many are free, so that a few that come and go cost nothing.
+/// Drops free slots at the end once many are free (hysteresis: a few that come and go cost nothing).
 template <int D, typename Real>
 void World<D, Real>::State::trim() noexcept {
   most_slots = std::max(most_slots, slots.size());
@@ -61,7 +61,7 @@ void World<D, Real>::State::release_unneeded() noexcept {
   try {
     release();
   } catch (...) {
-    // Memory is short already, or an executor threw whatever it throws: the memory stays as it is.
+    // Memory is short already, or an executor threw: the memory stays as it is.
   }
 }
 

@@ -49,7 +49,7 @@ template <int D, typename Real>
 void World<D, Real>::join(const World& other, std::vector<HandlePair>& pairs) const {
   const State& left = *state_;
   const State& right = *other.state_;
-  // The finder kept is for one reader at a time.
+  // The kept finder serves one reader at a time.
   const std::unique_lock lock(left.join_in_progress, std::try_to_lock);
   std::unique_ptr<PairFinder<D, Real>> another;
   std::unique_ptr<PairFinder<D, Real>>& finder = lock.owns_lock() ? left.join_finder : another;

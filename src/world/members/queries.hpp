@@ -46,12 +46,12 @@ const BoxIndex<D, Real>* World<D, Real>::State::trackers_index() const noexcept 
   return tracker->box_index();
 }
 
-/// Changes of the boxes that the next update is to tell may be handed on again and again, which costs them.
+/// Changes since the last update may be handed to the index more than once, and cost as much each time.
 template <int D, typename Real>
 void World<D, Real>::State::bring_index_up_to_date() const {
   if (queried == nullptr) queried = make_box_index<D, Real>();
   unindexed.insert(unindexed.end(), changed.begin(), changed.end());
-  // Slots that are no more need not be listed, and those that came and went in between must not.
+  // Slots that no longer exist need not be listed; those that came and went in between must not be.
   std::erase_if(unindexed, [this](BoxId slot) { return index(slot) >= boxes.size(); });
   queried->update({.boxes = boxes, .changed = unindexed, .filters = filters});
   unindexed.clear();

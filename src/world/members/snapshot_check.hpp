@@ -1,4 +1,4 @@
-// World: what must hold of a snapshot's parts together, so that update(), pairs() and queries can rely on it.
+// World: checks that a snapshot's parts agree, so that update(), pairs() and queries can rely on it.
 // Each part alone is checked where it is read, in snapshot_restore.hpp.
 #pragma once
 
@@ -65,7 +65,7 @@ void World<D, Real>::State::check_last_frame(const LastFrame& last) const {
   expect_listed(last.ignored, ignored);
 }
 
-/// What its flags say of what has happened, and of what is still to be told.
+/// Its flags: what has happened, and what is still to be delivered.
 template <int D, typename Real>
 void World<D, Real>::State::check_pending(bool asks_predicate) const {
   if (!has_updated) {
@@ -99,14 +99,14 @@ void World<D, Real>::State::check_marks(bool asks_predicate) const {
     const bool overlaps = !has_margin() || overlap(boxes[index(pair.first)], boxes[index(pair.second)]);
     if (mark.overlaps != overlaps) {
       core::refuse(pair, std::string("is said to ") + (mark.overlaps ? "" : "not ") +
-                             "overlap; expected what its " + "boxes do, which did not change");
+                             "overlap; expected what its boxes do, which did not change");
     }
     if (!asks_predicate && overlaps && !mark.accepted)
       core::refuse(pair, "overlaps and is not accepted; expected a predicate that refused it");
   });
 }
 
-/// What was found, told and not yet told, where the tracker has these pairs; sorted.
+/// Checks the pairs found, delivered and not yet delivered against those of the tracker; sorted.
 template <int D, typename Real>
 void World<D, Real>::State::check_pairs(const Pairs& tracked) const {
   expect_within(candidates.begun, tracked, "is a candidate that began; expected the tracker to have it");
@@ -120,7 +120,7 @@ void World<D, Real>::State::check_pairs(const Pairs& tracked) const {
     expect_within(refined.begun, held, "began when refined; expected it to hold");
     expect_apart(refined.ended, held, "ended when refined; expected it not to hold");
   }
-  // What an update that failed has refined is not among the pairs yet.
+  // The pairs that a failed update refined are not among the pairs yet.
   const Pairs told = difference(difference(held, refined.begun), refined.ended);
   if (pair_count != told.size()) {
     throw InvalidSnapshot("a snapshot contradicts itself: it counts " + std::to_string(pair_count) +

@@ -62,8 +62,8 @@ std::vector<BoxId> get_places(ByteReader& in, std::uint64_t count, const char* t
 
 }  // namespace
 
-/// Reads the frame that the tracker took last. `now` is the one it would be shown, in which whatever is not
-/// in `listed` is as it was.
+/// Reads the frame that the tracker took last. `now` is the frame it would be shown, in which places outside
+/// `listed` are as they were.
 template <int D, typename Real>
 void World<D, Real>::State::LastFrame::get(ByteReader& in, const Frame<D, Real>& now) {
   const auto flags = in.get<std::uint8_t>();

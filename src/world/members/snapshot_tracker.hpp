@@ -137,7 +137,7 @@ void World<D, Real>::State::take_tracker(State& other, const LastFrame& last) {
     try {
       other.lead_back();
     } catch (...) {
-      // What made restore() fail is what is thrown.
+      // The exception of restore() itself is the one thrown.
     }
     throw;
   }

@@ -20,7 +20,7 @@
 namespace broadside {
 namespace {
 
-/// Takes from both what is in both: events that were undone before anyone heard of them.
+/// Takes from both what is in both: events that were undone before they were delivered.
 void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair>& scratch) {
   core::sort(begun, scratch);
   core::sort(ended, scratch);
@@ -110,7 +110,7 @@ void World<D, Real>::State::apply_candidates() {
     graph.insert(pair);
     fresh.push_back(pair);
   }
-  // What a failed update has left goes before what is newer; a snapshot lists both by id.
+  // Events left by a failed update go before newer ones; a snapshot lists both by id.
   if (is_again) {
     std::sort(refined.ended.begin(), refined.ended.end());
     std::sort(fresh.begin(), fresh.end());
