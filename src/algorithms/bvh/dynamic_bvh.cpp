@@ -165,7 +165,8 @@ void DynamicBvh<D>::add_child(std::uint32_t node, const Child& child) {
 template <int D>
 void DynamicBvh<D>::split(std::uint32_t node, const Child& added) {
   std::array<Child, fan_out + 1> children;
-  for (std::uint32_t i = 0; i < fan_out; ++i) children[i] = {box_at(node * fan_out + i), nodes_[node].id[i]};
+  const auto first = static_cast<std::uint32_t>(node * fan_out);
+  for (std::uint32_t i = 0; i < fan_out; ++i) children[i] = {box_at(first + i), nodes_[node].id[i]};
   children.back() = added;
   std::ranges::sort(children, BeforeAlong<D>{widest_axis<D>(children)});
 

@@ -87,7 +87,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
     const std::size_t length = layout_.row_length();
     const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
                                               begin_[layout_.slab_begin(slab) * length]);
-    const double share = inserted / std::max<double>(1, begin_.back());
+    const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
     return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
   }
 
