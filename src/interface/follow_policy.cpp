@@ -8,7 +8,7 @@ namespace broadside::core {
 namespace {
 
 // The costs of tests beyond these were measured with 50,000 boxes, one in a hundred moving, in stacks of
-// plates, lines and clusters: docs/benchmarking.md.
+// plates, lines and clusters: docs/lab-notes.md.
 constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
 constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide

@@ -57,6 +57,24 @@ export function draw_standings(cases: readonly Case[], place: Place): Drawn {
   }, place);
 }
 
+/** The same for auto and, of each other library, the algorithm that does best. */
+export function draw_libraries(cases: readonly Case[], place: Place): Drawn {
+  const seen = new Set<string>();
+  const shown = standings(cases).filter(({ algorithm, kind }) => {
+    if (kind !== "peer") return algorithm === "auto";
+    const library = algorithm.split("_", 1)[0] ?? algorithm;
+    return !seen.has(library) && seen.add(library);
+  });
+  return draw_bars({
+    title: "Times as multiples of the fastest algorithm's, geometric mean of the cases that an algorithm does",
+    x: { name: "algorithm", unit: "" },
+    y: { name: "times the fastest's time", unit: "", log: false },
+    labels: shown.map((standing) => standing.algorithm),
+    series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
+    colours: shown.map((standing) => colour_of(standing, place.theme)),
+  }, place);
+}
+
 /** How many times as fast our best is as the fastest peer, case by case. */
 export function draw_leads(cases: readonly Case[], place: Place): Drawn {
   const leads = cases.flatMap((of) => {

@@ -2,6 +2,7 @@
 import { bestOwn, ranking, type Case } from "../charts/comparison.ts";
 import {
   draw_leads,
+  draw_libraries,
   draw_scaling,
   draw_standings,
   draw_winners,
@@ -121,6 +122,11 @@ export function comparison_charts(facts: Facts): Record<string, NamedChart> {
     standings: {
       caption: "Times as multiples of the fastest's, geometric mean of the cases that an algorithm does",
       draw: (place) => draw_standings(facts.cases, place),
+    },
+    libraries: {
+      caption: "`auto` and the best algorithm of each other library: times as multiples of the fastest algorithm's, " +
+        "geometric mean of the cases that an algorithm does",
+      draw: (place) => draw_libraries(facts.cases, place),
     },
     leads_still: {
       caption: "Boxes that rest: time of the fastest peer over that of our best, in the colour of the latter",
