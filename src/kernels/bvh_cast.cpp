@@ -42,8 +42,8 @@ struct Cast {
       near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
       far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
       inverse_[axis] = all(query.inverse[axis]);
-      near_bound_at_[axis] = (is_back ? D + axis : axis) * fan_out;
-      far_bound_at_[axis] = (is_back ? axis : D + axis) * fan_out;
+      near_bounds_[axis] = is_back ? &Block<D>::max : &Block<D>::min;
+      far_bounds_[axis] = is_back ? &Block<D>::min : &Block<D>::max;
     }
   }
 
@@ -104,11 +104,13 @@ struct Cast {
   static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + least); }
 
  private:
+  using Bounds = decltype(Block<D>::min);
+
   HWY_INLINE FloatVector near_bound(const Block<D>& node, int axis, std::size_t at) const {
-    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + near_bound_at_[axis] + at);
+    return load((node.*near_bounds_[axis])[axis], at);
   }
   HWY_INLINE FloatVector far_bound(const Block<D>& node, int axis, std::size_t at) const {
-    return hn::Load(Floats(), reinterpret_cast<const float*>(&node) + far_bound_at_[axis] + at);
+    return load((node.*far_bounds_[axis])[axis], at);
   }
   HWY_INLINE FloatMask overlaps(const Block<D>& node, int axis, std::size_t at) const {
     return hn::And(hn::Le(load(node.min[axis], at), near_side_[axis]),
@@ -119,9 +121,9 @@ struct Cast {
   FloatVector near_side_[D];
   FloatVector far_side_[D];
   FloatVector inverse_[D];
-  // Offsets in a node, in floats, of the bounds that a cast meets first and last: no branch on a direction.
-  std::size_t near_bound_at_[D];
-  std::size_t far_bound_at_[D];
+  // The bounds of a node that a cast meets first and last: no branch on a direction.
+  Bounds Block<D>::*near_bounds_[D];
+  Bounds Block<D>::*far_bounds_[D];
 };
 
 template <int D>

@@ -157,9 +157,7 @@ class Join {
     tests_ += count * fan_out;
   }
 
-  HWY_INLINE NumberVector ids(std::size_t at) const {
-    return hn::LoadU(Numbers(), reinterpret_cast<const std::uint32_t*>(tree_.id) + at);
-  }
+  HWY_INLINE NumberVector ids(std::size_t at) const { return load_ids(Numbers(), tree_.id + at); }
 
   static constexpr std::size_t most_queries = 1024;
 

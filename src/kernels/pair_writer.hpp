@@ -1,4 +1,6 @@
-// Writes the pairs that are hits, for files that Highway compiles for each instruction set.
+// Writes the pairs that are hits, and loads ids, for files that Highway compiles for each instruction set.
+//
+// Both go by bytes, which may be read from any object and written to it.
 //
 // Included once an instruction set, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_PAIR_WRITER) == defined(HWY_TARGET_TOGGLE)
@@ -20,6 +22,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// The ids from `ids` on, one a lane.
+template <typename Ids>
+HWY_INLINE hn::Vec<Ids> load_ids(Ids tag, const BoxId* ids) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Set(tag, index(*ids));
+#else
+  const hn::Repartition<std::uint8_t, Ids> bytes;
+  return hn::BitCast(tag, hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(ids)));
+#endif
+}
 
 /// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
 /// `Ids` is the tag of vectors of ids.
@@ -85,7 +98,6 @@ class PairWriter {
     // A pair is its first id in the low half of 64 bits and its second one in the high half.
     const hn::Half<Ids> half;
     const hn::RepartitionToWide<Ids> wide;
-    // As bytes, which may be written to any object.
     const hn::Repartition<std::uint8_t, Ids> bytes;
     const auto write_half = [&](auto firsts, auto seconds, Pair* to) HWY_ATTR {
       const auto pairs = hn::Or(hn::PromoteTo(wide, firsts), hn::ShiftLeft<32>(hn::PromoteTo(wide, seconds)));

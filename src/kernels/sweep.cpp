@@ -72,7 +72,7 @@ HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t a
 
 template <int D>
 HWY_INLINE IdVector ids(const Run<D>& run, std::size_t at) {
-  return hn::LoadU(Ids(), reinterpret_cast<const std::uint32_t*>(run.id) + at);
+  return load_ids(Ids(), run.id + at);
 }
 
 /// Compares the query with the boxes from `begin` on that may start on axis 0 no later than it ends. Returns
