@@ -1,6 +1,6 @@
 // Ratios of times with their intervals, and how they are shown.
 import type { Ratio } from "./data.ts";
-import { ratio_text } from "./numbers.ts";
+import { ratioText } from "./numbers.ts";
 
 export type Interval = readonly [low: number, high: number];
 
@@ -23,11 +23,11 @@ export function isFaster(ratio: Ratio): boolean {
 /** "19 (18 to 20)", "1.0 (level)", or the ratio alone where it has no interval. */
 export function intervalText(ratio: Ratio): string {
   const interval = intervalOf(ratio);
-  if (interval === undefined) return ratio_text(ratio.median);
-  return `${ratio_text(ratio.median)} (${isLevel(ratio) ? "level" : interval.map(ratio_text).join(" to ")})`;
+  if (interval === undefined) return ratioText(ratio.median);
+  return `${ratioText(ratio.median)} (${isLevel(ratio) ? "level" : interval.map(ratioText).join(" to ")})`;
 }
 
 /** The same in short: "19", "level". */
 export function shortRatioText(ratio: Ratio): string {
-  return isLevel(ratio) ? "level" : ratio_text(ratio.median);
+  return isLevel(ratio) ? "level" : ratioText(ratio.median);
 }

@@ -52,15 +52,15 @@ const families: Record<string, readonly [string, string]> = {
 };
 
 /** The family that an algorithm is named for: "grid" of grid:cell=2 and of paper_grid, "bullet" of bullet_dbvt. */
-export function family_of(algorithm: string): string | undefined {
+export function familyOf(algorithm: string): string | undefined {
   const name = (algorithm.split(/[: (,]/, 1)[0] ?? "").replace(/^paper_/, "");
   if (name in families) return name;
   const library = name.split("_", 1)[0] ?? "";
   return library in families ? library : undefined;
 }
 
-export function family_colour(algorithm: string, theme: Theme): string | undefined {
-  const family = family_of(algorithm);
+export function familyColour(algorithm: string, theme: Theme): string | undefined {
+  const family = familyOf(algorithm);
   const colours = family === undefined ? undefined : families[family];
   return colours?.[theme.name === "light" ? 0 : 1];
 }
@@ -69,10 +69,10 @@ export function family_colour(algorithm: string, theme: Theme): string | undefin
  * A colour for each name: its family's where all are of different families or of one library each; else those of a
  * family that is there already get the next of the palette that is not taken.
  */
-export function colours_of(names: readonly string[], theme: Theme): string[] {
+export function coloursOf(names: readonly string[], theme: Theme): string[] {
   const taken = new Set<string>();
   const own = names.map((name) => {
-    const colour = family_colour(name, theme);
+    const colour = familyColour(name, theme);
     if (colour === undefined || taken.has(colour)) return undefined;
     taken.add(colour);
     return colour;

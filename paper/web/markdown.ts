@@ -6,7 +6,7 @@ export function plain(text: string): string {
 }
 
 /** A table; columns whose name begins with a space are aligned to the right. */
-export function table_text(columns: readonly string[], rows: readonly (readonly string[])[]): string {
+export function tableText(columns: readonly string[], rows: readonly (readonly string[])[]): string {
   const line = (cells: readonly string[]) => `| ${cells.join(" | ")} |`;
   return [
     line(columns.map((name) => name.trim())),

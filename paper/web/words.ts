@@ -1,5 +1,5 @@
 // Numbers as the paper's sentences have them.
-import { bytes_text, grouped, rounded } from "../charts/numbers.ts";
+import { bytesText, grouped, rounded } from "../../web/charts/numbers.ts";
 
 /** Whole numbers as they are, others with three significant digits. */
 export function shown(number: number): string {
@@ -7,8 +7,8 @@ export function shown(number: number): string {
 }
 
 /** A number and its unit: "31 %", "4.21 ms", "2.76 MB", "12,000 boxes". */
-export function with_unit(number: number, unit: string): string {
-  if (unit === "bytes") return bytes_text(number);
+export function withUnit(number: number, unit: string): string {
+  if (unit === "bytes") return bytesText(number);
   if (unit === "boxes" && number >= 10) return `${grouped(Math.round(number))} boxes`;
   return unit === "" ? shown(number) : `${shown(number)} ${unit}`;
 }

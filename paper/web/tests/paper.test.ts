@@ -5,10 +5,10 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { document_of } from "../paper/document.ts";
-import { Problem } from "../paper/problem.ts";
-import { run } from "../paper/program.ts";
-import { comparison, experiments, oldComparison } from "./paper_fixture.ts";
+import { documentOf } from "../document.ts";
+import { Problem } from "../problem.ts";
+import { run } from "../program.ts";
+import { comparison, experiments, oldComparison } from "./fixture.ts";
 
 interface Given {
   experiments?: string;
@@ -16,7 +16,7 @@ interface Given {
 }
 
 function paper(template: string, given: Given = {}): Map<string, string> {
-  return document_of({
+  return documentOf({
     templates: [{ file: "07_testing.md", text: template }],
     experiments: { file: "e.json", text: given.experiments ?? JSON.stringify(experiments()) },
     comparison: { file: "c.json", text: given.comparison ?? JSON.stringify(comparison()) },
@@ -25,7 +25,7 @@ function paper(template: string, given: Given = {}): Map<string, string> {
 }
 
 /** The text without its first line, which says what it is made from. */
-const text_of = (template: string, given: Given = {}) =>
+const textOf = (template: string, given: Given = {}) =>
   paper(template, given).get("paper.md")!.split("\n").slice(2).join("\n").trim();
 
 /** A test's name, a template and what the message has to hold. */
@@ -43,34 +43,34 @@ function refuses(name: string, template: string, message: RegExp, given: Given =
 }
 
 test("figures are quoted with their unit", () => {
-  assert.equal(text_of('{{figure "tests" "crossover"}}, {{figure "tests" "memory"}}'), "12 boxes, 2.76 MB");
-  assert.equal(text_of('{{value "tests" "crossover"}}'), "12");
+  assert.equal(textOf('{{figure "tests" "crossover"}}, {{figure "tests" "memory"}}'), "12 boxes, 2.76 MB");
+  assert.equal(textOf('{{value "tests" "crossover"}}'), "12");
 });
 
 test("a verdict is quoted with its condition", () => {
-  assert.equal(text_of('{{verdict "tests"}}'), "holds when there are more than 12 boxes");
+  assert.equal(textOf('{{verdict "tests"}}'), "holds when there are more than 12 boxes");
 });
 
 test("text follows the verdict", () => {
   const template = '{{#if (holds_when "tests")}}sometimes{{else}}{{#if (fails "tests")}}never{{/if}}{{/if}}';
-  assert.equal(text_of(template), "sometimes");
+  assert.equal(textOf(template), "sometimes");
   const other = experiments();
   other.experiments[0]!.verdict = "does not hold";
-  assert.equal(text_of(template, { experiments: JSON.stringify(other) }), "never");
+  assert.equal(textOf(template, { experiments: JSON.stringify(other) }), "never");
 });
 
 test("the machine is named", () => {
-  assert.equal(text_of("{{machine.cpu}}, {{machine.cores}} cores, {{machine.memory}}"), "A CPU, 2 cores, 4 GB");
+  assert.equal(textOf("{{machine.cpu}}, {{machine.cores}} cores, {{machine.memory}}"), "A CPU, 2 cores, 4 GB");
 });
 
 test("what would be Markdown in results is shown as it is", () => {
-  assert.match(text_of('{{claim "tests"}}'), /n\\\*n tests/);
-  assert.match(text_of("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
+  assert.match(textOf('{{claim "tests"}}'), /n\\\*n tests/);
+  assert.match(textOf("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
 });
 
 test("tables have a row a line and nothing where nothing is known", () => {
   assert.equal(
-    text_of('{{table "tests" "times"}}'),
+    textOf('{{table "tests" "times"}}'),
     "| boxes | time (ms) |\n| ---: | ---: |\n| 10 | 1.23 |\n| 100 | - |\n| 1,000 | 123 |",
   );
 });
@@ -84,29 +84,29 @@ test("charts are numbered, drawn and referred to before they stand there", () =>
 });
 
 test("pictures that the program drew are figures as well", () => {
-  assert.match(text_of('{{picture "grid" "Cells"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\*\n.*\n\n\*Figure 2/);
+  assert.match(textOf('{{picture "grid" "Cells"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\*\n.*\n\n\*Figure 2/);
 });
 
 refuses("an unknown picture", '{{picture "x" "X"}}', /no picture 'x\.svg'; there are grid\.svg/);
 
 test("sources are numbered in their order, and cited by number", () => {
-  assert.match(text_of('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
+  assert.match(textOf('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
 });
 
 test("leads are those of our best other than auto, with intervals, and lost cases are named", () => {
-  assert.equal(text_of("{{comparison.mean_lead_still}} {{comparison.least_lead}}"), "8.00 0.40");
-  assert.equal(text_of("{{comparison.least_lead_interval}}"), "0.40 (0.38 to 0.42)");
-  assert.match(text_of("{{lost}}"), /10 % moving: `bullet_dbvt` takes 1 ms.* 0\.40\s+\(0\.38 to 0\.42\)\./s);
-  assert.match(text_of('{{leads "moving"}}'), /\| \*\*0\.40 \(0\.38 to 0\.42\)\*\* \|/);
-  assert.equal(text_of("{{comparison.auto_worst}}"), "1.1");
-  assert.equal(text_of("{{#if comparison.paired}}paired{{/if}}{{#if (any_level)}}, some level{{/if}}"), "paired");
+  assert.equal(textOf("{{comparison.mean_lead_still}} {{comparison.least_lead}}"), "8.00 0.40");
+  assert.equal(textOf("{{comparison.least_lead_interval}}"), "0.40 (0.38 to 0.42)");
+  assert.match(textOf("{{lost}}"), /10 % moving: `bullet_dbvt` takes 1 ms.* 0\.40\s+\(0\.38 to 0\.42\)\./s);
+  assert.match(textOf('{{leads "moving"}}'), /\| \*\*0\.40 \(0\.38 to 0\.42\)\*\* \|/);
+  assert.equal(textOf("{{comparison.auto_worst}}"), "1.1");
+  assert.equal(textOf("{{#if comparison.paired}}paired{{/if}}{{#if (any_level)}}, some level{{/if}}"), "paired");
 });
 
 test("a comparison of the schema before is quoted without intervals", () => {
   const given = { comparison: JSON.stringify(oldComparison()) };
-  assert.equal(text_of("{{comparison.least_lead_interval}}{{#if comparison.paired}} paired{{/if}}", given), "0.40");
-  assert.match(text_of('{{leads "moving"}}', given), /\| \*\*0\.40\*\* \|/);
-  assert.equal(text_of("{{comparison.lost}} {{comparison.level}}", given), "1 0");
+  assert.equal(textOf("{{comparison.least_lead_interval}}{{#if comparison.paired}} paired{{/if}}", given), "0.40");
+  assert.match(textOf('{{leads "moving"}}', given), /\| \*\*0\.40\*\* \|/);
+  assert.equal(textOf("{{comparison.lost}} {{comparison.level}}", given), "1 0");
 });
 
 test("the same sources give the same bytes", () => {
@@ -173,7 +173,7 @@ refuses("a comparison without peers", "a", /no case of boxes that rest with time
 });
 
 /** A folder with sources, and what the program prints. */
-function try_program(check: (folder: string, make: (...words: string[]) => number, printed: () => string) => void): void {
+function tryProgram(check: (folder: string, make: (...words: string[]) => number, printed: () => string) => void): void {
   const folder = mkdtempSync(join(tmpdir(), "paper-"));
   try {
     mkdirSync(join(folder, "templates"));
@@ -192,7 +192,7 @@ function try_program(check: (folder: string, make: (...words: string[]) => numbe
 }
 
 test("the program writes the paper, drops figures that are gone, and then finds it up to date", () => {
-  try_program((folder, make, printed) => {
+  tryProgram((folder, make, printed) => {
     assert.equal(make("--check"), 1);
     assert.match(printed(), /paper\.md/);
     mkdirSync(join(folder, "figures"));
@@ -211,7 +211,7 @@ for (const [what, file, text] of [
   ["a template with an unknown experiment", "templates/01.md", '{{verdict "x"}}'],
 ] as const) {
   test(`${what} leave the old paper as it was`, () => {
-    try_program((folder, make, printed) => {
+    tryProgram((folder, make, printed) => {
       assert.equal(make(), 0);
       const before = readFileSync(join(folder, "paper.md"), "utf8");
       writeFileSync(join(folder, file), text);
@@ -224,7 +224,7 @@ for (const [what, file, text] of [
 }
 
 test("files that are missing are named", () => {
-  try_program((folder, make, printed) => {
+  tryProgram((folder, make, printed) => {
     rmSync(join(folder, "c.json"));
     assert.equal(make(), 2);
     assert.match(printed(), /c\.json: .*expected results of broadside compare/);

@@ -10,7 +10,7 @@ export interface TypedDigit {
  * The lines of a template in which a digit stands outside a placeholder, or a number stands in one for itself.
  * Digits in the names that a placeholder has are none.
  */
-export function typed_digits(template: Template): TypedDigit[] {
+export function typedDigits(template: Template): TypedDigit[] {
   const found: TypedDigit[] = [];
   walk(parsed(template), (node) => {
     if (node.type === "NumberLiteral") {

@@ -3,7 +3,7 @@ import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { argv, exit, stderr } from "node:process";
 
 import { Problem } from "./problem.ts";
-import { read_comparison } from "./results.ts";
+import { readComparison } from "./results.ts";
 
 const [from, to] = argv.slice(2);
 if (!from || !to) {
@@ -13,7 +13,7 @@ if (!from || !to) {
 try {
   // The text is kept otherwise: one measurement a line.
   const text = readFileSync(from, "utf8").replace(/"samples_ms":\[[^\]]*\]/g, '"samples_ms":null');
-  read_comparison(text, from);
+  readComparison(text, from);
   writeFileSync(`${to}.new`, text);
   renameSync(`${to}.new`, to);
 } catch (error) {

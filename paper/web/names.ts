@@ -1,15 +1,15 @@
 // What templates may name: the machine, the experiments and what they came to, the comparison, figures and sources.
-import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../charts/data.ts";
-import type { Drawn, Place } from "../charts/frame.ts";
-import { draw_table_chart } from "../charts/table_chart.ts";
-import { comparison_charts, comparison_data, leads_table, lost_list, standings_table } from "./comparison_names.ts";
-import { figures_table, machine_data, results_table, section_text, verdict_text, verdicts_table } from "./experiment_names.ts";
-import { facts_of, type Facts } from "./facts.ts";
+import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../../web/charts/data.ts";
+import type { Drawn, Place } from "../../web/charts/frame.ts";
+import { drawTableChart } from "../../web/charts/table_chart.ts";
+import { comparisonCharts, comparisonData, leadsTable, lostList, standingsTable } from "./comparison_names.ts";
+import { figuresTable, machineData, resultsTable, sectionText, verdictText, verdictsTable } from "./experiment_names.ts";
+import { factsOf, type Facts } from "./facts.ts";
 import type { Names } from "./fill.ts";
 import { plain } from "./markdown.ts";
 import { Numbering } from "./numbering.ts";
 import { listed, Problem } from "./problem.ts";
-import { shown, with_unit } from "./words.ts";
+import { shown, withUnit } from "./words.ts";
 
 /** A figure of the paper. */
 export interface Drawing {
@@ -18,7 +18,7 @@ export interface Drawing {
 }
 
 /** What `key` is among `all`. Throws Problem naming those there are. */
-function one_of<Thing>(all: Record<string, Thing>, key: string, what: string): Thing {
+function oneOf<Thing>(all: Record<string, Thing>, key: string, what: string): Thing {
   const thing = Object.hasOwn(all, key) ? all[key] : undefined;
   if (thing === undefined) throw new Problem(`no ${what} '${key}'; there are ${listed(Object.keys(all))}`);
   return thing;
@@ -28,13 +28,13 @@ const by = <Thing>(all: readonly Thing[], key: (thing: Thing) => string): Record
   Object.fromEntries(all.map((thing) => [key(thing), thing]));
 
 /** A drawing's name, which is its file's: short, and unique where names of experiments and tables are. */
-function drawing_name(experiment: Experiment, table: Table, chart: ChartSpec): string {
+function drawingName(experiment: Experiment, table: Table, chart: ChartSpec): string {
   const name = `${experiment.name}_${table.name}`;
   return table.charts.length === 1 ? name : `${name}_${table.charts.indexOf(chart) + 1}`;
 }
 
 /** The chart's title, and the table's where that says more. */
-function caption_of(table: Table, chart: ChartSpec): string {
+function captionOf(table: Table, chart: ChartSpec): string {
   const [begin = ""] = table.title.split(/[:;,]/, 1);
   return chart.kind === "map" || chart.title.includes(begin) ? chart.title : `${chart.title}. ${table.title}`;
 }
@@ -56,16 +56,16 @@ export class Paper {
     private readonly pictures: readonly string[],
   ) {
     this.experiments = by(results.experiments, (experiment) => experiment.name);
-    this.facts = facts_of(comparison, comparison_file);
+    this.facts = factsOf(comparison, comparison_file);
   }
 
   /** Ends a pass over all templates: after the first, numbers of figures and sources are known. */
-  end_pass(): void {
-    this.figures.end_pass();
-    this.sources.end_pass();
+  endPass(): void {
+    this.figures.endPass();
+    this.sources.endPass();
   }
 
-  begin_pass(): void {
+  beginPass(): void {
     this.drawings.clear();
   }
 
@@ -75,16 +75,16 @@ export class Paper {
   }
 
   private experiment(name: string): Experiment {
-    return one_of(this.experiments, name, "experiment");
+    return oneOf(this.experiments, name, "experiment");
   }
 
   private table(experiment: string, name: string): Table {
     const tables = by(this.experiment(experiment).tables, (table) => table.name);
-    return one_of(tables, name, `table in the experiment '${experiment}':`);
+    return oneOf(tables, name, `table in the experiment '${experiment}':`);
   }
 
   private figure(experiment: string, name: string): { value: number; unit: string } {
-    return one_of(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
+    return oneOf(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
   }
 
   private show(path: string, name: string, caption: string): string {
@@ -97,53 +97,53 @@ export class Paper {
     return this.show(`figures/${name}.svg`, name, drawing.caption);
   }
 
-  private draw_chart(experiment: Experiment, table: Table, chart: ChartSpec): string {
-    const draw = (place: Place) => draw_table_chart(table, chart, place);
-    return this.draw(drawing_name(experiment, table, chart), { caption: caption_of(table, chart), draw });
+  private drawChart(experiment: Experiment, table: Table, chart: ChartSpec): string {
+    const draw = (place: Place) => drawTableChart(table, chart, place);
+    return this.draw(drawingName(experiment, table, chart), { caption: captionOf(table, chart), draw });
   }
 
   private see(names: readonly string[]): string {
-    const numbers = this.figures.numbers_of(names).map(String);
+    const numbers = this.figures.numbersOf(names).map(String);
     return `${numbers.length === 1 ? "Figure" : "Figures"} ${listed(numbers)}`;
   }
 
   names(): Names {
     const of = (name: string) => this.experiment(name);
     const value = (experiment: string, name: string) => this.figure(experiment, name).value;
-    const comparison = comparison_charts(this.facts);
+    const comparison = comparisonCharts(this.facts);
     return {
-      data: { ...machine_data(this.results), comparison: comparison_data(this.facts, this.comparison) },
+      data: { ...machineData(this.results), comparison: comparisonData(this.facts, this.comparison) },
       helpers: {
         heading: (experiment) =>
           `<a id="${of(experiment).name}"></a>Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
         number: (experiment) => `[${of(experiment).number}](#${of(experiment).name})`,
-        claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${section_text(of(experiment).section)})`,
+        claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${sectionText(of(experiment).section)})`,
         measured: (experiment) => plain(of(experiment).measured),
-        verdict: (experiment) => plain(verdict_text(of(experiment))),
+        verdict: (experiment) => plain(verdictText(of(experiment))),
         reason: (experiment) => plain(of(experiment).reason),
         figure: (experiment, name) => {
           const figure = this.figure(experiment, name);
-          return with_unit(figure.value, figure.unit);
+          return withUnit(figure.value, figure.unit);
         },
         value: (experiment, name) => shown(value(experiment, name)),
-        table: (experiment, name) => results_table(this.table(experiment, name)),
+        table: (experiment, name) => resultsTable(this.table(experiment, name)),
         chart: (experiment, name, title) => {
           const table = this.table(experiment, name);
           const charts = by(table.charts, (chart) => chart.title);
-          return this.draw_chart(of(experiment), table, one_of(charts, title, `chart of the table '${name}':`));
+          return this.drawChart(of(experiment), table, oneOf(charts, title, `chart of the table '${name}':`));
         },
         charts: (experiment) =>
           of(experiment)
-            .tables.flatMap((table) => table.charts.map((chart) => this.draw_chart(of(experiment), table, chart)))
+            .tables.flatMap((table) => table.charts.map((chart) => this.drawChart(of(experiment), table, chart)))
             .join("\n\n"),
         see: (experiment) =>
           this.see(
             of(experiment).tables.flatMap((table) =>
-              table.charts.map((chart) => drawing_name(of(experiment), table, chart)),
+              table.charts.map((chart) => drawingName(of(experiment), table, chart)),
             ),
           ),
-        verdicts: () => verdicts_table(this.results),
-        all_figures: () => figures_table(this.results),
+        verdicts: () => verdictsTable(this.results),
+        all_figures: () => figuresTable(this.results),
         holds: (experiment) => of(experiment).verdict === "holds",
         holds_when: (experiment) => of(experiment).verdict === "holds when",
         fails: (experiment) => of(experiment).verdict === "does not hold",
@@ -151,23 +151,23 @@ export class Paper {
         less: (experiment, first, second) => value(experiment, first) < value(experiment, second),
         scene: (name) => {
           const scenes = by(this.facts.cases, (one) => one.scene.split(":")[0]!);
-          one_of(scenes, name, "scene in the comparison:");
+          oneOf(scenes, name, "scene in the comparison:");
           return `\`${name}\``;
         },
-        leads: (which) => leads_table(this.facts, which),
-        lost: () => lost_list(this.facts),
+        leads: (which) => leadsTable(this.facts, which),
+        lost: () => lostList(this.facts),
         any_lost: () => this.facts.lost.length > 0,
         any_level: () => this.facts.level.length > 0,
-        standings: () => standings_table(this.facts),
+        standings: () => standingsTable(this.facts),
         picture: (name, caption) => {
-          const path = `../pictures/${one_of(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
+          const path = `../pictures/${oneOf(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
           return this.show(path, `picture ${name}`, caption);
         },
-        comparison_chart: (name) => this.draw(`comparison_${name}`, one_of(comparison, name, "chart of the comparison")),
+        comparison_chart: (name) => this.draw(`comparison_${name}`, oneOf(comparison, name, "chart of the comparison")),
         see_comparison: (name) => this.see([`comparison_${name}`]),
         cite: (source) => {
           this.cited.add(source);
-          return `[[${this.sources.number_of(source)}]](#${source})`;
+          return `[[${this.sources.numberOf(source)}]](#${source})`;
         },
         source: (source) => `${this.sources.next(source)}. <a id="${source}"></a>`,
       },

@@ -1,10 +1,10 @@
 // The paper: its templates filled, its figures drawn.
-import { light } from "../charts/theme.ts";
-import { svg_of } from "../charts/render.ts";
+import { light } from "../../web/charts/theme.ts";
+import { svgOf } from "../../web/charts/render.ts";
 import { fill, type Template } from "./fill.ts";
 import { Paper } from "./names.ts";
 import { listed, Problem } from "./problem.ts";
-import { read_comparison, read_experiments } from "./results.ts";
+import { readComparison, readExperiments } from "./results.ts";
 import { wrapped } from "./wrap.ts";
 
 export interface Sources {
@@ -22,18 +22,18 @@ const notice = "<!-- Made by `make paper` from paper/templates/ and paper/result
 const width = 760;
 
 /** The same sources give the same bytes everywhere. Throws Problem. */
-export function document_of(sources: Sources): Document {
-  const experiments = read_experiments(sources.experiments.text, sources.experiments.file);
-  const comparison = read_comparison(sources.comparison.text, sources.comparison.file);
+export function documentOf(sources: Sources): Document {
+  const experiments = readExperiments(sources.experiments.text, sources.experiments.file);
+  const comparison = readComparison(sources.comparison.text, sources.comparison.file);
   if (sources.templates.length === 0) throw new Problem("0 templates; expected at least one *.md");
   const paper = new Paper(experiments, comparison, sources.comparison.file, sources.pictures);
   const names = paper.names();
   let text = "";
   for (const pass of ["to number figures and sources", "to refer to them"]) {
     void pass;
-    paper.begin_pass();
+    paper.beginPass();
     text = sources.templates.map((template) => fill(template, names).trim()).join("\n\n");
-    paper.end_pass();
+    paper.endPass();
   }
   const uncited = paper.uncited();
   if (uncited.length > 0) throw new Problem(`nothing cites the source ${listed(uncited)}; expected every one cited`);
@@ -41,7 +41,7 @@ export function document_of(sources: Sources): Document {
   const document: Document = new Map([["paper.md", `${notice}${wrapped(text)}\n`]]);
   for (const [name, { caption, draw }] of paper.drawings) {
     const drawn = draw({ theme: light, width });
-    document.set(`figures/${name}.svg`, svg_of(drawn, { width, background: light.background, title: caption }));
+    document.set(`figures/${name}.svg`, svgOf(drawn, { width, background: light.background, title: caption }));
   }
   return document;
 }

@@ -2,7 +2,7 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { basename, dirname, join } from "node:path";
 
-import { document_of, type Document } from "./document.ts";
+import { documentOf, type Document } from "./document.ts";
 import { listed, Problem } from "./problem.ts";
 
 /** Where texts go. */
@@ -25,7 +25,7 @@ function read(file: string, what: string): string {
   }
 }
 
-function names_in(folder: string, ending: string): string[] {
+function namesIn(folder: string, ending: string): string[] {
   try {
     return readdirSync(folder)
       .filter((name) => name.endsWith(ending))
@@ -35,14 +35,14 @@ function names_in(folder: string, ending: string): string[] {
   }
 }
 
-function figures_in(folder: string): string[] {
+function figuresIn(folder: string): string[] {
   const figures = join(folder, "figures");
-  return existsSync(figures) ? names_in(figures, ".svg").map((name) => `figures/${name}`) : [];
+  return existsSync(figures) ? namesIn(figures, ".svg").map((name) => `figures/${name}`) : [];
 }
 
 /** Names what differs between the folder and the document. */
 function differences(document: Document, folder: string): string[] {
-  const stale = figures_in(folder).filter((path) => !document.has(path));
+  const stale = figuresIn(folder).filter((path) => !document.has(path));
   const other = [...document].filter(([path, text]) => {
     try {
       return readFileSync(join(folder, path), "utf8") !== text;
@@ -55,7 +55,7 @@ function differences(document: Document, folder: string): string[] {
 
 /** Each file is written beside the old one and renamed, the text last. */
 function write(document: Document, folder: string): void {
-  const stale = figures_in(folder).filter((path) => !document.has(path));
+  const stale = figuresIn(folder).filter((path) => !document.has(path));
   mkdirSync(join(folder, "figures"), { recursive: true });
   for (const [path, text] of document) {
     const file = join(folder, path);
@@ -68,16 +68,16 @@ function write(document: Document, folder: string): void {
   for (const path of stale) rmSync(join(folder, path));
 }
 
-function document_from(experiments: string, comparison: string, templates: string, folder: string): Document {
+function documentFrom(experiments: string, comparison: string, templates: string, folder: string): Document {
   const pictures = join(folder, "..", "pictures");
-  return document_of({
-    templates: names_in(templates, ".md").map((name) => {
+  return documentOf({
+    templates: namesIn(templates, ".md").map((name) => {
       const file = join(templates, name);
       return { file, text: read(file, "a template") };
     }),
     experiments: { file: experiments, text: read(experiments, "results of broadside experiment --json") },
     comparison: { file: comparison, text: read(comparison, "results of broadside compare --json") },
-    pictures: existsSync(pictures) ? names_in(pictures, ".svg") : [],
+    pictures: existsSync(pictures) ? namesIn(pictures, ".svg") : [],
   });
 }
 
@@ -90,7 +90,7 @@ export function run(words: readonly string[], print: Print): number {
     return 2;
   }
   try {
-    const document = document_from(experiments, comparison, templates, folder);
+    const document = documentFrom(experiments, comparison, templates, folder);
     const different = differences(document, folder);
     if (check && different.length > 0) {
       print.error(`${folder} is not what make paper writes: ${listed(different)}; expected no difference\n`);

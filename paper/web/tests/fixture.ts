@@ -3,18 +3,18 @@ import { existsSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { cwd } from "node:process";
 
-import type { Comparison, Experiments, Measurement } from "../charts/data.ts";
-import type { OldComparison } from "../charts/old_results.ts";
-import { inRounds } from "./fixture.ts";
+import type { Comparison, Experiments, Measurement } from "../../../web/charts/data.ts";
+import type { OldComparison } from "../../../web/charts/old_results.ts";
+import { inRounds } from "../../../web/tests/fixture.ts";
 
-function folder_with(path: string, from: string): string {
+function folderWith(path: string, from: string): string {
   if (existsSync(join(from, path))) return from;
   if (dirname(from) === from) throw new Error(`no folder above ${cwd()} has ${path}`);
-  return folder_with(path, dirname(from));
+  return folderWith(path, dirname(from));
 }
 
 /** The project's folder; tests run in it or below. */
-export const project = folder_with("paper/templates", cwd());
+export const project = folderWith("paper/templates", cwd());
 
 const machine = { cpu: "A CPU", cores: 2, memory_bytes: 4e9, os: "An OS" };
 const build = { version: "0.1.0", revision: "abc", compiler: "GNU 12", type: "Release", flags: "-O3" };

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { wrapped } from "../paper/wrap.ts";
+import { wrapped } from "../wrap.ts";
 
 test("paragraphs are wrapped, whatever their lines were", () => {
   assert.equal(wrapped("one two\nthree four five", 10), "one two\nthree four\nfive");

@@ -9,7 +9,7 @@ export class Numbering {
   constructor(readonly what: string) {}
 
   /** Ends a pass: what was numbered in it can be referred to in the next one. */
-  end_pass(): void {
+  endPass(): void {
     this.known = this.order;
     this.order = [];
   }
@@ -21,12 +21,12 @@ export class Numbering {
   }
 
   /** The numbers of those that stand in the paper, of `names`; none in the first pass. */
-  numbers_of(names: readonly string[]): number[] {
+  numbersOf(names: readonly string[]): number[] {
     return this.known.flatMap((name, i) => (names.includes(name) ? [i + 1] : []));
   }
 
   /** The number of one; 0 in the first pass. */
-  number_of(name: string): number {
+  numberOf(name: string): number {
     if (this.known.length > 0 && !this.known.includes(name))
       throw new Problem(`no ${this.what} '${name}'; there are ${listed([...this.known].sort())}`);
     return this.known.indexOf(name) + 1;

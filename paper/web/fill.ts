@@ -50,7 +50,7 @@ export function walk(node: Node | undefined, visit: (node: Node) => void): void 
   walk(parts.inverse, visit);
 }
 
-function source_of(path: hbs.AST.PathExpression): string {
+function sourceOf(path: hbs.AST.PathExpression): string {
   return path.original;
 }
 
@@ -65,8 +65,8 @@ class Checker {
   }
 
   /** Refuses a path that leads nowhere. */
-  check_path(path: hbs.AST.PathExpression): void {
-    const name = source_of(path);
+  checkPath(path: hbs.AST.PathExpression): void {
+    const name = sourceOf(path);
     let value: unknown = this.names.data;
     let where = "";
     for (const part of path.parts) {
@@ -83,8 +83,8 @@ class Checker {
       this.refuse(path, `{{${name}}}: a group of names; expected one of ${listed(Object.keys(value as object))}`);
   }
 
-  check_call(call: Call): void {
-    const name = source_of(call.path);
+  checkCall(call: Call): void {
+    const name = sourceOf(call.path);
     if (call.hash && call.hash.pairs.length > 0)
       this.refuse(call, `{{${name}}}: words with '='; expected texts in quotes only`);
     if (!(name in this.names.helpers) && !blocks.includes(name)) {
@@ -93,12 +93,12 @@ class Checker {
     }
   }
 
-  check_parameter(node: Node): void {
-    if (node.type === "SubExpression") this.check_call(node as Call);
-    else if (node.type === "PathExpression") this.check_path(node as hbs.AST.PathExpression);
+  checkParameter(node: Node): void {
+    if (node.type === "SubExpression") this.checkCall(node as Call);
+    else if (node.type === "PathExpression") this.checkPath(node as hbs.AST.PathExpression);
     else if (node.type !== "StringLiteral")
       this.refuse(node, `'${(node as hbs.AST.StringLiteral).original}'; expected a text in quotes or a name`);
-    for (const parameter of (node as Partial<Call>).params ?? []) this.check_parameter(parameter);
+    for (const parameter of (node as Partial<Call>).params ?? []) this.checkParameter(parameter);
   }
 
   check(node: Node): void {
@@ -110,10 +110,10 @@ class Checker {
       case "MustacheStatement":
       case "BlockStatement": {
         const call = node as Call;
-        const called = call.params.length > 0 || source_of(call.path) in this.names.helpers;
-        if (called || node.type === "BlockStatement") this.check_call(call);
-        else this.check_path(call.path);
-        for (const parameter of call.params) this.check_parameter(parameter);
+        const called = call.params.length > 0 || sourceOf(call.path) in this.names.helpers;
+        if (called || node.type === "BlockStatement") this.checkCall(call);
+        else this.checkPath(call.path);
+        for (const parameter of call.params) this.checkParameter(parameter);
         return;
       }
       case "SubExpression":

@@ -13,7 +13,7 @@ function prefixes(line: string): [string, string] {
   return [item, " ".repeat(item.length)];
 }
 
-function wrap_paragraph(lines: readonly string[], width: number): string[] {
+function wrapParagraph(lines: readonly string[], width: number): string[] {
   const [first, other] = prefixes(lines[0]!);
   const words = lines.flatMap((line, i) => {
     const quoted = first === "> " && line.startsWith("> ");
@@ -44,23 +44,23 @@ export function wrapped(markdown: string, width = 120): string {
   const result: string[] = [];
   let paragraph: string[] = [];
   let code = false;
-  const end_paragraph = () => {
-    if (paragraph.length > 0) result.push(...wrap_paragraph(paragraph, width));
+  const endParagraph = () => {
+    if (paragraph.length > 0) result.push(...wrapParagraph(paragraph, width));
     paragraph = [];
   };
   for (const line of markdown.split("\n")) {
     if (line.startsWith("```")) {
-      end_paragraph();
+      endParagraph();
       code = !code;
       result.push(line);
     } else if (code || line.trim() === "" || whole.test(line)) {
-      end_paragraph();
+      endParagraph();
       result.push(line);
     } else {
-      if (/^\s*(?:[-*]|\d+\.) /.test(line)) end_paragraph();
+      if (/^\s*(?:[-*]|\d+\.) /.test(line)) endParagraph();
       paragraph.push(line);
     }
   }
-  end_paragraph();
+  endParagraph();
   return result.join("\n");
 }

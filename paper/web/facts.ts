@@ -1,7 +1,7 @@
 // What the comparison with other libraries comes to.
-import { cases_of, lead_of, ranking, standings, type Case, type Standing, type Timed } from "../charts/comparison.ts";
-import type { Comparison, Ratio } from "../charts/data.ts";
-import { isFaster, isLevel } from "../charts/ratios.ts";
+import { casesOf, leadOf, ranking, standings, type Case, type Standing, type Timed } from "../../web/charts/comparison.ts";
+import type { Comparison, Ratio } from "../../web/charts/data.ts";
+import { isFaster, isLevel } from "../../web/charts/ratios.ts";
 import { Problem } from "./problem.ts";
 
 /** A case that both ours and a peer have a time in. */
@@ -34,15 +34,15 @@ export interface Facts {
   skipped: number;
 }
 
-function choice_in(of: Case): Choice[] {
+function choiceIn(of: Case): Choice[] {
   const ratio = ranking(of).find((measurement) => measurement.algorithm === "auto")?.ratio_to_best_own;
   return ratio ? [{ of, ratio }] : [];
 }
 
 /** The leads of some cases. */
-export function leads_of(cases: readonly Case[]): Lead[] {
+export function leadsOf(cases: readonly Case[]): Lead[] {
   return cases.flatMap((of) => {
-    const lead = lead_of(of);
+    const lead = leadOf(of);
     return lead ? [{ of, ...lead }] : [];
   });
 }
@@ -57,18 +57,18 @@ export function greatest<Thing extends { ratio: Ratio }>(all: readonly Thing[]):
 }
 
 /** Throws Problem if there is nothing to compare, or nothing that moves. */
-export function facts_of(comparison: Comparison, file: string): Facts {
+export function factsOf(comparison: Comparison, file: string): Facts {
   const { measurements } = comparison;
-  const cases = cases_of(measurements).filter((of) => ranking(of).length > 0);
+  const cases = casesOf(measurements).filter((of) => ranking(of).length > 0);
   const still = cases.filter((of) => of.mode === "find");
   const moving = cases.filter((of) => of.mode === "track");
   for (const [group, what] of [[still, "rest"], [moving, "move"]] as const) {
-    if (leads_of(group).length === 0)
+    if (leadsOf(group).length === 0)
       throw new Problem(`${file}: no case of boxes that ${what} with times of ours and of a peer; expected at least one`);
   }
-  const choices = cases.flatMap(choice_in);
+  const choices = cases.flatMap(choiceIn);
   if (choices.length === 0) throw new Problem(`${file}: no case with a time of auto; expected at least one`);
-  const leads = leads_of(cases);
+  const leads = leadsOf(cases);
   return {
     cases,
     still,
