@@ -24,7 +24,7 @@
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/report/phrases.hpp"
+#include "lab/report/table.hpp"
 
 namespace broadside::bench {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "bench/guarded.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/measure/allocation.hpp"
 #include "lab/measure/benchmark.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/scenes/scene.hpp"

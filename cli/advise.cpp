@@ -22,7 +22,7 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/formats/write_file.hpp"
-#include "lab/measure/processor_share.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::cli {

@@ -25,7 +25,6 @@
 #include "lab/numbers.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/report/phrases.hpp"
 #include "lab/report/scene_drawings.hpp"
 #include "lab/report/table.hpp"
 

@@ -20,7 +20,6 @@
 #include "lab/catalogue.hpp"
 #include "lab/formats/write_file.hpp"
 #include "lab/report/drawing.hpp"
-#include "lab/report/drawing_svg.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {

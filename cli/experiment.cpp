@@ -15,7 +15,7 @@
 #include "cli/verbs.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/input.hpp"
-#include "lab/measure/processor_share.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/scene_drawings.hpp"
 #include "paper/experiments/results.hpp"

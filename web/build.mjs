@@ -64,7 +64,7 @@ function write(path, text) {
 async function buildPage(path) {
   const [before, after] = await page();
   write(path, `// Written by web/build.mjs.
-#include "lab/report/page_template.hpp"
+#include "lab/report/page.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -15,7 +15,7 @@
 #include "bench/guarded.hpp"
 #include "bench/worst/hunt.hpp"
 #include "bench/worst/report.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/worst/input.hpp"

@@ -5,7 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "lab/formats/format.hpp"
+#include "lab/numbers.hpp"
 
 namespace broadside::lab {
 
@@ -36,10 +39,16 @@ class Quarantine {
   }
 
   /// How many boxes of a file were left out; empty for none.
-  std::string warning(std::string_view file) const;
+  std::string warning(std::string_view file) const {
+    if (count_ == 0) return {};
+    return fmt::format("{}: left out {}{}", file, counted(count_, "invalid box", "invalid boxes"),
+                       count_ > most_told ? fmt::format("; only the first {} are listed", most_told) : "");
+  }
 
  private:
-  void add(std::string_view why);
+  void add(std::string_view why) {
+    if (count_++ < most_told) say_(why);
+  }
 
   std::function<void(std::string_view)> say_;
   std::uint64_t count_ = 0;

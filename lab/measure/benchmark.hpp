@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "lab/catalogue.hpp"
-#include "lab/measure/allocation.hpp"
-#include "lab/measure/estimate.hpp"
 #include "lab/measure/measurement.hpp"
+#include "lab/measure/memory.hpp"
+#include "lab/measure/rounds.hpp"
 
 namespace broadside::lab {
 

@@ -8,10 +8,9 @@
 
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/allocation.hpp"
 #include "lab/measure/cases.hpp"
 #include "lab/measure/floor.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 

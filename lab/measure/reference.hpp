@@ -66,4 +66,9 @@ std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;
 /// ascending.
 std::vector<std::size_t> sample_of(std::size_t size, std::size_t count);
 
+/// Throws std::runtime_error where boxes have more than some 250,000,000 pairs (2 GB): about how many there
+/// are shows in a sample.
+template <int D, typename Real = float>
+void check_pair_count(BoxSpan<D, Real> boxes);
+
 }  // namespace broadside::lab

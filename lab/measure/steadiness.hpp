@@ -1,7 +1,9 @@
-// Whether measured times are to be trusted: how far the samples of a measurement lie apart.
+// Whether measured times can be trusted: whether others had the processor, and how far samples lie apart.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +12,24 @@
 #include "lab/measure/measurement.hpp"
 
 namespace broadside::lab {
+
+/// How much of the time since it was made this process has had a processor: 1 for one thread that always
+/// runs, more where several do. Waiting counts as not having one.
+class ProcessorShare {
+ public:
+  double value() const;
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::clock_t used_ = std::clock();
+};
+
+/// Whether others had the processor for more than a tenth of the time, in a run of one thread.
+bool is_busy(double share);
+
+/// A line that says so where a run of one thread had a processor for less than nine tenths of the time; else
+/// empty.
+std::string busy_hint(double share);
 
 /// How many times the least sample the median one is, of samples that come in turns: every `period`-th is of
 /// the same boxes. The median over all boxes that had their turn twice, so that a few stalls do not count;

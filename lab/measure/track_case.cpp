@@ -10,7 +10,7 @@
 
 #include "lab/measure/cases.hpp"
 #include "lab/measure/expected_events.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/measure/samples.hpp"
 

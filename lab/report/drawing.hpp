@@ -75,4 +75,9 @@ Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of, std::
 /// [{"algorithm", "caption", "levels": [...]}]}]}: all boxes in one path, a sweep's line a level of its own.
 nlohmann::json json_of(const Drawing& drawing);
 
+/// One SVG: a panel for each view and layer, side by side and in rows; only the boxes where there is no
+/// layer. A title and a caption over each panel, a title and a description for screen readers. Light, on a
+/// background of its own, so that it can be read on dark pages too.
+std::string svg_of(const Drawing& drawing);
+
 }  // namespace broadside::lab

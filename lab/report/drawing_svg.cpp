@@ -1,6 +1,4 @@
 // A drawing as a picture of its own: SVG.
-#include "lab/report/drawing_svg.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "lab/numbers.hpp"
+#include "lab/report/drawing.hpp"
 
 namespace broadside::lab {
 namespace {

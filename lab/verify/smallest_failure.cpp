@@ -1,6 +1,4 @@
 // The smallest history of boxes on which an algorithm fails.
-#include "lab/verify/smallest_failure.hpp"
-
 #include <exception>
 #include <new>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/verify/verify.hpp"
+#include "lab/verify/verify_history.hpp"
 
 namespace broadside::lab {
 namespace {

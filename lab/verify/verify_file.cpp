@@ -10,7 +10,6 @@
 
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/verify/smallest_failure.hpp"
 #include "lab/verify/verify_history.hpp"
 
 namespace broadside::lab {

@@ -11,9 +11,8 @@
 
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/estimate.hpp"
 #include "lab/measure/reference.hpp"
-#include "lab/verify/smallest_failure.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/verify/verify.hpp"
 
 namespace broadside::lab {

@@ -1,14 +1,36 @@
-// The law on a history of boxes: every algorithm in every frame.
+// The law on a history of boxes: every algorithm in every frame, and the smallest history on which one fails.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "lab/catalogue.hpp"
+#include "lab/scenes/scene.hpp"
 #include "lab/verify/verify_file.hpp"
 
 namespace broadside::lab {
+
+/// Runs something of an algorithm's that says what is wrong with what it did: that, or what it threw. Lets
+/// Stopped and std::bad_alloc through, which are not the algorithm's.
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run);
+
+/// What is wrong with an algorithm on a history; empty if nothing is. `known` is where the expected pairs of
+/// many boxes come from.
+template <int D, typename Real>
+std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known);
+
+/// The smallest history found, in about the budget, on which the entry fails, given one whose frame
+/// `frame` is the first on which it does: of a single frame if it fails there from nothing. Empty if it fails
+/// on none.
+template <int D, typename Real>
+std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history, std::size_t frame,
+                                                 const Entry& entry, std::span<const Algorithm> known,
+                                                 const VerifyOptions& options);
 
 /// What came of a history.
 struct HistoryVerdicts {

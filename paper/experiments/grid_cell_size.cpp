@@ -10,8 +10,8 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
-#include "paper/experiments/boxes.hpp"
 #include "paper/experiments/descriptions.hpp"
+#include "paper/experiments/laboratory.hpp"
 
 namespace broadside::lab {
 namespace {

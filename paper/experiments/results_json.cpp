@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/formats/format.hpp"
-#include "lab/measure/processor_share.hpp"
-#include "lab/report/machine_json.hpp"
+#include "lab/measure/steadiness.hpp"
+#include "lab/report/machine.hpp"
 #include "paper/experiments/results.hpp"
 
 namespace broadside::lab {

@@ -131,8 +131,7 @@ std::vector<Cell> row_of(const Map& map, std::size_t boxes, double value, const 
 }  // namespace
 
 const std::vector<std::string>& single_algorithms() {
-  static const std::vector<std::string> names = {"brute_force", "grid", "sweep_and_prune",
-                                                 "quadtree",    "bvh",  "hierarchical_grid"};
+  static const std::vector<std::string> names = {"brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"};
   return names;
 }
 

@@ -14,7 +14,7 @@
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/grid_listing.hpp"
-#include "paper/listings/grid_tracker.hpp"
+#include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {

@@ -34,7 +34,6 @@ const families: Record<string, readonly [string, string]> = {
   auto: ["#1d2430", "#f4f6f9"],
   brute_force: ["#7b8494", "#99a2b0"],
   grid: ["#e69f00", "#f0b43c"],
-  hierarchical_grid: ["#d55e00", "#f0803c"],
   sweep_and_prune: ["#0072b2", "#4aa8e8"],
   quadtree: ["#009e73", "#2fc49a"],
   bvh: ["#b5569a", "#e08fbe"],

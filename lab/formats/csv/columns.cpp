@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/csv/names.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

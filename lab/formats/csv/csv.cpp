@@ -10,7 +10,6 @@
 
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/map/geometry_text.hpp"
-#include "lab/formats/number_fault.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

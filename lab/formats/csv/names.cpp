@@ -1,5 +1,4 @@
 // Names that people give to a table's columns.
-#include "lab/formats/csv/names.hpp"
 
 #include <array>
 #include <cctype>

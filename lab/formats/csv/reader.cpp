@@ -13,7 +13,6 @@
 
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/csv/rows.hpp"
-#include "lab/formats/csv/tracks.hpp"
 
 namespace broadside::lab::readers {
 namespace {

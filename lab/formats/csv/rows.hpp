@@ -18,7 +18,6 @@
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/map/geometry_text.hpp"
-#include "lab/formats/number_fault.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

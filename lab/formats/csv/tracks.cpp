@@ -1,6 +1,4 @@
 // Tables that list in each frame the boxes that are there.
-#include "lab/formats/csv/tracks.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -11,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/formats/csv/csv.hpp"
 #include "lab/formats/csv/rows.hpp"
 
 namespace broadside::lab::readers {

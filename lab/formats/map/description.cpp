@@ -1,11 +1,11 @@
 // The description of maps, and how they are told from other files.
-#include "lab/formats/map/format.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "lab/formats/descriptions.hpp"
 
 namespace broadside::lab::readers {
 namespace {

@@ -1,5 +1,5 @@
 // Why a text is no number: the ways in which other programs and countries write one.
-#include "lab/formats/number_fault.hpp"
+#include "lab/formats/text.hpp"
 
 #include <algorithm>
 #include <array>

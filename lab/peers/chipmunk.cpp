@@ -1,12 +1,17 @@
 // Chipmunk's two spatial indexes: a tree of bounding boxes and a spatial hash.
-#include "lab/peers/chipmunk_index.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <chipmunk/chipmunk.h>
+
+#include "broadside/algorithm.hpp"
 
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peer_tracker.hpp"
@@ -14,8 +19,29 @@
 #include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
-
 namespace {
+
+struct FreeIndex {
+  void operator()(cpSpatialIndex* spatial_index) const { cpSpatialIndexFree(spatial_index); }
+};
+using ChipmunkIndex = std::unique_ptr<cpSpatialIndex, FreeIndex>;
+
+/// An object in an index. It must not move in memory while it is there.
+struct ChipmunkObject {
+  cpBB bounds;
+  cpVect velocity;  ///< a second
+  BoxId id;
+  std::uint32_t moved = 0;  ///< the frame in which it moved last
+  bool awake = false;       ///< whether it is in the index for what moves
+  bool listed = false;      ///< whether it is in the list of those awake
+};
+
+/// What a cpSpatialIndexBBFunc must do for a ChipmunkObject.
+cpBB bounds_of(void* object) { return static_cast<ChipmunkObject*>(object)->bounds; }
+
+/// Makes an empty index that suits `boxes`; for objects that move or for one search. Where there is an index
+/// of those that rest, which must outlive it, what is in it is searched with those in that one, too.
+using MakeIndex = ChipmunkIndex (*)(std::span<const Box2> boxes, bool moving, cpSpatialIndex* resting);
 
 ChipmunkObject object_of(const Box2& box, BoxId id) {
   return {.bounds = cpBBNew(box.min[0], box.min[1], box.max[0], box.max[1]), .velocity = cpvzero, .id = id};
@@ -182,10 +208,8 @@ class ChipmunkTracker final : public PeerTracker<2> {
   bool starts_ = true;  // there was nothing before: all that is there is in resting_
 };
 
-}  // namespace
-
-cpBB bounds_of(void* object) { return static_cast<ChipmunkObject*>(object)->bounds; }
-
+/// The description of an index that `Make` makes: a finder that fills a new one in each call, and a tracker
+/// that keeps one.
 Algorithm chipmunk_index(MakeIndex make) {
   return {
       .name = {},
@@ -199,8 +223,6 @@ Algorithm chipmunk_index(MakeIndex make) {
       .own_allocator = true,
   };
 }
-
-namespace {
 
 ChipmunkIndex make_tree(std::span<const Box2>, bool moving, cpSpatialIndex* resting) {
   ChipmunkIndex tree(cpBBTreeNew(bounds_of, resting));

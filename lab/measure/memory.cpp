@@ -1,14 +1,16 @@
 // The global operator new and delete, replaced by ones that can count. Those for arrays and those that do not
 // throw end in the ones replaced here, as the standard says. BROADSIDE_COUNTS_ALLOCATIONS comes from the
 // build: 0 where malloc cannot tell a block's size, or where a sanitizer has its own operator new.
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
-#if BROADSIDE_COUNTS_ALLOCATIONS
+#if BROADSIDE_COUNTS_ALLOCATIONS || defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
@@ -66,6 +68,26 @@ std::optional<Allocation> AllocationMeter::read() const noexcept {
 #else
   return std::nullopt;
 #endif
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  // Nothing goes back to the system at the heap's end, and large blocks come from the heap as well, where
+  // they are used again.
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_MMAP_MAX, 0);
+#endif
+}
+
+CacheState::CacheState() : memory_((std::size_t{4} << 20) / sizeof(std::uint64_t), 1) {}
+
+void CacheState::settle(std::span<const std::byte> input) {
+  constexpr std::size_t line = 64;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < memory_.size(); i += line / sizeof(std::uint64_t)) sum += ++memory_[i];
+  for (std::size_t i = 0; i < input.size(); i += line) sum += std::to_integer<std::uint64_t>(input[i]);
+  // Kept, so that no compiler leaves the reading out.
+  memory_[1] = sum;
 }
 
 }  // namespace broadside::lab
