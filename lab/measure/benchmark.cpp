@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -28,20 +30,24 @@ Measurement measurement_of(const Entry& entry) {
   return measurement;
 }
 
-std::string fault_of(const Measurement& measurement, const std::function<std::string()>& run) {
+bool attempt(Measurement& measurement, const std::function<std::string()>& step) {
+  std::string fault;
+  Outcome outcome = Outcome::failed;
   try {
-    return run();
+    fault = step();
   } catch (const Stopped&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    fault = "out of memory; expected fewer boxes or pairs";
+    outcome = Outcome::skipped;
   } catch (const std::exception& thrown) {
-    return fmt::format("{} threw: {}", measurement.algorithm, thrown.what());
+    fault = fmt::format("{} threw: {}", measurement.algorithm, thrown.what());
   }
-}
-
-void fail(Measurement& measurement, const std::string& fault) {
-  measurement.outcome = Outcome::failed;
+  if (fault.empty()) return true;
+  measurement.outcome = outcome;
   measurement.reason = fault;
   measurement.samples_ms.clear();
+  return false;
 }
 
 void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls, double budget) {

@@ -58,12 +58,10 @@ class Stopwatch {
 /// A measurement with the algorithm's name in it and nothing measured.
 Measurement measurement_of(const Entry& entry);
 
-/// Runs `run`, which calls the algorithm and returns what is wrong with its result: returns that, or what the
-/// algorithm threw; empty if nothing is wrong. Lets Stopped through.
-std::string fault_of(const Measurement& measurement, const std::function<std::string()>& run);
-
-/// Marks the algorithm as wrong. It keeps no time.
-void fail(Measurement& measurement, const std::string& fault);
+/// Runs a step of a measurement, which returns what is wrong with what the algorithm did. If that, or what
+/// the algorithm threw, is something, the measurement has failed; if memory ran out, it is skipped. It then
+/// has a reason and no times. Returns whether all is well. Lets Stopped through.
+bool attempt(Measurement& measurement, const std::function<std::string()>& step);
 
 /// Marks the algorithm as too slow for `budget` seconds, in which it would have to make `calls` calls. The
 /// estimate is of all of them.

@@ -91,14 +91,13 @@ class FindCase {
       constexpr double is_short_ms = 50;
       return (first < is_short_ms ? std::min(first, call(*finder, some)) : first) / 1e3;
     };
-    const std::string fault = fault_of(measurement, [&]() -> std::string {
+    attempt(measurement, [&]() -> std::string {
       benchmark_.watch.at(measurement.algorithm + ", making the reference");
       touch(expectation(*entry.algorithm, 0).count);
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
         skip(measurement, *estimate, 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(measurement, fault);
     return measurement.reason.empty();
   }
 
@@ -115,18 +114,18 @@ class FindCase {
     benchmark_.watch.at(measurement.algorithm + ", checking");
     measurement.verified_by = expectation(*participant.entry->algorithm, 0).reference.text();
     participant.compared.resize(inputs_.size());
-    settle(participant, fault_of(measurement, [&] {
-             const AllocationMeter meter;
-             participant.finder =
-                 make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
-             call(*participant.finder, boxes_of(0));
-             count_memory(measurement, *participant.entry->algorithm, meter.read());
-             measurement.pairs = pairs_.size();
-             measurement.pair_hash = hash_of(pairs_);
-             measurement.statistics = participant.finder->statistics();
-             measurement.explanation = participant.finder->explanation();
-             return check(participant, 0);
-           }));
+    measurement.outcome = Outcome::verified;
+    attempt(measurement, [&] {
+      const AllocationMeter meter;
+      participant.finder = make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+      call(*participant.finder, boxes_of(0));
+      count_memory(measurement, *participant.entry->algorithm, meter.read());
+      measurement.pairs = pairs_.size();
+      measurement.pair_hash = hash_of(pairs_);
+      measurement.statistics = participant.finder->statistics();
+      measurement.explanation = participant.finder->explanation();
+      return check(participant, 0);
+    });
   }
 
   /// One timed call of each participant that takes part in this round, all on the same boxes; false where
@@ -161,10 +160,10 @@ class FindCase {
   void sample(FindParticipant<D, Real>& participant, std::size_t input, std::size_t round) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
-    settle(participant, fault_of(measurement, [&] {
-             measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
-             return check(participant, input);
-           }));
+    attempt(measurement, [&] {
+      measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
+      return check(participant, input);
+    });
   }
 
   /// Milliseconds for the floor's work, with as many pairs as a search must give.
@@ -184,11 +183,6 @@ class FindCase {
     const Stopwatch watch;
     finder.find(boxes, collector);
     return watch.milliseconds();
-  }
-
-  void settle(FindParticipant<D, Real>& participant, const std::string& fault) {
-    participant.measurement->outcome = Outcome::verified;
-    if (!fault.empty()) fail(*participant.measurement, fault);
   }
 
   /// What is wrong with pairs_; empty if nothing is.

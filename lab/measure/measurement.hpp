@@ -34,7 +34,7 @@ struct Case {
 enum class Outcome {
   verified,  ///< it was timed, and every pair or event of every timed call was right
   failed,    ///< it broke the law; its times are of no interest and not kept
-  skipped    ///< it was not let in
+  skipped    ///< it did not take part, or ran out of memory
 };
 
 /// Where a number lies, with a confidence of 95 %.
@@ -51,9 +51,6 @@ struct PairedRatio {
   double median;                     ///< over the seeds, of each seed's median ratio of its rounds
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
-
-  /// Whether the two cannot be told apart.
-  bool is_level() const noexcept { return interval && interval->includes(1); }
 };
 
 /// One algorithm in one case. What was counted (pairs, hash, statistics, bytes) is of the first seed.

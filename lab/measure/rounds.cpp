@@ -49,7 +49,9 @@ bool has_time(const Effort& effort, std::size_t round, double milliseconds) {
 
 bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit) {
   const std::size_t rounds = measurement.samples_ms.size() / measurement.samples_a_round;
-  if (measurement.outcome == Outcome::failed || rounds >= std::min(limit, effort.most_rounds)) return false;
+  if (measurement.outcome == Outcome::failed || !measurement.reason.empty() ||
+      rounds >= std::min(limit, effort.most_rounds))
+    return false;
   return limit != no_limit || rounds < effort.least_rounds ||
          sum_of(measurement.samples_ms) < effort.share_seconds * 1e3;
 }

@@ -26,8 +26,8 @@ bool has_time(const Effort& effort, std::size_t round, double milliseconds);
 /// No limit for has_another_round().
 inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
-/// Whether the algorithm takes part in another round: it has not failed, and the effort or, where there is
-/// one, its limit asks for more.
+/// Whether the algorithm takes part in another round: it has neither failed nor run out of memory, and the
+/// effort or, where there is one, its limit asks for more.
 bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit);
 
 /// After the first round: the limit for one of the algorithms that took part in it. Readers need the ratio of

@@ -82,13 +82,12 @@ class TrackCase {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       return seconds_of(entry, thinned(history, count, 2));
     };
-    const std::string fault = fault_of(measurement, [&]() -> std::string {
+    attempt(measurement, [&]() -> std::string {
       // A history cannot be left half way, so that its frames share the budget.
       if (const auto estimate = estimate_above(budget, case_.boxes, history_seconds))
         skip(measurement, *estimate, case_.frames + 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(measurement, fault);
     return measurement.reason.empty();
   }
 
@@ -185,11 +184,8 @@ class TrackCase {
         TrackParticipant<D, Real>& participant = participants_[turn];
         if (!participant.plays) continue;
         benchmark_.watch.at(fmt::format("{}, frame {}", participant.measurement->algorithm, frame));
-        const std::string fault =
-            fault_of(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
-        if (fault.empty()) continue;
-        fail(*participant.measurement, fault);
-        participant.plays = false;
+        participant.plays =
+            attempt(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
       }
     }
   }

@@ -210,10 +210,10 @@ std::string moving_rows(const CaseResult& result) {
 
 std::string interval_text(const std::optional<Interval>& interval) {
   if (!interval) return "-";
-  if (interval->includes(1)) return "level";
-  const std::string low = ratio_text(interval->low);
-  const std::string high = ratio_text(interval->high);
-  return low == high && low == ratio_text(1) ? "nearly level" : low + " to " + high;
+  // A wide interval that holds 1 does not say that the two are level, only that nothing is known.
+  constexpr double wide = 1.5;
+  if (interval->includes(1) && interval->high <= wide && interval->low >= 1 / wide) return "level";
+  return ratio_text(interval->low) + " to " + ratio_text(interval->high);
 }
 
 std::string ratio_text(double ratio, const std::optional<Interval>& interval) {

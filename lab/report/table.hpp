@@ -9,8 +9,8 @@
 
 namespace broadside::lab {
 
-/// The interval's ends to two significant digits: "17 to 19"; "level" where it includes 1, "nearly level"
-/// where both ends are 1.0 to two digits, and "-" where there is none.
+/// The interval's ends to two significant digits: "17 to 19"; "level" where it holds 1 and nothing further
+/// from 1 than a factor of 1.5; "-" where there is none.
 std::string interval_text(const std::optional<Interval>& interval);
 
 /// A ratio and its interval: "18 (17 to 19)", "1.0 (level)", "5,100".

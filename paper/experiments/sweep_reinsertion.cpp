@@ -149,7 +149,7 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "A search takes {:.1f} comparisons among {} boxes, as lg n does; but a box that jumps anywhere makes "
-      "{} others give way, and its reinsertion takes {} times as long as lg n lets expect. The time of one "
+      "{} others give way, and its reinsertion takes {} times as long as lg n predicts. The time of one "
       "such reinsertion grows as n^{:.2f}, of boxes that go a fifth of their size as n^{:.2f}. By a heap, a "
       "frame in which one of {} boxes jumps takes {} times as long as by binary search, and one in which {} "
       "jump {:.2f} times as long as if all are sorted. Binary search mends the order faster than a sort of "

@@ -25,7 +25,11 @@ std::string listed(const Names& names) {
 double read_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
+  if (end != text.data() + text.size()) return std::nan("");
+  // Out of range: too large, unless the exponent is negative.
+  if (error == std::errc::result_out_of_range)
+    return text.find("e-") == text.npos ? std::numeric_limits<double>::infinity() : 0;
+  return error == std::errc() ? value : std::nan("");
 }
 
 /// The shortest text that reads back to `value`.
