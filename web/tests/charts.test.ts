@@ -1,5 +1,7 @@
 // What the charts make of tables and comparisons.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 
 import {
@@ -10,6 +12,7 @@ import {
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
 import { logTicks } from "../charts/frame.ts";
 import { svgOf } from "../charts/render.ts";
+import { project } from "../../paper/web/tests/fixture.ts";
 import { comparison, oldComparison } from "./fixture.ts";
 
 const place: Place = { theme: light, width: 640 };
@@ -139,6 +142,15 @@ test("results of the schema before are read with ratios of their medians, which 
   assert.equal(seriesOf(drawRatios(of!, place)).length, 1);
 });
 
+test("results that earlier versions wrote are read, and show algorithms by the names that they had", () => {
+  for (const [name, algorithm] of [["results_v1_hierarchical_grid", "hierarchical_grid"], ["results_v2", "brute_force"]]) {
+    const results = inTodaysShape(JSON.parse(readFileSync(join(project, `tests/fixtures/${name}.json`), "utf8")));
+    const [only] = casesOf(results.measurements);
+    assert.equal(only?.dimension, 2);
+    assert.match(svgOf(drawRatios(only!, place), { width: 640 }), new RegExp(`>${algorithm}<`));
+  }
+});
+
 test("a ratio's interval is a whisker of its bar, and told in words", () => {
   const drawn = drawRatios(cases[0]!, place);
   const [bars, whiskers] = seriesOf(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
@@ -146,7 +158,7 @@ test("a ratio's interval is a whisker of its bar, and told in words", () => {
   // Of the fastest, the ratio is to itself.
   assert.deepEqual(bars?.data.map(({ label }) => label === undefined), [true, false, false, false]);
   assert.match(drawn.description, / bvh: 1\.0\. grid: 2\.0 \(1\.9 to 2\.1\)\. /);
-  assert.match(drawRatios(cases[2]!, place).description, / bvh: 1\.2 \(level\)\. /);
+  assert.match(drawRatios(cases[2]!, place).description, / bvh: 1\.2 \(0\.92 to 1\.6\)\. /);
 });
 
 test("an algorithm's threads are told once", () => {
