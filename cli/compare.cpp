@@ -213,7 +213,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   add_examples(
       *verb,
       {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
-       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, a tenth of which moves"}});
+       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, while a tenth of them moves"}});
   return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 

@@ -45,7 +45,7 @@ struct DrawArguments {
   std::string frame;
 };
 
-/// Of what is asked for by its own name, each; of a group, those that lay something over boxes.
+/// Every algorithm that is asked for by name; of a group, the ones that lay something over boxes.
 std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::string& list, int dimension) {
   std::vector<lab::Entry> chosen;
   if (list.empty()) return chosen;
@@ -143,7 +143,7 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
                  "(standard: only the boxes)");
   verb->add_option(
       "-n", arguments->boxes,
-      fmt::format("Number of boxes (standard: {}); of a scene or file of more, so many are taken "
+      fmt::format("Number of boxes (standard: {}); of a scene or file of more, this many are taken "
                   "and made larger, as dense as all",
                   drawn_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)")

@@ -31,7 +31,7 @@ struct ExperimentArguments {
   ResultFiles files;
 };
 
-/// Those that were named, each once, by number; all if none was.
+/// The named experiments, each once, by number; all if none was named.
 std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names) {
   std::vector<const lab::Experiment*> all;
   if (names.empty()) {

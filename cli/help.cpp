@@ -31,7 +31,7 @@ std::size_t terminal_width() {
   return width == 0 ? standard_width : std::clamp(width, least_width, most_width);
 }
 
-/// The words of `text` in lines of at most `width`, the first of which begins in column `column`, the others
+/// The words of `text` in lines of at most `width`; the first begins in column `column`, the others
 /// in column `indent`.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
   std::string lines;

@@ -158,7 +158,7 @@ class Join {
   const PairsArguments& arguments_;
   lab::Entry entry_;
   std::vector<lab::FrameOfFile> sets_;
-  std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
+  std::vector<lab::MeshElements> elements_;  // of each set, where pairs with a shared vertex are left out
   lab::Rounding rounding_;
   double read_ms_ = 0;
   double join_ms_ = 0;

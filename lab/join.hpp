@@ -35,7 +35,7 @@ struct FrameOfFile {
   bool is_computed = false;  ///< whether bounds were computed from a centre and a size
 };
 
-/// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,
+/// Reads one frame, counted from 0. Throws FileError, also if there are fewer. Memory: that of a frame,
 /// where the format is read frame by frame.
 FrameOfFile read_frame(BoxFile file, std::size_t frame);
 

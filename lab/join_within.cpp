@@ -1,4 +1,4 @@
-// Pairs of boxes within a distance: those that overlap once each box is enlarged by half of it, rounded
+// Pairs of boxes within a distance: pairs that overlap once each box is enlarged by half of it, rounded
 // outward, and that then pass a test without rounding.
 #include <algorithm>
 #include <cmath>

@@ -18,7 +18,7 @@ namespace broadside::lab {
 
 enum class PairFormat : std::uint8_t { csv, npy };
 
-/// The format of this name, csv or npy, or, where `name` is empty, that which a path's extension says; CSV
+/// The format of this name, csv or npy, or, where `name` is empty, the one that a path's extension names; CSV
 /// for what is_written_directly() and has none. Throws FileError.
 PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name = {});
 

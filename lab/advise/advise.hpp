@@ -42,7 +42,7 @@ struct Advice {
   Signals signals{};
   Mode mode = Mode::find;
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
-  std::size_t frames = 0;       ///< ... so many after it
+  std::size_t frames = 0;       ///< ... this many after it
   std::optional<double> floor_ms{};
   std::vector<Ranked> ranking{};   ///< finalists first; of them and of the others the fastest first,
                                    ///< those without a time last

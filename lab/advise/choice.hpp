@@ -61,7 +61,7 @@ double undisturbed_mean(std::span<const double> samples, std::size_t inputs);
 /// In which part of the rounds that both took part in `b` took longer than `a`; 0 where there are none.
 double part_of_rounds(const Measurement& a, const Measurement& b);
 
-/// Chooses among those that were verified; empty if none of ours and the paper's was. Of equals the first is
+/// Chooses among the verified; empty if none of ours and the paper's was. Of equals the first is
 /// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that
 /// is among them.
 std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time = true);

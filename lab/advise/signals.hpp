@@ -16,7 +16,7 @@ namespace broadside::lab {
 /// The shares of boxes at which sizes are told.
 inline constexpr std::array<double, 5> size_percentiles = {0.01, 0.25, 0.5, 0.75, 0.99};
 
-/// A box that goes further than so many times its longest side from one frame to the next has jumped.
+/// A box that goes further than this many times its longest side from one frame to the next has jumped.
 inline constexpr double sides_of_a_jump = 8;
 
 /// How boxes move. Fractions are of the boxes that are there; a box moves if it is there in both of two
@@ -33,11 +33,11 @@ struct MotionSignals {
   double removed = 0;             ///< and that go
 };
 
-/// What boxes are like. All but the motion is of the fullest frame: the first of those with the most boxes.
+/// What boxes are like. All but the motion is of the fullest frame: the first with the most boxes.
 struct Signals {
   int dimension = 2;
   Precision precision = Precision::float32;
-  std::size_t boxes = 0;        ///< those that are there
+  std::size_t boxes = 0;        ///< present ones
   std::size_t absent = 0;       ///< places without a box
   std::size_t infinite = 0;     ///< boxes that reach to infinity
   std::size_t points = 0;       ///< boxes without any extent

@@ -62,7 +62,7 @@ struct Format {
   /// of this format.
   std::function<bool(std::string_view bytes, std::string_view extension)> recognises;
 
-  /// Opens an input. Of the options, those that the format has; dimension and precision only where it has a
+  /// Opens an input. Only the options that the format has apply; dimension and precision only where it has a
   /// choice: the caller converts. Throws FileError. Memory for what the file holds, not for what its header
   /// claims.
   std::function<AnyFrameReader(std::unique_ptr<Input>, const ReadOptions&)> open{};
@@ -106,7 +106,7 @@ struct FileContent {
 FileContent read_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The format in which a file is written: that of this name or extension, or, where `name` is empty, that of
-/// the path's extension. Throws FileError naming those that can be written.
+/// the path's extension. Throws FileError naming the formats that can be written.
 const Format& writable_format(const std::filesystem::path& path, std::string_view name = {});
 
 /// Writes a file of frames, or to standard output where the path is "-". The file is whole or not there, and

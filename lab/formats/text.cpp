@@ -48,7 +48,7 @@ bool is_grouped(std::string_view text) {
     if (digits() != 3) return false;
     ++groups;
   }
-  // One group behind a point is a number; the caller asks of those that are none.
+  // One group behind a point is a number, and the caller asks about texts that are not.
   if (groups == 0) return false;
   if (text.empty()) return true;
   const char point = text.front();

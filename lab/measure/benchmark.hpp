@@ -26,7 +26,7 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "the comparison was stopped"; }
 };
 
-/// Who follows a comparison while it runs. Both are called between samples, in the caller's thread.
+/// Watches a comparison while it runs. Both are called between samples, in the caller's thread.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
   std::function<void(std::string_view what)> progress{};  ///< what is going on; empty: nothing is called

@@ -21,7 +21,7 @@ namespace {
 /// one only where these differ.
 constexpr std::size_t most_pairs_kept = 1'000'000;
 
-/// In the place of the floor where boxes are of doubles, of which it has none.
+/// Stands in for the floor where boxes are of doubles: they have none.
 struct NoFloor {
   template <typename Boxes>
   void run(const Boxes&, std::span<Pair>) const noexcept {}

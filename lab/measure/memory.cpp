@@ -1,6 +1,6 @@
-// The global operator new and delete, replaced by ones that can count. Those for arrays and those that do not
-// throw end in the ones replaced here, as the standard says. BROADSIDE_COUNTS_ALLOCATIONS comes from the
-// build: 0 where malloc cannot tell a block's size, or where a sanitizer has its own operator new.
+// The global operator new and delete, replaced by ones that can count. The forms for arrays and the ones that
+// do not throw end in the ones replaced here, as the standard says. BROADSIDE_COUNTS_ALLOCATIONS comes from
+// the build: 0 where malloc cannot tell a block's size, or where a sanitizer has its own operator new.
 #include "lab/measure/memory.hpp"
 
 #include <algorithm>

@@ -46,7 +46,7 @@ struct Wishes {
   FindScene find = [](std::string_view text) { return find_scene(text); };
 };
 
-/// Every combination, but for those that do not exist: a dimension that a scene does not have, a count or a
+/// Every combination that exists; others are left out: a dimension that a scene does not have, a count or a
 /// moving fraction where the scene has its own. Throws InvalidSpec if a scene is unknown or has none of the
 /// dimensions, and what a file's reader throws.
 std::vector<CaseRequest> plan_of(const Wishes& wishes);

@@ -61,7 +61,7 @@ std::size_t round_limit(const Measurement& measurement, std::span<const Measurem
   if (measurement.samples_ms.empty()) return no_limit;
   const double own = least_first_round(all, AlgorithmKind::own);
   const double peer = least_first_round(all, AlgorithmKind::peer);
-  // Where no peer takes part nothing is far behind it, and where nothing of ours does, peers alone count.
+  // Without a peer, nothing is far behind one; without one of ours, peers alone count.
   const double close = std::max({far_from_seconds * 1e3, effort.far_ratio * peer,
                                  own < std::numeric_limits<double>::infinity() ? effort.far_ratio * own : 0});
   if (round_times(measurement).front() > close) return effort.far_rounds;

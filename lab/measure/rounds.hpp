@@ -43,11 +43,11 @@ struct Estimate {
   double exponent;   ///< of the scaling: time grows as n^exponent
 };
 
-/// From this many boxes on, an algorithm is tried on a few of them before it is let loose on all.
+/// From this many boxes on, an algorithm is tried on a few of them before it runs on all.
 inline constexpr std::size_t boxes_worth_estimating = 5'000;
 
 /// Whether an algorithm would take longer than `budget` seconds on `boxes` boxes: its estimate if so, empty
-/// if it may run. `seconds_for` measures it on so many of the boxes.
+/// if it may run. `seconds_for` measures it on that number of the boxes.
 ///
 /// A twentieth of the boxes is measured first. If even quadratic growth from there stays in the budget,
 /// nothing else is; otherwise a fifth, where that is affordable, and the growth between the two says how to

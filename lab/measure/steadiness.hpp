@@ -57,7 +57,7 @@ struct Steadiness {
 /// Of one case.
 Steadiness steadiness_of(const CaseResult& result);
 
-/// A line for the end of tables that says how many are unsteady and what to do, of which `more` is the last;
+/// A line for the end of tables that says how many are unsteady and what to do, `more` at last;
 /// empty where none is.
 std::string hint_of(const Steadiness& steadiness, std::string_view more);
 

@@ -39,8 +39,8 @@ struct ChipmunkObject {
 /// What a cpSpatialIndexBBFunc must do for a ChipmunkObject.
 cpBB bounds_of(void* object) { return static_cast<ChipmunkObject*>(object)->bounds; }
 
-/// Makes an empty index that suits `boxes`; for objects that move or for one search. Where there is an index
-/// of those that rest, which must outlive it, what is in it is searched with those in that one, too.
+/// Makes an empty index that suits `boxes`; for objects that move or for one search. Where there is an
+/// index of resting objects, which must outlive it, moving objects are searched in that one, too.
 using MakeIndex = ChipmunkIndex (*)(std::span<const Box2> boxes, bool moving, cpSpatialIndex* resting);
 
 ChipmunkObject object_of(const Box2& box, BoxId id) {

@@ -1,4 +1,5 @@
-// Embree: rtcCollide joins a hierarchy of boxes with itself; rays go through it with the boxes as user geometry.
+// Embree: rtcCollide joins a hierarchy of boxes with itself; rays go through it with the boxes as user
+// geometry.
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -196,7 +197,7 @@ class EmbreeQueries final : public QueryPeer<3> {
     bounds.upper_z = box.max[2];
   }
 
-  /// Slabs, with an inverse that was computed once a ray, as one who wants to be fast writes it.
+  /// Slabs, with an inverse that was computed once a ray, as fast code does.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
     const auto& search = *reinterpret_cast<const Search*>(arguments->context);

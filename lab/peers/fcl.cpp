@@ -154,7 +154,7 @@ class FclTreeTracker final : public PeerTracker<3> {
 
   void collide(const Change<3>& change, PairSink& pairs) override {
     FclSearch search{change.now, CallbackSink(pairs)};
-    // One by one where few changed: all against each other takes time for those that rest as well.
+    // One by one where few changed: all against each other takes time for resting boxes as well.
     constexpr std::size_t few = 4;
     if (change.changed.size() < change.now.size() / few) {
       Query query{&search, change.flags};
@@ -202,8 +202,9 @@ using Manager = fcl::SpatialHashingCollisionManager<double, Table>;
 
 FclManager make_hash(std::span<const Box3> boxes) {
   const double cell = std::exp2(std::ceil(std::log2(cell_size(boxes, 1))));
-  // A box that ends on a cell's border is not filed in the next cell, where one that touches it begins. With
-  // cells of a power of two that start at an odd multiple of 2^-30 cells, no float lies on a border.
+  // A box that ends on a cell's border is not inserted into the next cell, where a box that touches it
+  // begins. With cells of a power of two that start at an odd multiple of 2^-30 cells, no float lies on a
+  // border.
   constexpr double offset = 0.40625 + 0x1p-30;
   fcl::Vector3d min = fcl::Vector3d::Zero();
   fcl::Vector3d max = fcl::Vector3d::Zero();
@@ -231,7 +232,7 @@ Algorithm fcl_dynamic_aabb_tree() {
   return algorithm;
 }
 
-// It finds pairs when objects are registered, and loses those that only touch, since equal end points are in
+// It finds pairs when objects are registered, and loses pairs that only touch, since equal end points are in
 // no order: therefore the widened bounds. Its update() looks for each pair through the list of all, and
 // taking an object out reads what was erased, so motion is followed by registering all again.
 Algorithm fcl_sap() {

@@ -21,7 +21,7 @@ class Proxies {
   Proxies& operator=(const Proxies&) = delete;
   virtual ~Proxies() = default;
 
-  /// Forgets every box. `boxes` are those that will be there: for libraries that take bounds of the world, or
+  /// Forgets every box. `boxes` will be there: for libraries that take bounds of the world, or
   /// a cell size.
   virtual void clear(std::span<const Box<D>> boxes) = 0;
 

@@ -111,7 +111,7 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
 std::string description_of(const Drawing& drawing) {
   std::string text = fmt::format("{} in {}D", counted(drawing.boxes, "box", "boxes"), drawing.dimension);
   if (drawing.of > drawing.boxes) text += ", for " + grouped(drawing.of);
-  text += "; those that overlap another one are orange.";
+  text += "; boxes that overlap another one are orange.";
   if (drawing.views.empty()) return text;
   for (const DrawingLayer& layer : drawing.views[0].layers) {
     text += fmt::format(" {}: {}.", layer.algorithm, caption_of(layer));

@@ -30,9 +30,9 @@ std::string case_line_heading();
 /// and how the pairs were verified. "-" stands for what was not in the comparison. Ends with a line's end.
 std::string case_line(const CaseResult& result);
 
-/// One case: a line that says what it is, and a line for each algorithm, the fastest first, those without a
-/// time last. Where the floor was timed, its line ends the table, and each time is given in floors as well.
-/// Plain text.
+/// One case: a line that says what it is, and a line for each algorithm, the fastest first, algorithms
+/// without a time last. Where the floor was timed, its line ends the table, and each time is given in floors
+/// as well. Plain text.
 std::string table_of(const CaseResult& result);
 
 /// What all cases come to: each algorithm's ratio to the fastest as a geometric mean, how many measurements

@@ -22,7 +22,7 @@ struct VerifyOptions {
   std::string algorithms = "own,paper";  ///< as Catalogue::select reads it
   double budget_seconds = 10;            ///< that an algorithm may take over all frames, and a counterexample
 
-  /// Where the smallest input on which the first of those that fail does so is written, in the format of the
+  /// Where the smallest input on which the first failing algorithm fails is written, in the format of the
   /// extension. Empty: counterexample.csv in the current folder, or .btrace where boxes move, with a number
   /// in its name where there is such a file already.
   std::filesystem::path counterexample{};
@@ -56,7 +56,7 @@ struct Verification {
   std::string importer;   ///< the library that may have rounded its numbers to float; empty if none did
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
-  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
+  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
   std::vector<Verdict> verdicts{};
   std::optional<Counterexample> counterexample{};
   std::string warning{};  ///< what had to be left out of a damaged file; empty otherwise

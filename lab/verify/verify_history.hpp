@@ -35,7 +35,7 @@ std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history
 /// What came of a history.
 struct HistoryVerdicts {
   std::vector<Verdict> verdicts;         ///< in the order of the entries; then the reference's, if it failed
-  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
+  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
 };
 
 /// Checks the entries as verify_file does. `known` is where references are taken from.

@@ -21,7 +21,7 @@ constexpr std::size_t boxes_in_world = 2'000;
 /// A box is about 1 in size.
 constexpr double cell_size = 2;
 
-/// The paper's grid of this cell may have so many cells (erratum 2c); beyond, its cells grow.
+/// The cells that the paper's grid of this cell size may have (erratum 2c); beyond, its cells grow.
 constexpr double most_cells = 1 << 16;
 
 struct MeasuredGrid {
@@ -67,7 +67,7 @@ double cells_in_use(const std::vector<Box2>& boxes) {
   return static_cast<double>(cells.size());
 }
 
-/// Adds what the grids of this dimension hold and test, in a world of so many cells on an axis.
+/// Adds what the grids of this dimension hold and test, in a world this many cells wide.
 void measure_grids(const Laboratory& laboratory, const std::string& scene, int dimension, double world,
                    Table& table) {
   std::vector<std::string> specs;

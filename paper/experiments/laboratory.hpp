@@ -20,7 +20,7 @@
 
 namespace broadside::lab {
 
-/// The place where an experiment is done: how thorough it is, and who watches.
+/// Where an experiment is done: how thorough it is, and what watches it.
 class Laboratory {
  public:
   /// `quick` for a first impression: smaller numbers and fewer samples. All fifteen experiments then take

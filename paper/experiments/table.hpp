@@ -27,7 +27,7 @@ using Cell = std::variant<std::monostate, double, std::string>;
 enum class ChartKind {
   lines,  ///< y over x, a line for each value of `series`
   bars,   ///< y for each x (which may be text), a bar for each value of `series`
-  map     ///< a field for each x and y, coloured by the text in `value`: who wins where
+  map     ///< a field for each x and y, coloured by the text in `value`: the winner there
 };
 
 /// "lines", "bars" or "map".

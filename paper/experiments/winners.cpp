@@ -1,4 +1,4 @@
-// Beyond the paper: who wins where, what auto loses, and what SIMD, the BVH and threads add.
+// Beyond the paper: which algorithm wins where, what auto loses, and what SIMD, the BVH and threads add.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -201,7 +201,7 @@ Finding judge(const std::vector<Table>& tables) {
   const Record& automatic = records[0];
 
   const Record* safest =
-      nullptr;  // the single one that loses least in the mean, of those that were everywhere
+      nullptr;  // of the single ones measured everywhere, the one that loses least in the mean
   bool any_everywhere_best = false;
   std::string wins;
   for (const Record& record : std::span(records).subspan(1)) {
@@ -253,7 +253,7 @@ Finding judge(const std::vector<Table>& tables) {
 Experiment winners() {
   return {.number = 15,
           .name = "winners",
-          .title = "Who wins where",
+          .title = "Which algorithm wins where",
           .claim =
               "No single algorithm is the fastest everywhere: how many boxes there are, how dense they "
               "stand, how their sizes differ and how many move decide. Looking at the boxes and choosing, as "

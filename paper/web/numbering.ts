@@ -20,7 +20,7 @@ export class Numbering {
     return this.order.push(name);
   }
 
-  /** The numbers of those that stand in the paper, of `names`; none in the first pass. */
+  /** The numbers of `names`, as far as they stand in the paper; none in the first pass. */
   numbersOf(names: readonly string[]): number[] {
     return this.known.flatMap((name, i) => (names.includes(name) ? [i + 1] : []));
   }

@@ -6,7 +6,7 @@ const whole = /^(#|\||!\[|<!--|>\s*$)/;
 /** What a line must not begin with by chance: there it would be a list, a heading or a quotation. */
 const marker = /^(?:[-+*]|\d+[.)]|#+|=+)$|^[>|]/;
 
-/** The prefix of a paragraph's first line, and of those that follow. */
+/** The prefix of a paragraph's first line, and of the lines that follow. */
 function prefixes(line: string): [string, string] {
   if (line.startsWith("> ")) return ["> ", "> "];
   const item = /^(\s*(?:[-*]|\d+\.) +)/.exec(line)?.[1] ?? "";

@@ -50,7 +50,7 @@ export function casesOf(measurements: readonly Measurement[]): Case[] {
   return [...cases.values()];
 }
 
-/** Those that have a time, the fastest first. */
+/** The measurements that have a time, the fastest first. */
 export function ranking(of: Case): Timed[] {
   return of.measurements.filter(isTimed).sort((a, b) => a.median_ms - b.median_ms);
 }

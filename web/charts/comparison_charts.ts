@@ -114,7 +114,7 @@ export function drawScaling(
     }
   }
   const last = Math.max(...chosen.map((other) => other.boxes));
-  // Those that get furthest, and of these the fastest there.
+  // The algorithms that get furthest, and of these the fastest there.
   const rank = (points: readonly [number, number][]): number => {
     const end = points.reduce((a, b) => (b[0] > a[0] ? b : a));
     return end[0] === last ? end[1] : Infinity;
@@ -150,7 +150,7 @@ export function drawFrames(of: Case, place: Place, most = 6): Drawn {
   }, place);
 }
 
-/** Who is fastest in each case: scenes with their numbers of boxes up, dimensions across. */
+/** The fastest in each case: scenes with their numbers of boxes up, dimensions across. */
 export function drawWinners(cases: readonly Case[], place: Place, kinds?: readonly Measurement["kind"][]): Drawn {
   const rowOf = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${sizeText(of)}`;
   const fields = cases.flatMap((of) => {

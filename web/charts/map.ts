@@ -1,4 +1,4 @@
-// The map of winners: a field for each x and y, coloured by who is fastest there, and told by its name too.
+// The map of winners: a field for each x and y, coloured by the fastest there, and labelled with its name too.
 import type { CustomSeriesRenderItem } from "echarts";
 
 import { axisName, below, categoryAxis, font, frame, legendHeight, shortened, textWidth } from "./frame.ts";

@@ -1,4 +1,4 @@
-// The comparison: who is fastest where, by how much, and every measurement.
+// The comparison: which algorithm is fastest where, by how much, and every measurement.
 import { casesOf, isTimed, labelOf, leadOf, ranking, standings } from "../charts/comparison.ts";
 import type { Case } from "../charts/comparison.ts";
 import {
@@ -220,7 +220,7 @@ export function comparisonSections(
       el("div", { class: "card" }, el("h3", {}, "Over all cases"), chartFigure(
         "Times as multiples of the fastest", (place) => drawStandings(cases, place),
         "Geometric mean over the cases that an algorithm does.").element),
-      el("div", { class: "card" }, el("h3", {}, "Who wins where"), chartFigure(
+      el("div", { class: "card" }, el("h3", {}, "Which algorithm wins where"), chartFigure(
         "The fastest in each case", (place) => drawWinners(cases, place),
         "Scene, boxes and, where they move, how many of them.").element)),
     leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chartFigure(

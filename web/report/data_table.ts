@@ -21,7 +21,7 @@ export interface DataTableSpec<Row> {
   caption: string;
   columns: readonly DataColumn<Row>[];
   rows: readonly Row[];
-  /** A list to choose from for each; those that would offer one choice are left out. */
+  /** A list to choose from for each; lists that would offer one choice are left out. */
   filters?: readonly DataFilter<Row>[];
   /** With a field in which rows are searched by their texts. */
   search?: boolean;

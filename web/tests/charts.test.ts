@@ -62,7 +62,7 @@ test("a map has a series for each winner", () => {
   assert.deepEqual(seriesOf(drawn).map(({ name, data }) => [name, data.length]), [["bvh", 1], ["grid", 4]]);
 });
 
-test("a column that is not there is named with those that are", () => {
+test("a missing column is named with the columns there are", () => {
   assert.throws(() => drawTableChart(table, spec({ x: "cells" }), place),
     /table 'cells' has no column 'cells'; expected one of cell size, time, scene, best/);
 });
@@ -179,7 +179,7 @@ test("what is counted has no ticks between whole numbers", () => {
   assert.equal(axisOf([1, 2], true), undefined);
 });
 
-test("who is skipped in a case does not stand in it", () => {
+test("a skipped algorithm does not stand in a case", () => {
   assert.deepEqual(standings(cases).map(({ algorithm, cases, fastest }) => [algorithm, cases, fastest]),
     [["bvh", 3, 1], ["grid", 3, 2], ["box2d_tree", 3, 0], ["brute_force", 1, 0]]);
 });

@@ -31,7 +31,7 @@ class CsvRows {
         is_computed_(table_.columns.is_computed()),
         needed_(table_.columns.needed()) {}
 
-  /// Whether there was another row, of which read() then reads the rest. Blank lines are none.
+  /// Whether there was another row; read() then reads the rest of it. Blank lines are not rows.
   bool next() {
     do {
       if (!table_.lines.next()) return false;

@@ -89,7 +89,7 @@ class TracksCsv final : public FrameReader<D, Real> {
     place_of_.assign(names_.size(), no_place);
   }
 
-  /// Adds a listed box to a frame's step, and its place to those that the frame has.
+  /// Adds a listed box to a frame's step, and its place to the frame's places.
   void take(const Listed& listed, Step<D, Real>& step, std::vector<std::size_t>& places) {
     if (listed.track == no_track) return;
     std::size_t& place = place_of_[listed.track];
