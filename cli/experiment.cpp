@@ -148,7 +148,7 @@ Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
       "Tests the claims of the paper, each by an experiment with a verdict. All of them take up to twenty "
       "minutes, with --quick up to three.");
   verb->add_option("names", arguments->names,
-                   "Names or numbers of experiments, as --list shows them (standard: all)");
+                   "Names or numbers of experiments, as --list shows them (default: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
   verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
   verb->add_option(

@@ -88,7 +88,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
   const bool has_value = option->get_type_size() != 0 && !option->get_type_name().empty();
   if (has_value) name += " " + get_label(option->get_type_name());
   std::string text = option->get_description();
-  if (!option->get_default_str().empty()) text += " (standard: " + option->get_default_str() + ")";
+  if (!option->get_default_str().empty()) text += " (default: " + option->get_default_str() + ")";
   if (option->get_required()) text += " (required)";
   return entry(name, text);
 }

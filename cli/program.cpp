@@ -127,7 +127,7 @@ void explain_former_names(std::span<const std::string> arguments) {
       begin = end + 1;
       const broadside::Algorithm* const found = broadside::find_algorithm(name);
       if (found != nullptr && found->name != name)
-        broadside::cli::say(fmt::format("'{}' is a former name: it is {} now", name, found->name));
+        broadside::cli::say(fmt::format("'{}' is a former name of {}", name, found->name));
     }
   }
 }

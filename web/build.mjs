@@ -2,7 +2,7 @@
 //
 //   node build.mjs --page FILE.cpp   the report's page, as a C++ source that holds it
 //   node build.mjs --html FILE.html  the page itself, without a document
-//   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (standard: build/web/tests)
+//   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
 //   node build.mjs --paper FOLDER    the program that makes the paper, and its tests, to FOLDER/*.mjs
 import { mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";

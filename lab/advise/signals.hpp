@@ -1,4 +1,4 @@
-// What boxes are like, in the numbers that decide which algorithm suits them.
+// Statistics of boxes: the numbers that decide which algorithm suits them.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace broadside::lab {
 
-/// The shares of boxes at which sizes are told.
+/// The percentiles of sizes.
 inline constexpr std::array<double, 5> size_percentiles = {0.01, 0.25, 0.5, 0.75, 0.99};
 
 /// A box that goes further than this many times its longest side from one frame to the next has jumped.
 inline constexpr double sides_of_a_jump = 8;
 
-/// How boxes move. Fractions are of the boxes that are there; a box moves if it is there in both of two
-/// frames and elsewhere in the second, or of another size.
+/// How boxes move. Fractions are of the present boxes; a box moves if it is present in two frames and
+/// its place or size differs.
 struct MotionSignals {
   std::size_t frames = 0;         ///< after the first
   double least_moving = 0;        ///< the fraction of the boxes that move, in the calmest frame,

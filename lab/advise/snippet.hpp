@@ -1,4 +1,4 @@
-// The lines of C++ that do as advised.
+// C++ source that follows the advice.
 #pragma once
 
 #include <string>

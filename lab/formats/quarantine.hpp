@@ -1,4 +1,4 @@
-// Boxes that are invalid and left out, where that is asked for: each of the first is told, and their number.
+// Leaves out invalid boxes where that is asked for, reports the first of them and counts all.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,15 @@
 
 namespace broadside::lab {
 
-/// Refuses the first box that is invalid or, where ReadOptions::say_invalid is there, leaves out all that
-/// are.
+/// Refuses the first invalid box or, where ReadOptions::say_invalid is set, leaves out all invalid ones.
 class Quarantine {
  public:
-  /// How many boxes are told one by one; the rest are only counted.
+  /// The number of boxes that are reported one by one; the rest are only counted.
   static constexpr std::uint64_t most_told = 20;
 
   explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
 
-  /// Whether `read()` returned. Where it throws a FileError, the box is left out and its error told; without
+  /// Whether `read()` returned. If it throws a FileError, the box is left out and the error reported; without
   /// say_invalid, the error goes on to the caller.
   template <typename Read>
   bool holds(const Read& read) {

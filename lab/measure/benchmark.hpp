@@ -1,5 +1,4 @@
-// What measuring a search and measuring a history have in common: which algorithms take part, and what is
-// called on the way.
+// What measurements of searches and of histories share: the entries, their limits, outcomes and clock.
 #pragma once
 
 #include <chrono>
@@ -20,7 +19,7 @@
 
 namespace broadside::lab {
 
-/// Thrown between two samples once a comparison is to stop.
+/// Thrown between two samples when a comparison should stop.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "the comparison was stopped"; }
@@ -29,13 +28,13 @@ class Stopped : public std::exception {
 /// Watches a comparison while it runs. Both are called between samples, in the caller's thread.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
-  std::function<void(std::string_view what)> progress{};  ///< what is going on; empty: nothing is called
+  std::function<void(std::string_view what)> progress{};  ///< called with the current step; empty: not called
 
   /// Reports and asks. Throws Stopped.
   void at(std::string_view what) const;
 };
 
-/// What a case is measured with, but for its boxes.
+/// Everything a case is measured with except its boxes.
 struct Benchmark {
   std::span<const Entry> entries;
   std::span<const Algorithm> known;  ///< where references are taken from
@@ -43,7 +42,7 @@ struct Benchmark {
   Watch watch;
 };
 
-/// Milliseconds since it was made, to the nanosecond.
+/// Milliseconds since construction, to the nanosecond.
 class Stopwatch {
  public:
   double milliseconds() const {
@@ -71,7 +70,7 @@ void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls,
 void count_memory(Measurement& measurement, const Algorithm& algorithm,
                   const std::optional<Allocation>& allocation);
 
-/// What boxes have that may be beyond an algorithm's declared limits, absent ones aside.
+/// The properties of boxes that an algorithm's declared limits concern; absent boxes do not count.
 struct Extremes {
   bool infinite = false;  ///< whether any of them reaches to infinity
   double largest = 0;     ///< the greatest magnitude of their finite coordinates

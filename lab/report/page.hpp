@@ -1,5 +1,4 @@
-// Results as a page: one file with charts, tables and pictures, which opens in a browser and asks nothing of
-// a network.
+// Results as a page: one file with charts, tables and pictures, which opens in a browser without a network.
 #pragma once
 
 #include <span>

@@ -20,7 +20,7 @@ std::string ratio_text(double ratio, const std::optional<Interval>& interval);
 /// nothing was.
 std::string references_of(const CaseResult& result);
 
-/// That, or how many FAILED; "nothing verified" where everything was skipped.
+/// references_of(), or how many FAILED; "nothing verified" where everything was skipped.
 std::string verdict_of(const CaseResult& result);
 
 /// The names of the columns of case_line().

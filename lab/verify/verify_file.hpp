@@ -1,5 +1,4 @@
-// The law on somebody's own file: every algorithm on every frame, and, where one fails, a small file that
-// shows it.
+// The law on a user's file: every algorithm on every frame and, where one fails, a small file that shows it.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +28,7 @@ struct VerifyOptions {
   Watch watch{};
 };
 
-/// What came of one algorithm.
+/// The verdict on one algorithm.
 struct Verdict {
   std::string algorithm;  ///< its spec
   Outcome outcome = Outcome::verified;
@@ -48,7 +47,7 @@ struct Counterexample {
   std::string command;  ///< the arguments of the program that show it again
 };
 
-/// All that came of a file.
+/// The verdicts on a file.
 struct Verification {
   std::string file;
   int dimension;
@@ -65,11 +64,11 @@ struct Verification {
   bool all_verified() const;
 };
 
-/// Checks algorithms on what is left of a file, in its precision. In each frame a finder's pairs are compared
-/// with the expected ones and, where boxes move, a tracker's events with what leads from one frame's to the
-/// next. Expected are the pairs by definition, unless that would take more than some seconds: then those of
-/// another algorithm, of which a sample is compared with the definition in up to twenty frames, and whoever
-/// differs from it is judged by the definition.
+/// Checks algorithms on the remaining frames of a file, in its precision. In each frame a finder's pairs are
+/// compared with the expected ones and, where boxes move, a tracker's events with what leads from one frame's
+/// to the next. The expected pairs follow the definition, unless that would take more than some seconds. Then
+/// they come from another algorithm; a sample of its pairs is compared with the definition in up to twenty
+/// frames, and an algorithm that differs from it is judged by the definition.
 ///
 /// An algorithm that would exceed its budget on the fullest frame is skipped; one whose budget is used up
 /// stops, and its verdict says in which frame. Throws FileError, InvalidSpec, and Stopped if the watch says

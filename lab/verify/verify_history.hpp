@@ -15,8 +15,8 @@
 
 namespace broadside::lab {
 
-/// Runs something of an algorithm's that says what is wrong with what it did: that, or what it threw. Lets
-/// Stopped and std::bad_alloc through, which are not the algorithm's.
+/// Runs a check of an algorithm and returns its fault, or what the algorithm threw. Lets Stopped and
+/// std::bad_alloc through, which are not the algorithm's fault.
 std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run);
 
 /// What is wrong with an algorithm on a history; empty if nothing is. `known` is where the expected pairs of
@@ -32,7 +32,7 @@ std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history
                                                  const Entry& entry, std::span<const Algorithm> known,
                                                  const VerifyOptions& options);
 
-/// What came of a history.
+/// The verdicts on a history.
 struct HistoryVerdicts {
   std::vector<Verdict> verdicts;         ///< in the order of the entries; then the reference's, if it failed
   std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
