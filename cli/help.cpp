@@ -94,7 +94,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  // Lines that are indented stand as they are: commands are there to be copied.
+  // Indented lines are not wrapped: they are commands to be copied.
   std::string footer;
   std::istringstream lines(app->get_footer());
   for (std::string line; std::getline(lines, line);)

@@ -88,7 +88,7 @@ void check_verb(const std::vector<std::string>& arguments, const CLI::App& progr
     throw Unusable(fmt::format("unknown verb '{}'{}; {}", verb, did_you_mean(verb, known), expected));
 }
 
-/// What is wrong with the arguments that CLI11 refused with `error`.
+/// The message for arguments that CLI11 refused with `error`.
 Unusable explained(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& verb = called(program);
   // An option that is unknown tells more than one that is missing because of it.

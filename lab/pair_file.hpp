@@ -33,7 +33,7 @@ struct PairIds {
 /// moved back to the array's header, as in a pipe.
 class PairFile {
  public:
-  /// Begins the file. The stream outlives this object; what is wrong with it, the caller sees. `is_between`
+  /// Begins the file. The stream outlives this object; the caller checks it. `is_between`
   /// says that pairs are of a left and a right set, which the columns are then called. Ids, which outlive
   /// this object, are for CSV alone.
   PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {});

@@ -45,7 +45,7 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
-/// What is suggested for a format's name that is none.
+/// The suggestion for an unknown format's name.
 std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
   std::vector<std::string> known;
   for (const Format& format : formats()) {
@@ -218,7 +218,7 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
 }
 
 const Format& writable_format(const std::filesystem::path& path, std::string_view name) {
-  // Nothing is compressed as it is written.
+  // Output is never compressed.
   const std::string compression = compression_extension_of(path);
   const std::string extension = compression.empty() ? extension_of(path) : compression;
   for (const Format& format : formats()) {

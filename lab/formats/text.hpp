@@ -33,7 +33,7 @@ inline std::string_view next_word(std::string_view& text) {
 
 namespace broadside::lab::readers {
 
-/// What is wrong with a text that is no number, and what is expected instead.
+/// Why a text is not a number, and what is expected instead.
 struct NumberFault {
   std::string found;  ///< such as "with a decimal comma"; empty where there is no more to say than the text
   std::string expected;  ///< such as "a decimal point"; empty where it depends on what reads the number

@@ -57,9 +57,9 @@ class Stopwatch {
 /// A measurement with the algorithm's name in it and nothing measured.
 Measurement measurement_of(const Entry& entry);
 
-/// Runs a step of a measurement, which returns what is wrong with what the algorithm did. If that, or what
-/// the algorithm threw, is something, the measurement has failed; if memory ran out, it is skipped. It then
-/// has a reason and no times. Returns whether all is well. Lets Stopped through.
+/// Runs a step of a measurement, which returns the algorithm's fault. With a fault, or if the algorithm
+/// throws, the measurement has failed; if memory runs out, it is skipped. It then has a reason and no times.
+/// Returns whether all is well. Lets Stopped through.
 bool attempt(Measurement& measurement, const std::function<std::string()>& step);
 
 /// Marks the algorithm as too slow for `budget` seconds, in which it would have to make `calls` calls. The

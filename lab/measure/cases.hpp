@@ -16,7 +16,7 @@
 
 namespace broadside::lab {
 
-/// Inputs for a function that is told their dimension and precision.
+/// Inputs for a function whose caller names D and Real: they are not deduced.
 template <int D, typename Real>
 using Histories = std::type_identity_t<std::span<const History<D, Real>>>;
 

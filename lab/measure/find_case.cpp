@@ -75,7 +75,7 @@ class FindCase {
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
-  /// Fills in why not, if the entry cannot take part.
+  /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
@@ -108,7 +108,7 @@ class FindCase {
     pairs_.resize(touched_);
   }
 
-  /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
+  /// Makes the finder and calls it for the first time: it takes its memory, which is counted.
   void warm_up(FindParticipant<D, Real>& participant) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
@@ -185,7 +185,7 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  /// What is wrong with pairs_; empty if nothing is.
+  /// The fault of pairs_; empty if there is none.
   std::string check(FindParticipant<D, Real>& participant, std::size_t input) {
     const ExpectedPairs& expected = expectation(*participant.entry->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;

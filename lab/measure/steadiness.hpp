@@ -31,9 +31,9 @@ bool is_busy(double share);
 /// empty.
 std::string busy_hint(double share);
 
-/// How many times the least sample the median one is, of samples that come in turns: every `period`-th is of
-/// the same boxes. The median over all boxes that had their turn twice, so that a few stalls do not count;
-/// empty where fewer than three samples are such repetitions.
+/// The median sample over the least one, where every `period`-th sample is of the same boxes: the median over
+/// all boxes that were sampled twice, so that a few stalls do not count. Empty with fewer than three
+/// repetitions.
 std::optional<double> spread(std::span<const double> samples, std::size_t period);
 
 /// Whether something else slowed the measurement down, so far as its samples tell: its spread() is over 1.5.

@@ -72,7 +72,7 @@ class TrackCase {
   }
 
  private:
-  /// Fills in why not, if the entry cannot take part.
+  /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     const History<D, Real>& history = inputs_[0];
     measurement.reason = unfit(entry, D, extremes_);
@@ -125,8 +125,7 @@ class TrackCase {
     return watch.milliseconds();
   }
 
-  /// Lets every participant follow the first input once, untimed: memory is taken, and how much that is
-  /// shows.
+  /// Has every participant follow the first input once, untimed: it takes its memory, which is counted.
   void warm_up() {
     for (TrackParticipant<D, Real>& participant : participants_) participant.plays = true;
     pass(0, 0, true);
@@ -190,7 +189,7 @@ class TrackCase {
     }
   }
 
-  /// One frame of one participant; what is wrong with its events.
+  /// One frame of one participant; returns the fault of its events.
   std::string take(TrackParticipant<D, Real>& participant, const Frame<D, Real>& now, std::size_t frame,
                    bool counts_memory) {
     const ExpectedEvents& expected = *participant.expected;

@@ -62,7 +62,7 @@ struct PairQuery {
     return id;
   }
 
-  /// Likewise, of a search for each of the boxes, which tells every pair from both its sides.
+  /// Likewise for a search for each of the boxes, which reports every pair twice.
   static cpCollisionID take_once(void* first, void* second, cpCollisionID id, void* data) {
     const bool once = static_cast<ChipmunkObject*>(first)->id < static_cast<ChipmunkObject*>(second)->id;
     return once ? take(first, second, id, data) : id;
@@ -103,7 +103,7 @@ class ChipmunkTracker final : public PeerTracker<2> {
  private:
   static constexpr std::uint32_t frames_until_sleep = 30;  // half a second
 
-  /// What is there at the start rests until it is seen to move, as the ground does.
+  /// The first boxes rest until they move, as the ground does.
   void build(std::span<const Box2> boxes, std::span<const Box2> now) override {
     moving_.reset();
     resting_ = make_(now, true, nullptr);

@@ -15,7 +15,7 @@ struct PeerList {
   std::vector<MissingPeer> missing;
 
   PeerList() {
-    // What is in a branch that is not taken need not exist.
+    // Functions in a discarded branch need not exist.
     if constexpr (BROADSIDE_HAS_CGAL)
       add({cgal_box_intersection()});
     else

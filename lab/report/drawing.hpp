@@ -45,7 +45,7 @@ struct Drawing {
   std::vector<DrawingView> views;
 };
 
-/// How many boxes are told apart in a picture.
+/// The number of boxes that an eye can tell apart in a picture.
 inline constexpr std::size_t most_drawn = 600;
 
 /// `most` of the boxes, evenly from the whole array, each made larger about its centre so that they are as

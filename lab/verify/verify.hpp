@@ -26,7 +26,7 @@ struct Divergence {
   std::string text;       ///< a sentence that names the algorithm, the frame, the pair and both boxes
 };
 
-/// Boxes for a function that is told their dimension and precision.
+/// Boxes for a function whose caller names D and Real: they are not deduced.
 template <int D, typename Real>
 using BoxSpan = std::type_identity_t<std::span<const Box<D, Real>>>;
 

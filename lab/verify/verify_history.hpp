@@ -19,7 +19,7 @@ namespace broadside::lab {
 /// std::bad_alloc through, which are not the algorithm's fault.
 std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run);
 
-/// What is wrong with an algorithm on a history; empty if nothing is. `known` is where the expected pairs of
+/// The fault of an algorithm on a history; empty if there is none. `known` is where the expected pairs of
 /// many boxes come from.
 template <int D, typename Real>
 std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known);

@@ -122,7 +122,7 @@ bool is_column_name(std::string_view name);
 /// Whether a name is that of a column of geometries as text, or of bounds in one field.
 bool is_geometry_name(std::string_view name);
 
-/// What the columns of numbers without names are: 4 or 6, minima and then maxima. Returns what is wrong.
+/// Columns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
 std::string positional(std::size_t count, CsvColumns& columns);
 
 }  // namespace broadside::lab::readers

@@ -1,4 +1,4 @@
-// The description of maps, and how they are told from other files.
+// The description of maps, and how they are recognised.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -10,8 +10,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-// Much is JSON that is no map, but no other format has these: such a file is told what is wrong with it as a
-// map.
+// Much JSON is not a map, but no other format has these extensions: an error then says what a map lacks.
 std::vector<std::string> extensions() { return {".geojson", ".topojson", ".json", ".geojsonl", ".ndjson"}; }
 
 /// Whether the bytes begin an object that says early on to be a map, or a geometry.

@@ -158,7 +158,7 @@ void MapText::begin_feature() {
 
 std::size_t MapText::offset() {
   const char* place = nullptr;
-  // What is wrong with the text as a whole has no place in it.
+  // A fault of the text as a whole has no place in it.
   if (document_.current_location().get(place) != simdjson::SUCCESS) return end_;
   return static_cast<std::size_t>(place - bytes_.data());
 }
