@@ -30,18 +30,26 @@ Measurement measurement_of(const Entry& entry) {
   return measurement;
 }
 
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& check) {
+  try {
+    return check();
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // the machine's fault
+  } catch (const std::exception& thrown) {
+    return fmt::format("{} threw: {}", algorithm, thrown.what());
+  }
+}
+
 bool attempt(Measurement& measurement, const std::function<std::string()>& step) {
   std::string fault;
   Outcome outcome = Outcome::failed;
   try {
-    fault = step();
-  } catch (const Stopped&) {
-    throw;
+    fault = fault_of(measurement.algorithm, step);
   } catch (const std::bad_alloc&) {
     fault = "out of memory; expected fewer boxes or pairs";
     outcome = Outcome::skipped;
-  } catch (const std::exception& thrown) {
-    fault = fmt::format("{} threw: {}", measurement.algorithm, thrown.what());
   }
   if (fault.empty()) return true;
   measurement.outcome = outcome;

@@ -57,6 +57,10 @@ class Stopwatch {
 /// A measurement with the algorithm's name in it and nothing measured.
 Measurement measurement_of(const Entry& entry);
 
+/// Runs a check of an algorithm and returns the fault that it returns, or what the algorithm threw. Lets
+/// Stopped and std::bad_alloc through, which are not the algorithm's fault.
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& check);
+
 /// Runs a step of a measurement, which returns the algorithm's fault. With a fault, or if the algorithm
 /// throws, the measurement has failed; if memory runs out, it is skipped. It then has a reason and no times.
 /// Returns whether all is well. Lets Stopped through.

@@ -22,26 +22,37 @@ namespace {
 namespace geometry = boost::geometry;
 
 template <int D>
+using BoostPoint = geometry::model::point<float, D, geometry::cs::cartesian>;
+template <int D>
+using BoostBox = geometry::model::box<BoostPoint<D>>;
+// Of its parameters a packed tree takes only how many values a node holds: as in Boost's own benchmark.
+template <int D>
+using BoostTree = geometry::index::rtree<std::pair<BoostBox<D>, std::uint32_t>, geometry::index::rstar<16>>;
+
+template <std::size_t D>
+BoostPoint<int{D}> boost_point(const std::array<float, D>& corner) {
+  if constexpr (D == 2)
+    return {corner[0], corner[1]};
+  else
+    return {corner[0], corner[1], corner[2]};
+}
+
+template <int D>
+BoostBox<D> boost_box(const Box<D>& box) {
+  return {boost_point(box.min), boost_point(box.max)};
+}
+
+template <int D>
 class BoostRtree final : public PairFinder<D> {
  private:
-  using Point = geometry::model::point<float, D, geometry::cs::cartesian>;
-  using Value = std::pair<geometry::model::box<Point>, std::uint32_t>;
-  // Of its parameters a packed tree takes only how many values a node holds: as in Boost's own benchmark.
-  using Tree = geometry::index::rtree<Value, geometry::index::rstar<16>>;
-
-  static Point point(const std::array<float, D>& corner) {
-    if constexpr (D == 2)
-      return {corner[0], corner[1]};
-    else
-      return {corner[0], corner[1], corner[2]};
-  }
+  using Value = typename BoostTree<D>::value_type;
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     values_.clear();
     values_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
-      values_.push_back({{point(boxes[i].min), point(boxes[i].max)}, static_cast<std::uint32_t>(i)});
-    const Tree tree(values_);  // made of a range, it is packed
+      values_.push_back({boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i)});
+    const BoostTree<D> tree(values_);  // made of a range, it is packed
     // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
     for (const Value& value : tree) {
       const auto report = [&pairs, i = value.second](const Value& other) {
@@ -59,11 +70,13 @@ namespace geometry = boost::geometry;
 template <int D>
 class BoostQueries final : public QueryPeer<D> {
  public:
+  using Value = typename BoostTree<D>::value_type;
+
   explicit BoostQueries(std::span<const Box<D>> boxes) {
     std::vector<Value> values;
     for (std::size_t i = 0; i < boxes.size(); ++i)
-      values.emplace_back(converted(boxes[i]), static_cast<std::uint32_t>(i));
-    tree_ = Tree(values);
+      values.emplace_back(boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i));
+    tree_ = BoostTree<D>(values);
   }
 
   std::string name() const override { return "boost_rtree"; }
@@ -73,28 +86,14 @@ class BoostQueries final : public QueryPeer<D> {
     Answers answers;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const auto report = [&answers, i](const Value& value) { answers.add(i, BoxId{value.second}); };
-      tree_.query(geometry::index::intersects(converted(queries[i])),
+      tree_.query(geometry::index::intersects(boost_box<D>(queries[i])),
                   boost::make_function_output_iterator(report));
     }
     return answers;
   }
 
  private:
-  using Point = geometry::model::point<float, D, geometry::cs::cartesian>;
-  using BoostBox = geometry::model::box<Point>;
-  using Value = std::pair<BoostBox, std::uint32_t>;
-  using Tree = geometry::index::rtree<Value, geometry::index::rstar<16>>;
-
-  static Point point(const std::array<float, D>& corner) {
-    if constexpr (D == 2)
-      return {corner[0], corner[1]};
-    else
-      return {corner[0], corner[1], corner[2]};
-  }
-
-  static BoostBox converted(const Box<D>& box) { return {point(box.min), point(box.max)}; }
-
-  Tree tree_;
+  BoostTree<D> tree_;
 };
 
 }  // namespace

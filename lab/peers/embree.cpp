@@ -28,6 +28,17 @@ struct EmbreeRelease {
 template <typename Handle>
 using EmbreeOwned = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
 
+RTCBounds bounds_of(const Box3& box) {
+  return {.lower_x = box.min[0],
+          .lower_y = box.min[1],
+          .lower_z = box.min[2],
+          .align0 = 0,
+          .upper_x = box.max[0],
+          .upper_y = box.max[1],
+          .upper_z = box.max[2],
+          .align1 = 0};
+}
+
 class EmbreeCollide final : public PairFinder<3> {
  public:
   EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
@@ -67,14 +78,7 @@ class EmbreeCollide final : public PairFinder<3> {
 
   static void bound(const RTCBoundsFunctionArguments* arguments) {
     const auto& self = *static_cast<const EmbreeCollide*>(arguments->geometryUserPtr);
-    const Box3& box = self.boxes_[arguments->primID];
-    RTCBounds& bounds = *arguments->bounds_o;
-    bounds.lower_x = box.min[0];
-    bounds.lower_y = box.min[1];
-    bounds.lower_z = box.min[2];
-    bounds.upper_x = box.max[0];
-    bounds.upper_y = box.max[1];
-    bounds.upper_z = box.max[2];
+    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
   }
 
   /// Takes pairs of leaves, both ways round; Embree does not promise that their boxes overlap.
@@ -187,14 +191,7 @@ class EmbreeQueries final : public QueryPeer<3> {
 
   static void bound(const RTCBoundsFunctionArguments* arguments) {
     const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
-    const Box3& box = self.boxes_[arguments->primID];
-    RTCBounds& bounds = *arguments->bounds_o;
-    bounds.lower_x = box.min[0];
-    bounds.lower_y = box.min[1];
-    bounds.lower_z = box.min[2];
-    bounds.upper_x = box.max[0];
-    bounds.upper_y = box.max[1];
-    bounds.upper_z = box.max[2];
+    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
   }
 
   /// Slabs, with an inverse that was computed once a ray, as fast code does.

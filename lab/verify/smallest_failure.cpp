@@ -21,18 +21,6 @@ constexpr std::size_t most_boxes_made_smaller_by_definition = 2'000;
 
 }  // namespace
 
-std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run) {
-  try {
-    return run();
-  } catch (const Stopped&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;  // the machine's fault
-  } catch (const std::exception& thrown) {
-    return fmt::format("{} threw: {}", algorithm, thrown.what());
-  }
-}
-
 template <int D, typename Real>
 std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known) {
   const Algorithm& algorithm = *entry.algorithm;

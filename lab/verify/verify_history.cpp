@@ -11,6 +11,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/verify/verify.hpp"

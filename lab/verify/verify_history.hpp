@@ -15,10 +15,6 @@
 
 namespace broadside::lab {
 
-/// Runs a check of an algorithm and returns its fault, or what the algorithm threw. Lets Stopped and
-/// std::bad_alloc through, which are not the algorithm's fault.
-std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run);
-
 /// The fault of an algorithm on a history; empty if there is none. `known` is where the expected pairs of
 /// many boxes come from.
 template <int D, typename Real>
