@@ -51,7 +51,7 @@ std::string range(const Tunable& tunable, double found) {
   // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
   if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
     return kind + " above 0";
-  if (most(tunable) == std::numeric_limits<double>::max())
+  if (most(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
     return kind + " of at least " + text_of(tunable.least);
   return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));
 }
