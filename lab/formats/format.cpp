@@ -127,7 +127,7 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
                     format.name, options.ids));
   if (options.say_invalid && !format.can_skip)
     throw FileError(
-        fmt::format("{}: is in format {}, in which --skip-invalid does not apply; expected "
+        fmt::format("{}: is in format {}, where --skip-invalid can leave nothing out; expected "
                     "a table or a map",
                     name, format.name));
   if (options.boxes.empty() ||
