@@ -22,7 +22,7 @@
 namespace broadside::bench {
 namespace {
 
-/// Slower than so many times the best, by what advice itself measured, and it is not measured again.
+/// An algorithm this many times slower than the best, as advice itself measured it, is not measured again.
 constexpr double margin_of_rivals = 2;
 
 template <int D>

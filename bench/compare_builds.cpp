@@ -1,5 +1,5 @@
 // Two builds of the program against each other: compare_builds OLD NEW [ROUNDS] [ARGUMENTS OF compare ...].
-// Runs `OLD compare` and `NEW compare` in turns, ROUNDS times each (standard: 5), every run a process of its
+// Runs `OLD compare` and `NEW compare` in turns, ROUNDS times each (default: 5), every run a process of its
 // own with an order drawn anew, and prints the time of the new build over that of the old one for each case
 // and algorithm: the median over the rounds, with a 95 % bootstrap interval. Processes differ among
 // themselves (where memory lies, say), so that one of each says little.
@@ -24,7 +24,7 @@
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/report/phrases.hpp"
+#include "lab/report/table.hpp"
 
 namespace broadside::bench {
 namespace {

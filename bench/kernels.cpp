@@ -1,8 +1,8 @@
 // The kernels alone, by the number of boxes in a run and by instruction set: kernels
 // [--benchmark_filter=...].
 //
-// Runs are such that a box has some eight candidates on the swept axis, whatever their size. A time is that
-// of a whole call; pairs of boxes compared and pairs found, a second, stand beside it.
+// Runs are made so that a box has some eight candidates on the swept axis, whatever their size. A time is
+// that of a whole call; pairs of boxes compared and pairs found, a second, stand beside it.
 #include <algorithm>
 #include <cstdint>
 #include <string>

@@ -31,7 +31,7 @@ namespace {
 
 using lab::peers::Answers;
 
-/// Somebody who answers a batch.
+/// Something that answers a batch.
 struct Participant {
   std::string name;
   std::function<Answers()> ask;

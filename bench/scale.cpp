@@ -13,8 +13,8 @@
 
 #include "bench/guarded.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/measure/allocation.hpp"
 #include "lab/measure/benchmark.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/scenes/scene.hpp"
@@ -40,8 +40,9 @@ void measure(const lab::NamedScene& named, std::size_t boxes, const std::string&
     const double milliseconds = watch.milliseconds();
     const auto memory = meter.read();
     if (expected != 0 && pairs.hash() != expected)
-      throw std::runtime_error(fmt::format("{}: {} pairs; expected those that the algorithm before it found",
-                                           entry.spec.text(), pairs.count()));
+      throw std::runtime_error(
+          fmt::format("{}: {} pairs; expected the pairs that the algorithm before it found",
+                      entry.spec.text(), pairs.count()));
     expected = pairs.hash();
     fmt::print("{}D  {:<20} {:>14} {:>8.2f} {:>9.1f} {:>12.1f} {:>7.1f}\n", D, entry.spec.text(),
                lab::grouped(pairs.count()), milliseconds / 1e3, milliseconds * 1e6 / count,

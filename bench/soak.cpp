@@ -1,4 +1,4 @@
-// Whether a World grows: soak [FRAMES [SPEC]], of 100,000 boxes of which 1 % are replaced in each frame.
+// Whether a World grows: soak [FRAMES [SPEC]], of 100,000 boxes; 1 % of them are replaced in each frame.
 //
 // Prints what the world holds and what the process does, over what they were after the first frames, when
 // slots are in use again; and compares the pairs now and then with those of a search from nothing, through

@@ -22,7 +22,7 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/formats/write_file.hpp"
-#include "lab/measure/processor_share.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::cli {
@@ -192,25 +192,23 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
              "name or spec of a scene")
       ->required();
   add_input_options(*verb, arguments->read);
-  verb->add_option("-n", arguments->boxes,
-                   "Number of boxes of a scene, such as 1000, 100k (standard: 10000)");
+  verb->add_option("-n", arguments->boxes, "Number of boxes of a scene, such as 1000, 100k (default: 10000)");
   verb->add_option("--moving", arguments->moving,
-                   "Fraction of the boxes that move, from 0 to 1, where these are still (standard: 0.1 if "
+                   "Fraction of the boxes that move, from 0 to 1, where these are still (default: 0.1 if "
                    "--frames is given)");
-  verb->add_option("--frames", arguments->frames, "Frames that they move (standard: 20)");
+  verb->add_option("--frames", arguments->frames, "Number of frames with motion (default: 20)");
   add_motion_options(*verb, arguments->motion);
-  verb->add_option("--seed", arguments->seed, "Seed of a scene (standard: 1)")->check(is_seed);
+  verb->add_option("--seed", arguments->seed, "Seed of a scene (default: 1)")->check(is_seed);
   add_algorithms(*verb, arguments->entries.algorithms,
                  "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
                  "Peers are shown, but never advised");
   add_threads(*verb, arguments->entries,
-              "Threads that a search may use besides one, 0 for as many as there are, or several such as "
-              "2,4: tried with the best, and advised where they pay");
+              "Numbers of threads to try besides one, such as "
+              "2,4 (0: as many as the machine has); advised where they pay");
   verb->add_option("--budget", arguments->budget,
-                   fmt::format("Seconds that measuring may take, about (standard: {})",
+                   fmt::format("About how many seconds measuring may take (default: {})",
                                lab::AdviseOptions{}.budget_seconds));
-  verb->add_option("--json", arguments->json,
-                   "Write the advice and all that it is based on to this file as well")
+  verb->add_option("--json", arguments->json, "Also write the advice and its measurements to this file")
       ->type_name("FILE");
   add_examples(*verb, {{"advise boxes.csv", "the algorithm for your boxes, from any file that is read"},
                        {"advise recording.btrace --threads 1,4 --json advice.json",

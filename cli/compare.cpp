@@ -25,7 +25,6 @@
 #include "lab/numbers.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/report/phrases.hpp"
 #include "lab/report/scene_drawings.hpp"
 #include "lab/report/table.hpp"
 
@@ -174,15 +173,15 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
       "Compares algorithms on scenes, every result verified. Without options: the quick comparison, which "
       "takes about two and a half minutes.");
   add_scenes(*verb, "scenes", arguments->scenes,
-             "Names, specs such as power_law:exponent=2, or files, - for standard input (standard: every "
+             "Names, specs such as power_law:exponent=2, or files, - for standard input (default: every "
              "generated scene)");
   add_algorithms(*verb, arguments->entries.algorithms);
   add_file_options(*verb, arguments->input);
-  verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (standard: 10000)")
+  verb->add_option("-n", arguments->boxes, "Numbers of boxes, such as 1000,100k,1e6 (default: 10000)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NUMBERS");
-  verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (standard: both)")
+  verb->add_option("--dimension", arguments->dimensions, "2, 3 or 2,3 (default: both)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NUMBERS")
@@ -194,17 +193,17 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
       ->allow_extra_args(false)
       ->type_name("NUMBERS");
   verb->add_option("--frames", arguments->frames,
-                   "Frames of a moving scene (standard: 20); alone, a tenth of the boxes moves");
+                   "Frames of a moving scene (default: 20); alone, a tenth of the boxes moves");
   add_motion_options(*verb, arguments->motion);
   add_threads(*verb, arguments->entries,
-              "Threads that an algorithm searches with, 0 for as many as there are; of several, such as "
-              "1,2, each. Our own use them, others are there once, with one thread");
+              "Number of threads to search with (0: as many as the machine has), or several, such as "
+              "1,2. Our algorithms use them; others take part once, with one thread");
   verb->add_option("--seed", arguments->seed,
-                   "Seed of a scene's first input; the others count up from it (standard: 1)")
+                   "Seed of a scene's first input; the others count up from it (default: 1)")
       ->check(is_seed);
   verb->add_option("--budget", arguments->budget,
                    fmt::format("Seconds that one search, or one history, may take; a slower algorithm is "
-                               "skipped and its time estimated (standard: {} and {}, with --long {})",
+                               "skipped and its time estimated (default: {} and {}, with --long {})",
                                lab::Effort{}.budget_seconds, lab::Effort{}.history_seconds,
                                lab::long_effort().budget_seconds));
   add_result_files(*verb, arguments->files);
@@ -214,7 +213,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   add_examples(
       *verb,
       {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
-       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, a tenth of which moves"}});
+       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, while a tenth of them moves"}});
   return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 

@@ -54,18 +54,17 @@ Verb add_convert(CLI::App& program) {
   const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* const verb = program.add_subcommand(
       "convert",
-      "Writes the boxes of a file in another format, frame by frame; `broadside list` tells which. Of a "
-      "table's other columns, the ids stay where the format holds ids, and it is said which are left out.");
+      "Writes the boxes of a file in another format, frame by frame; `broadside list` shows the formats. A "
+      "table's ids stay where the format holds ids; a message names the columns that are left out.");
   verb->add_option("file", arguments->file, "The file to read; - is standard input")->required();
   verb->add_option("-o,--output", arguments->output,
                    "The file to write, in the format that its extension says; - is standard output")
       ->required();
   verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
       ->type_name("NAME");
-  verb->add_option(
-          "--ids", arguments->ids,
-          "Keep these ids: a table's column (standard: id, if there is one), or a map's property (id "
-          "is a feature's own)")
+  verb->add_option("--ids", arguments->ids,
+                   "Keep these ids: a table's column (default: id, if there is one), or a map's property (id "
+                   "is a feature's own)")
       ->type_name("NAME");
   add_input_options(*verb, arguments->input);
   add_examples(*verb, {{"convert boxes.csv -o boxes.npy", "a table as a NumPy array"},

@@ -20,7 +20,6 @@
 #include "lab/catalogue.hpp"
 #include "lab/formats/write_file.hpp"
 #include "lab/report/drawing.hpp"
-#include "lab/report/drawing_svg.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
@@ -46,7 +45,7 @@ struct DrawArguments {
   std::string frame;
 };
 
-/// Of what is asked for by its own name, each; of a group, those that lay something over boxes.
+/// Every algorithm that is asked for by name; of a group, the ones that lay something over boxes.
 std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::string& list, int dimension) {
   std::vector<lab::Entry> chosen;
   if (list.empty()) return chosen;
@@ -140,19 +139,19 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
       ->required();
   add_algorithms(*verb, arguments->algorithms,
                  "What to lay over the boxes: a spec such as quadtree:capacity=16, or several with commas, "
-                 "side by side; own, paper or all for those of them that lay something over boxes "
-                 "(standard: only the boxes)");
+                 "side by side; own, paper or all: the ones that lay something over boxes "
+                 "(default: only the boxes)");
   verb->add_option(
       "-n", arguments->boxes,
-      fmt::format("Number of boxes (standard: {}); of a scene or file of more, so many are taken "
+      fmt::format("Number of boxes (default: {}); of a scene or file of more, this many are taken "
                   "and made larger, as dense as all",
                   drawn_boxes));
-  verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)")
+  verb->add_option("--dimension", arguments->dimension, "2 or 3 (default: 2 where the scene has it)")
       ->check(is_dimension);
-  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
+  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (default: 1)")
       ->check(is_seed);
   verb->add_option("--frame", arguments->frame,
-                   "The frame of a scene or file whose boxes move, counted from 0 (standard: the first)");
+                   "The frame of a scene or file whose boxes move, counted from 0 (default: the first)");
   add_file_options(*verb, arguments->input);
   add_examples(*verb, {{"draw clustered --algorithms quadtree:capacity=16,bvh -o trees.svg",
                         "300 boxes of a scene and the nodes of two trees, side by side"},

@@ -15,7 +15,7 @@
 #include "cli/verbs.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/input.hpp"
-#include "lab/measure/processor_share.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/scene_drawings.hpp"
 #include "paper/experiments/results.hpp"
@@ -31,7 +31,7 @@ struct ExperimentArguments {
   ResultFiles files;
 };
 
-/// Those that were named, each once, by number; all if none was.
+/// The named experiments, each once, by number; all if none was named.
 std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names) {
   std::vector<const lab::Experiment*> all;
   if (names.empty()) {
@@ -148,7 +148,7 @@ Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
       "Tests the claims of the paper, each by an experiment with a verdict. All of them take up to twenty "
       "minutes, with --quick up to three.");
   verb->add_option("names", arguments->names,
-                   "Names or numbers of experiments, as --list shows them (standard: all)");
+                   "Names or numbers of experiments, as --list shows them (default: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
   verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
   verb->add_option(

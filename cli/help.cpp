@@ -31,7 +31,7 @@ std::size_t terminal_width() {
   return width == 0 ? standard_width : std::clamp(width, least_width, most_width);
 }
 
-/// The words of `text` in lines of at most `width`, the first of which begins in column `column`, the others
+/// The words of `text` in lines of at most `width`; the first begins in column `column`, the others
 /// in column `indent`.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
   std::string lines;
@@ -88,13 +88,13 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
   const bool has_value = option->get_type_size() != 0 && !option->get_type_name().empty();
   if (has_value) name += " " + get_label(option->get_type_name());
   std::string text = option->get_description();
-  if (!option->get_default_str().empty()) text += " (standard: " + option->get_default_str() + ")";
+  if (!option->get_default_str().empty()) text += " (default: " + option->get_default_str() + ")";
   if (option->get_required()) text += " (required)";
   return entry(name, text);
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  // Lines that are indented stand as they are: commands are there to be copied.
+  // Indented lines are not wrapped: they are commands to be copied.
   std::string footer;
   std::istringstream lines(app->get_footer());
   for (std::string line; std::getline(lines, line);)

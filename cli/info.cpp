@@ -35,12 +35,12 @@ Verb add_info(CLI::App& program) {
   const auto arguments = std::make_shared<BoxArguments>();
   CLI::App* const verb =
       program.add_subcommand("info",
-                             "Tells what a file or a scene holds: how many boxes and frames, where, "
-                             "how large (of the frame that has the most), "
+                             "Describes a file or a scene: the number of boxes and frames, where they are, "
+                             "their sizes (in the fullest frame) "
                              "and how they move. Reads it frame by frame.");
   add_boxes(*verb, *arguments);
   add_examples(*verb, {{"info boxes.csv", "a file's boxes and how they move"},
-                       {"info mesh.ply --boxes edges", "those of a mesh's edges"}});
+                       {"info mesh.ply --boxes edges", "the boxes of a mesh's edges"}});
   return [arguments, verb] { return run(*arguments, *verb); };
 }
 

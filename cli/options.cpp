@@ -54,10 +54,10 @@ std::vector<std::size_t> threads_of(const EntryOptions& options) {
 
 void add_motion_options(CLI::App& verb, MotionOptions& options) {
   verb.add_option("--drift", options.drift,
-                  fmt::format("How far a mover goes in a frame, in units of its own size (standard: {})",
+                  fmt::format("How far a mover goes in a frame, in units of its own size (default: {})",
                               options.drift_or_standard()));
   verb.add_option("--teleport", options.teleport,
-                  "Fraction of the movers that jump anywhere instead, in each frame (standard: 0)");
+                  "Fraction of the movers that jump anywhere instead, in each frame (default: 0)");
 }
 
 void check(const MotionOptions& options) {
@@ -84,29 +84,28 @@ lab::Progress progress_of(const std::string& path) {
 void add_file_options(CLI::App& verb, InputOptions& options) {
   verb.add_option(
           "--format", options.format,
-          "The format of the input, by its name or an extension (standard: told by its content and name)")
+          "The format of the input, by its name or an extension (default: told by its content and name)")
       ->type_name("NAME");
   verb.add_option("--boxes", options.boxes,
-                  "What the boxes are of, such as triangles, edges, features or segments; `broadside list` "
+                  "What to make boxes of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
   verb.add_option("--layer,--array", options.layer,
-                  "The layer of a map in TopoJSON, such as counties (standard: all), or the array of an .npz "
-                  "file (standard: the only one)")
+                  "The layer of a map in TopoJSON, such as counties (default: all), or the array of an .npz "
+                  "file (default: the only one)")
       ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")
       ->type_name("LIST");
-  verb.add_flag(
-      "--skip-invalid", options.skips_invalid,
-      "Leave out boxes that are invalid, such as those with a NaN or min > max, and say which and why; "
-      "they keep their numbers as absent boxes");
+  verb.add_flag("--skip-invalid", options.skips_invalid,
+                "Leave out invalid boxes, such as boxes with a NaN or min > max, and say which and why; "
+                "they keep their numbers, as absent boxes");
 }
 
 void add_input_options(CLI::App& verb, InputOptions& options) {
   add_file_options(verb, options);
   verb.add_option("--precision", options.precision,
-                  "float or double: coordinates are rounded to it (standard: the input's own)");
+                  "float or double: coordinates are rounded to it (default: the input's own)");
   verb.add_option("--dimension", options.dimension, "2 or 3; in 2, boxes in 3D are seen along the z axis")
       ->check(is_dimension);
 }

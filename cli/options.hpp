@@ -49,7 +49,7 @@ struct MotionOptions {
 /// Adds --drift and --teleport.
 void add_motion_options(CLI::App& verb, MotionOptions& options);
 
-/// Throws Unusable if a value is none that boxes can move by.
+/// Throws Unusable if a value is out of range.
 void check(const MotionOptions& options);
 
 /// What was given on the command line; empty or 0 where nothing was.

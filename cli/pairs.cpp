@@ -158,7 +158,7 @@ class Join {
   const PairsArguments& arguments_;
   lab::Entry entry_;
   std::vector<lab::FrameOfFile> sets_;
-  std::vector<lab::MeshElements> elements_;  // of each set, where those with a shared vertex are left out
+  std::vector<lab::MeshElements> elements_;  // of each set, where pairs with a shared vertex are left out
   lab::Rounding rounding_;
   double read_ms_ = 0;
   double join_ms_ = 0;
@@ -208,7 +208,7 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<PairsArguments>();
   CLI::App* const verb = program.add_subcommand(
       "pairs",
-      "Finds the pairs of overlapping boxes of a file, or those between the boxes of two files, exactly in "
+      "Finds the pairs of overlapping boxes of a file, or between the boxes of two files, exactly in "
       "the precision of the input; where coordinates had to be rounded, it says so. Boxes are counted from "
       "0.");
   verb->add_option("files", arguments->files, "A file, or two; - is standard input")->required();
@@ -225,13 +225,13 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "a few past corners")
       ->type_name("DISTANCE");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
-                   "Name or spec such as grid:cell=2.5; it decides the time and not the pairs")
+                   "Name or spec such as grid:cell=2.5; it affects the time, not the pairs")
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads,
-                   "Threads to search with, 0 for as many as there are; they decide the time alone")
+                   "Threads to search with (0: as many as the machine has); they affect the time alone")
       ->capture_default_str();
   verb->add_option("--frame", arguments->frame,
-                   "The frame of a file whose boxes move, counted from 0 (standard: the first)");
+                   "The frame of a file whose boxes move, counted from 0 (default: the first)");
   verb->add_option("-o,--output", arguments->output,
                    "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
                    "as CSV unless --to says otherwise")
@@ -246,7 +246,7 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                  "The two files are one mesh at two times: join the boxes that its parts sweep in between");
   verb->add_option("--left", arguments->left, "With --swept: vertices, edges or faces")->type_name("PART");
   verb->add_option("--right", arguments->right,
-                   "Likewise; where it is the same part, each pair of two of them is found once")
+                   "Likewise; where both are the same part, each pair is found once")
       ->type_name("PART");
   verb->add_flag("--exclude-shared", arguments->excludes_shared,
                  "With --swept: leave out pairs that have a vertex in common");

@@ -1,4 +1,4 @@
-// What `broadside pairs` is told, and whether it makes sense together.
+// The arguments of `broadside pairs`, and whether they go together.
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>

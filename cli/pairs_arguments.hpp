@@ -1,4 +1,4 @@
-// What `broadside pairs` is told, and whether it makes sense together.
+// The arguments of `broadside pairs`, and whether they go together.
 #pragma once
 
 #include <string>
@@ -30,10 +30,10 @@ struct PairsArguments {
   bool excludes_shared = false;
 };
 
-/// The part of a mesh that `text` is. Throws Unusable, naming `option`, if it is none.
+/// The part of a mesh that `text` names. Throws Unusable, naming `option`, if it names none.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
 
-/// The distance that --within gives. Throws Unusable if it is none.
+/// The distance of --within. Throws Unusable if it is invalid.
 double read_distance(const std::string& text);
 
 /// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.

@@ -28,7 +28,7 @@ void add_result_files(CLI::App& verb, ResultFiles& files);
 /// file at `input` (empty: there is none), or if this program can make no page.
 void check(const ResultFiles& files, const std::string& input = "");
 
-/// Writes those that are asked for, each whole or not at all. The page is made only if it is one of them.
+/// Writes the files that are asked for, each whole or not at all. The page is made only if it is one of them.
 /// Throws FileError.
 void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page);
 

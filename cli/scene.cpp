@@ -92,7 +92,7 @@ Verb add_scene(CLI::App& program) {
   const auto arguments = std::make_shared<SceneArguments>();
   CLI::App* const verb = program.add_subcommand(
       "scene",
-      "Makes the boxes of a scene and writes them to a file; `broadside list` tells scenes and formats.");
+      "Makes the boxes of a scene and writes them to a file; `broadside list` shows scenes and formats.");
   add_scenes(*verb, "scene", arguments->scenes, "Name, spec such as power_law:exponent=2, or file")
       ->required();
   verb->add_option("-o,--output", arguments->output,
@@ -101,15 +101,15 @@ Verb add_scene(CLI::App& program) {
   verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
       ->type_name("NAME");
   verb->add_option("-n", arguments->boxes,
-                   fmt::format("Number of boxes, such as 1000, 100k or 1e6 (standard: {})", standard_boxes));
-  verb->add_option("--dimension", arguments->dimension, "2 or 3 (standard: 2 where the scene has it)")
+                   fmt::format("Number of boxes, such as 1000, 100k or 1e6 (default: {})", standard_boxes));
+  verb->add_option("--dimension", arguments->dimension, "2 or 3 (default: 2 where the scene has it)")
       ->check(is_dimension);
   verb->add_option("--moving", arguments->moving, "Fraction of the boxes that move, from 0 to 1");
   verb->add_option(
       "--frames", arguments->frames,
-      "Frames after the first (standard: 20 where something moves); alone, a tenth of the boxes moves");
+      "Frames after the first (default: 20 where something moves); alone, a tenth of the boxes moves");
   add_motion_options(*verb, arguments->motion);
-  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (standard: 1)")
+  verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (default: 1)")
       ->check(is_seed);
   add_file_options(*verb, arguments->input);
   add_examples(*verb, {{"scene clustered -n 100k -o boxes.csv", "100,000 boxes in clusters, as a table"},

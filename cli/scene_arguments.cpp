@@ -69,9 +69,9 @@ void add_boxes(CLI::App& verb, BoxArguments& arguments) {
   add_input_options(verb, arguments.input);
   verb.add_option(
           "-n", arguments.boxes,
-          fmt::format("Number of boxes of a scene, such as 1000, 100k (standard: {})", standard_boxes))
+          fmt::format("Number of boxes of a scene, such as 1000, 100k (default: {})", standard_boxes))
       ->type_name("NUMBER");
-  verb.add_option("--seed", arguments.seed, "Seed of a scene (standard: 1)")->check(is_seed);
+  verb.add_option("--seed", arguments.seed, "Seed of a scene (default: 1)")->check(is_seed);
 }
 
 lab::BoxFile open_boxes(const CLI::App& verb, const BoxArguments& arguments) {

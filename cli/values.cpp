@@ -27,7 +27,7 @@ std::size_t read_count(const std::string& option, const std::string& text) {
     number *= unit;
     if (unit > 0) ++rest;
   }
-  // From 2^53 on a double leaves out whole numbers; no machine holds so many boxes.
+  // From 2^53 on a double leaves out whole numbers; no machine holds that many boxes.
   constexpr double most = 9007199254740992.0;
   if (error != std::errc() || rest != end || !(number >= 1 && number <= most) || number != std::floor(number))
     throw Unusable(option + " is '" + text + "'; expected a whole number from 1, such as 1000, 100k or 1e6");

@@ -13,24 +13,24 @@ namespace broadside::cli {
 /// `option`, if it is none or is below 1.
 std::size_t read_count(const std::string& option, const std::string& text);
 
-/// The whole number from 0 that `text` is, likewise.
+/// The same for a whole number from 0.
 std::size_t read_index(const std::string& option, const std::string& text);
 
-/// Likewise each of a list of counts.
+/// The same for each of a list of counts.
 std::vector<std::size_t> read_counts(const std::string& option, const std::vector<std::string>& texts);
 
-/// The number of threads that `text` is: 0 for as many as there are. Throws Unusable if it is none up to
-/// 1024, or if it is not 1 in a build without threads.
+/// The number of threads in `text`; 0 stands for as many as the machine has. Throws Unusable if it is none up
+/// to 1024, or if it is not 1 in a build without threads.
 std::size_t read_threads(const std::string& text);
 
 /// Throw Unusable if the value is no fraction from 0 to 1, or no dimension.
 void check_fraction(const std::string& option, double value);
 void check_dimension(int dimension);
 
-/// For CLI11: what is wrong with a dimension that is no number; empty if it is one.
+/// For CLI11: the fault of a dimension that is not a number; empty if it is one.
 std::string is_dimension(const std::string& text);
 
-/// What is wrong with a seed, as a check of CLI11's; empty if nothing is.
+/// For CLI11: the fault of a seed; empty if there is none.
 std::string is_seed(const std::string& text);
 
 /// Throws Unusable if no file can be made at `path`, so that this is known before hours of work. Standard

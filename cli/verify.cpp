@@ -61,21 +61,22 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
   const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* const verb = program.add_subcommand(
       "verify",
-      "Checks on a file or a scene that algorithms find exactly the pairs there are, in every frame, and "
+      "Checks on a file or a scene that algorithms find exactly the overlapping pairs in every frame, and "
       "that they "
-      "track what changes between frames; in the precision of the input. Where one fails, writes a small "
-      "file that shows it, and ends with status 1, as where every one is skipped.");
+      "report exactly the changes between frames, in the precision of the input. If one fails, writes a "
+      "small "
+      "file that shows it and ends with status 1, also if all are skipped.");
   add_boxes(*verb, arguments->boxes);
   add_algorithms(*verb, arguments->options.algorithms);
   verb->add_option("--budget", arguments->options.budget_seconds,
-                   "Seconds that each algorithm may take; one that would need more for a frame is skipped, "
+                   "Seconds that each algorithm may take; one that needs more for a frame is skipped, "
                    "one that needs more for all stops there")
       ->capture_default_str();
   verb->add_option("--counterexample", arguments->counterexample,
-                   "Where the small file is written (standard: counterexample.csv, or .btrace where boxes "
+                   "Where the small file is written (default: counterexample.csv, or .btrace where boxes "
                    "move; numbered where there is one already)")
       ->type_name("FILE");
-  add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the pairs there are?"},
+  add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the overlapping pairs?"},
                        {"verify recording.btrace --algorithms auto,grid:cell=2.5",
                         "two of them, in every frame of a recording"}});
   return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };

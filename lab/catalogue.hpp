@@ -1,4 +1,4 @@
-// The lab's list of algorithms: the library's, the paper's, the peers', and whatever a user adds.
+// The lab's list of algorithms: the library's, the paper's, the peers' and the user's.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@ struct Entry {
   Spec spec;
 };
 
-/// How many threads the entry searches with: what its spec says, 1 if nothing; of `threads=0`, how many
-/// there are.
+/// The number of threads that the entry searches with: its spec's, by default 1; with `threads=0` as many as
+/// the machine has.
 std::size_t threads_of(const Entry& entry);
 
-/// Each entry with each number of threads in turn, as a spec with that many. One that cannot use several,
-/// or whose spec says how many, stays as it is, once.
+/// Each entry with each number of threads in its spec. An entry that cannot use several, or whose spec gives
+/// a number, stays as it is, once.
 std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<const std::size_t> threads);
 
 /// A list of algorithms that can be searched by name, spec and group. Not to be changed while entries
@@ -29,7 +29,7 @@ std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<con
 class Catalogue {
  public:
   /// Registers the paper's listings; takes all algorithms that then have a name, and the peers that were
-  /// built in. Throws InvalidSpec if somebody has registered the name of a group, a listing or a peer.
+  /// built in. Throws InvalidSpec if the name of a group, a listing or a peer is registered already.
   Catalogue();
 
   /// Adds an algorithm to this list alone. Throws InvalidSpec if its name is taken.

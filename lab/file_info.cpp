@@ -191,7 +191,12 @@ FileInfo file_info(BoxFile file) {
 
 FileInfo file_info(const std::filesystem::path& path, const ReadOptions& options) {
   const Stopwatch watch;
-  BoxFile file = open_file(path, options);
+  // Rounded here and not by the reader, so that what was rounded is counted.
+  ReadOptions unrounded = options;
+  const bool is_rounded = options.precision == Precision::float32;
+  if (is_rounded) unrounded.precision.reset();
+  BoxFile file = open_file(path, unrounded);
+  if (is_rounded) file.frames = with_precision(std::move(file.frames), Precision::float32, file.name);
   const double opened = watch.milliseconds() / 1e3;
   FileInfo info = file_info(std::move(file));
   info.seconds += opened;

@@ -28,7 +28,7 @@ struct SizeBin {
   std::uint64_t boxes;
 };
 
-/// What a file holds. The fullest frame is the first of those that have the most boxes.
+/// What a file holds. The fullest frame is the first with the most boxes.
 struct FileInfo {
   std::string file;
   std::string format;  ///< empty for a scene
@@ -52,7 +52,7 @@ struct FileInfo {
   std::array<double, 3> moving{};  ///< least, median and greatest fraction of a frame's boxes that move
 
   double seconds = 0;       ///< that reading took
-  std::uint64_t bytes = 0;  ///< of the file; 0 where nobody knows
+  std::uint64_t bytes = 0;  ///< of the file; 0 where unknown
   std::uint64_t boxes = 0;  ///< that were read, in all frames
   std::string warning{};    ///< what had to be left out of a damaged file; empty otherwise
 };

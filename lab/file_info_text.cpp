@@ -44,7 +44,7 @@ std::string axes_text(const FileInfo& info) {
   return table.text("  ");
 }
 
-/// A line for each power of two; at most so many, the smallest sizes together in the first.
+/// A line for each power of two; beyond most_lines, the smallest sizes share the first line.
 std::string sizes_text(const FileInfo& info) {
   if (info.sizes.empty()) return {};
   constexpr std::size_t most_lines = 16;

@@ -35,15 +35,15 @@ struct FrameOfFile {
   bool is_computed = false;  ///< whether bounds were computed from a centre and a size
 };
 
-/// Reads one frame, counted from 0. Throws FileError, also if there are not so many. Memory: that of a frame,
+/// Reads one frame, counted from 0. Throws FileError, also if there are fewer. Memory: that of a frame,
 /// where the format is read frame by frame.
 FrameOfFile read_frame(BoxFile file, std::size_t frame);
 
 /// Rounds doubles to the nearest floats, and counts what that changes.
 Rounding round_to_float(AnyBoxes& boxes);
 
-/// Brings two sets to the same precision: double, exactly, if either is. Throws FileError, naming both, if
-/// one is in 2D and the other in 3D.
+/// Brings two sets to the same precision: double, which is exact, if either is double. Throws FileError,
+/// naming both, if one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);
 
 /// Writes every pair of overlapping boxes once, in the order in which the entry finds them. Throws as
@@ -53,10 +53,10 @@ void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs);
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.
 void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs);
 
-/// Writes every pair of boxes between which the gap on each axis, 0 where they overlap on it, is at most
-/// `distance`, which is finite and 0 or more. So it finds all pairs whose Euclidean distance is at most that,
-/// and a few more, past corners. Exact: the gap of two coordinates is compared with the distance as the real
-/// numbers that they are, unrounded. Otherwise as join.
+/// Writes every pair of boxes whose gap on each axis (0 where they overlap on it) is at most `distance`,
+/// which is finite and 0 or more. So it finds all pairs whose Euclidean distance is at most that, and a few
+/// more, past corners. Exact: the gap of two coordinates is compared with the distance as the real numbers
+/// that they are, unrounded. Otherwise as join.
 void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs);
 
 /// Writes every such pair of a box of `left` and one of `right`, which match, likewise.

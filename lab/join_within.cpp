@@ -1,4 +1,4 @@
-// Pairs of boxes within a distance: those that overlap once each box is enlarged by half of it, rounded
+// Pairs of boxes within a distance: pairs that overlap once each box is enlarged by half of it, rounded
 // outward, and that then pass a test without rounding.
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, doubl
   for (Box<D, Real>& box : result) {
     if (is_absent(box)) continue;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      // The next number makes good what rounding took away, here and where half of the least number is none.
+      // The next number makes up for rounding, also where half of the least number rounds to 0.
       box.min[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.min[axis]) - half), -infinity);
       box.max[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.max[axis]) + half), infinity);
     }

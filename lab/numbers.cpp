@@ -28,9 +28,10 @@ std::string counted(std::uint64_t number, std::string_view one, std::string_view
 std::string rounded(double number) {
   if (std::isnan(number) || number >= 99.95) return whole(number);
   if (number <= 0) return "0";
+  if (number < 0.9995e-4) return fmt::format("{:.2e}", number);
   // One digit fewer for each power of ten; from 9.995 on, "10.0" and not "10.00".
   const int power = static_cast<int>(std::floor(std::log10(number * (1 + 0.0005))));
-  return fmt::format("{:.{}f}", number, std::clamp(2 - power, 0, 6));
+  return fmt::format("{:.{}f}", number, std::max(2 - power, 0));
 }
 
 std::string ratio_text(double ratio) {

@@ -18,7 +18,8 @@ std::string whole(double number);
 /// "1 pair", "1,234,567 pairs".
 std::string counted(std::uint64_t number, std::string_view one, std::string_view many);
 
-/// About three significant digits and no exponent: "0.0712", "4.21", "41.2", "41,200".
+/// Three significant digits, more before the point: "0.0712", "4.21", "41.2", "41,235"; below 0.0001
+/// "7.12e-09".
 std::string rounded(double number);
 
 /// A ratio to two significant digits: "0.83", "1.0", "19", "1,300".

@@ -18,7 +18,7 @@ namespace broadside::lab {
 
 enum class PairFormat : std::uint8_t { csv, npy };
 
-/// The format of this name, csv or npy, or, where `name` is empty, that which a path's extension says; CSV
+/// The format of this name, csv or npy, or, where `name` is empty, the one that a path's extension names; CSV
 /// for what is_written_directly() and has none. Throws FileError.
 PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name = {});
 
@@ -33,7 +33,7 @@ struct PairIds {
 /// moved back to the array's header, as in a pipe.
 class PairFile {
  public:
-  /// Begins the file. The stream outlives this object; what is wrong with it, the caller sees. `is_between`
+  /// Begins the file. The stream outlives this object; the caller checks it. `is_between`
   /// says that pairs are of a left and a right set, which the columns are then called. Ids, which outlive
   /// this object, are for CSV alone.
   PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {});

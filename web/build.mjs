@@ -1,9 +1,9 @@
-// Bundles what is written in TypeScript.
+// Bundles the TypeScript of this folder and of paper/web.
 //
 //   node build.mjs --page FILE.cpp   the report's page, as a C++ source that holds it
-//   node build.mjs --html FILE.html  the same as it is, its document missing
-//   node build.mjs --tests [FOLDER]  the tests, for node --test, to *.test.mjs there (standard: build/web/tests)
-//   node build.mjs --paper FOLDER    what makes the paper, and its tests, to *.mjs there
+//   node build.mjs --html FILE.html  the page itself, without a document
+//   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
+//   node build.mjs --paper FOLDER    the program that makes the paper, and its tests, to FOLDER/*.mjs
 import { mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -11,6 +11,7 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
+const paper = join(here, "../paper/web");
 
 /** The page in two halves, between which the document goes. */
 async function page() {
@@ -60,10 +61,10 @@ function write(path, text) {
   renameSync(path + ".new", path);
 }
 
-async function build_page(path) {
+async function buildPage(path) {
   const [before, after] = await page();
   write(path, `// Written by web/build.mjs.
-#include "lab/report/page_template.hpp"
+#include "lab/report/page.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -86,8 +87,8 @@ PageTemplate page_template() { return {before, after}; }
 `);
 }
 
-/** Bundles programs for Node, each of its own. */
-async function build_programs(entryPoints, outdir) {
+/** Bundles programs for Node, one file each. */
+async function buildPrograms(entryPoints, outdir) {
   await build({
     entryPoints,
     outdir,
@@ -97,30 +98,26 @@ async function build_programs(entryPoints, outdir) {
     platform: "node",
     format: "esm",
     target: "node18",
+    nodePaths: [join(here, "node_modules")],  // for the files of paper/web
     external: ["playwright-core"],
     logLevel: "warning",
   });
 }
 
-/** The tests whose names begin so. */
-function tests_of(name) {
-  const sources = readdirSync(join(here, "tests")).filter((test) => test.startsWith(name) && test.endsWith(".test.ts"));
-  return sources.map((test) => join(here, "tests", test));
+/** The tests in a folder. */
+function testsIn(folder) {
+  return readdirSync(folder).filter((name) => name.endsWith(".test.ts")).map((name) => join(folder, name));
 }
 
-async function build_tests(folder) {
-  await build_programs(tests_of(""), folder);
-}
-
-async function build_paper(folder) {
-  const programs = ["main.ts", "without_samples.ts"].map((name) => join(here, "paper", name));
-  await build_programs([...programs, ...tests_of("paper")], folder);
+async function buildPaper(folder) {
+  const programs = ["main.ts", "without_samples.ts"].map((name) => join(paper, name));
+  await buildPrograms([...programs, ...testsIn(join(paper, "tests"))], folder);
 }
 
 const [mode, path] = process.argv.slice(2);
-if (mode === "--tests") await build_tests(path ?? join(here, "../build/web/tests"));
-else if (mode === "--paper" && path !== undefined) await build_paper(path);
-else if (mode === "--page" && path !== undefined) await build_page(path);
+if (mode === "--tests") await buildPrograms(testsIn(join(here, "tests")), path ?? join(here, "../build/web/tests"));
+else if (mode === "--paper" && path !== undefined) await buildPaper(path);
+else if (mode === "--page" && path !== undefined) await buildPage(path);
 else if (mode === "--html" && path !== undefined) write(path, (await page()).join("/*DOCUMENT*/"));
 else {
   console.error(`build.mjs: '${process.argv.slice(2).join(" ")}'; expected --page FILE.cpp, --html FILE.html, --paper FOLDER or --tests [FOLDER]`);

@@ -43,7 +43,7 @@ int run(int count, char** arguments) {
     listing += fmt::format("\n  {:<10} {}", part.name, part.what);
     names.push_back(part.name);
   }
-  program.footer("Parts, of which all are run unless some are named:" + listing);
+  program.footer("Parts; all are run unless some are named:" + listing);
   program.add_option("parts", wanted, "Parts to run")->check(CLI::IsMember(names));
   program.add_option("--algorithms", wishes.algorithms,
                      "Instead of a part's own; all others are compared with the first");

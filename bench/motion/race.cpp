@@ -13,7 +13,6 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/benchmark.hpp"
-#include "lab/measure/estimate.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"

@@ -61,7 +61,7 @@ const Hunter::Runs& Hunter::uniform(const lab::HardInput& input, bool again) {
     for (std::size_t i = 0; i < more.size(); ++i) {
       if (!more[i].finished())
         throw std::runtime_error(fmt::format("{} on uniform boxes did not end: {}; expected a time",
-                                             hunt_.algorithms[i].spec.text(), more[i].fault));
+                                             hunt_.algorithms[i].spec.text(), more[i].fault.data()));
     }
     if (runs.empty()) runs = more;
     for (std::size_t i = 0; i < more.size(); ++i) take_least(runs[i], more[i]);
@@ -86,7 +86,7 @@ void Hunter::check(InputResult& result, const RunAlgorithm& run) const {
   for (const Finding& finding : result.findings) {
     if (finding.run.finished()) differs(finding.run, finding.algorithm);
     if (finding.run.end == Run::End::failed)
-      result.fault = fmt::format("{}: {}", finding.algorithm, finding.run.fault);
+      result.fault = fmt::format("{}: {}", finding.algorithm, finding.run.fault.data());
   }
   for (const lab::Entry& reference : hunt_.references) {
     if (finished != 1) break;

@@ -15,7 +15,7 @@
 #include "bench/guarded.hpp"
 #include "bench/worst/hunt.hpp"
 #include "bench/worst/report.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/worst/input.hpp"
@@ -53,7 +53,7 @@ CLI::App* describe(CLI::App& program, Arguments& arguments) {
       "teleport, exponent, offset, order=made|shuffled|reversed, seed");
   program.add_option("inputs", arguments.inputs,
                      "Inputs such as plates:regions=4:dimension=3:call=track, instead of the fixed list");
-  program.add_option("--draw", arguments.draw, "Draw so many inputs instead of the fixed list");
+  program.add_option("--draw", arguments.draw, "Draw this many inputs instead of the fixed list");
   program.add_option("--seed", arguments.seed, "Of the drawn inputs")->capture_default_str();
   program.add_option("-n", arguments.hunt.effort.boxes, "Boxes of an input")
       ->check(CLI::Range(100, 100'000'000))

@@ -2,23 +2,91 @@
 #include "bench/worst/measure.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <exception>
+#include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/allocation.hpp"
 #include "lab/measure/benchmark.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/measure/samples.hpp"
 
 namespace broadside::bench {
 namespace {
+
+/// The beginning of a text, as Run::fault holds it.
+Fault fault_of(std::string_view text) {
+  Fault fault{};
+  text.copy(fault.data(), fault.size() - 1);
+  return fault;
+}
+
+[[noreturn]] void answer(int pipe, std::uint64_t most_bytes, const std::function<Run()>& run) {
+  const rlimit limit{most_bytes, most_bytes};
+  setrlimit(RLIMIT_AS, &limit);
+  Run result;
+  try {
+    result = run();
+  } catch (const std::bad_alloc&) {
+    result = {.end = Run::End::out_of_memory};
+  } catch (const std::exception& error) {
+    result = {.end = Run::End::failed, .fault = fault_of(error.what())};
+  }
+  const bool written = write(pipe, &result, sizeof result) == sizeof result;
+  // Not exit(): what the parent has not yet written out is the parent's to write.
+  _exit(written ? 0 : 1);
+}
+
+/// Calls `run` in a process of its own and returns its result; too_slow after `seconds`, out_of_memory beyond
+/// `most_bytes` of address space. Throws std::runtime_error if no process can be made.
+Run in_child(double seconds, std::uint64_t most_bytes, const std::function<Run()>& run) {
+  const auto refuse = [](const char* what) { throw std::system_error(errno, std::generic_category(), what); };
+  std::array<int, 2> ends;
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) refuse("worst: a pipe");
+  const pid_t child = fork();
+  if (child < 0) refuse("worst: a process");
+  if (child == 0) answer(ends[1], most_bytes, run);
+  close(ends[1]);
+  pollfd waiting{ends[0], POLLIN, 0};
+  const auto limit = static_cast<int>(std::min(seconds * 1e3 + 1, 1e9));
+  int ready = 0;
+  do {
+    ready = poll(&waiting, 1, limit);
+  } while (ready < 0 && errno == EINTR);
+  Run result;
+  const bool answered = ready > 0 && read(ends[0], &result, sizeof result) == sizeof result;
+  if (!answered) kill(child, SIGKILL);
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (ready == 0) return {.end = Run::End::too_slow};
+  if (!answered) return {.end = Run::End::failed, .fault = fault_of("ended without a result")};
+  return result;
+}
 
 struct TooManyPairs : std::exception {};
 

@@ -1,15 +1,35 @@
 // One algorithm on one input: its time, tests and memory, and the hash of its pairs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 
-#include "bench/worst/child.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/worst/input.hpp"
 
 namespace broadside::bench {
+
+/// The beginning of an error's text, in a Run that a child sends through a pipe.
+using Fault = std::array<char, 256>;
+
+/// What an algorithm did with an input. A frame is the call itself where nothing moves.
+struct Run {
+  enum class End { finished, too_slow, out_of_memory, too_many_pairs, failed };
+
+  End end = End::finished;
+  double milliseconds = 0;        ///< a call, the least of several; of a tracker the median frame
+  double worst_milliseconds = 0;  ///< of a tracker the slowest frame after the first; else as above
+  double tests = 0;               ///< a call or frame; negative where the algorithm does not count
+  std::uint64_t pairs = 0;        ///< of a tracker those of its first frame
+  std::uint64_t events = 0;       ///< of a tracker: begun and ended in all frames after the first
+  std::uint64_t hash = 0;         ///< of both
+  double peak_bytes = 0;          ///< taken beyond input and output
+  Fault fault{};                  ///< what it threw where it failed; ends with 0
+
+  bool finished() const { return end == End::finished; }
+};
 
 /// How an input is measured.
 struct Effort {

@@ -10,7 +10,6 @@
 #include "lab/advise/choice.hpp"
 #include "lab/advise/snippet.hpp"
 #include "lab/measure/cases.hpp"
-#include "lab/measure/pair_count.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/samples.hpp"

@@ -24,17 +24,16 @@ struct AdviseOptions {
   Watch watch{};
 };
 
-/// One that was measured, and how.
+/// An algorithm that was measured, and the result.
 struct Ranked {
   Measurement measurement;
   double milliseconds = 0;  ///< a call or a frame: of each input, or frame, the least of its samples, and the
-                            ///< median of these; an estimate or infinite where it was not let in
+                            ///< median of these; an estimate or infinite where it did not take part
   bool is_variant = false;  ///< whether a tunable is set that the user did not ask for
   bool is_finalist = false;  ///< whether it was in the second, longer round, from which is chosen
 };
 
-/// What is advised and what that is based on. Without a choice there is nothing to advise: nothing was
-/// verified.
+/// The advice and its grounds. Without a choice there is nothing to advise: nothing was verified.
 struct Advice {
   std::string input;           ///< the file's or scene's name
   std::string warning;         ///< of a file that was read in part; empty otherwise
@@ -42,11 +41,11 @@ struct Advice {
   Signals signals{};
   Mode mode = Mode::find;
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
-  std::size_t frames = 0;       ///< ... so many after it
+  std::size_t frames = 0;       ///< ... this many after it
   std::optional<double> floor_ms{};
   std::vector<Ranked> ranking{};   ///< finalists first; of them and of the others the fastest first,
                                    ///< those without a time last
-  std::optional<Choice> choice{};  ///< its places are those of the ranking
+  std::optional<Choice> choice{};  ///< its indices are into the ranking
 
   std::string spec{};     ///< what is advised
   double milliseconds{};  ///< that it takes, a call or a frame, as in Ranked
@@ -60,16 +59,16 @@ struct Advice {
 };
 
 /// Measures what the boxes are like, then all algorithms briefly and the best of them, with variants of their
-/// tunables, for longer: in turns, on these boxes and on their mirror images, which differ in nothing but
-/// what a processor may learn by heart. Every result is checked.
+/// tunables, for longer: in turns, on these boxes and on their mirror images, which differ only in what
+/// a branch predictor may learn. Every result is checked.
 ///
-/// Throws InvalidSpec, InvalidInput for boxes that are none, Stopped, and std::runtime_error where there are
-/// so many pairs that they cannot be kept.
+/// Throws InvalidSpec, InvalidInput for invalid boxes, Stopped, and std::runtime_error where there are too
+/// many pairs to keep.
 template <int D, typename Real>
 Advice advise(const Catalogue& catalogue, const std::string& input, const History<D, Real>& history,
               const AdviseOptions& options);
 
-/// The reasons and what would change the advice, from what else the advice holds: see Advice.
+/// Fills in Advice::reasons and Advice::changes from the rest of the advice.
 std::vector<std::string> reasons_of(const Advice& advice);
 std::vector<std::string> changes_of(const Advice& advice);
 

@@ -33,7 +33,7 @@ std::vector<double> least_of(std::span<const double> samples, std::size_t inputs
   return least;
 }
 
-/// The fastest of those that `counts`; empty if there are none.
+/// The fastest of the rivals that `counts` accepts; empty if there are none.
 template <typename Counts>
 std::optional<std::size_t> fastest(std::span<const Rival> rivals, const Counts& counts) {
   std::optional<std::size_t> best;

@@ -8,10 +8,10 @@
 #include "broadside/executor.hpp"
 
 #include "lab/advise/advise.hpp"
-#include "lab/measure/processor_share.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
-#include "lab/report/machine_json.hpp"
+#include "lab/measure/steadiness.hpp"
+#include "lab/report/machine.hpp"
 
 namespace broadside::lab {
 namespace {

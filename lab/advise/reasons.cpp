@@ -14,17 +14,17 @@
 namespace broadside::lab {
 namespace {
 
-/// From so many times as many boxes near each other as evenly spread ones have, they stand in clusters.
+/// Boxes stand in clusters if this many times as many are near each other as if they were spread evenly.
 constexpr double clustered = 2;
 
-/// Sizes are much alike if 99 % of the boxes are at most so many times as long as the median.
+/// Sizes are much alike if 99 % of the boxes are at most this many times as long as the median.
 constexpr double alike = 4;
 
-/// Who takes up to so many times the time is no slower, as far as sentences go.
+/// Sentences call an algorithm no slower if it takes up to this many times the time.
 constexpr double as_fast = 1.05;
 constexpr std::size_t most_others = 5;
 
-/// A count that is so many times another one is clearly more: what can explain a time.
+/// A count explains a time if it is this many times the other count.
 constexpr double clearly = 1.2;
 
 std::string base_of(std::string_view spec) { return std::string(spec.substr(0, spec.find(':'))); }

@@ -9,7 +9,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Boxes are near if their centres are in the same of so many parts of the world along each axis.
+/// Parts of the world along each axis; boxes are near if their centres are in the same part.
 constexpr std::size_t parts = 16;
 
 template <int D, typename Real>

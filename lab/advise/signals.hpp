@@ -1,4 +1,4 @@
-// What boxes are like, in the numbers that decide which algorithm suits them.
+// Statistics of boxes: the numbers that decide which algorithm suits them.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace broadside::lab {
 
-/// The shares of boxes at which sizes are told.
+/// The percentiles of sizes.
 inline constexpr std::array<double, 5> size_percentiles = {0.01, 0.25, 0.5, 0.75, 0.99};
 
-/// A box that goes further than so many times its longest side from one frame to the next has jumped.
+/// A box that goes further than this many times its longest side from one frame to the next has jumped.
 inline constexpr double sides_of_a_jump = 8;
 
-/// How boxes move. Fractions are of the boxes that are there; a box moves if it is there in both of two
-/// frames and elsewhere in the second, or of another size.
+/// How boxes move. Fractions are of the present boxes; a box moves if it is present in two frames and
+/// its place or size differs.
 struct MotionSignals {
   std::size_t frames = 0;         ///< after the first
   double least_moving = 0;        ///< the fraction of the boxes that move, in the calmest frame,
@@ -33,11 +33,11 @@ struct MotionSignals {
   double removed = 0;             ///< and that go
 };
 
-/// What boxes are like. All but the motion is of the fullest frame: the first of those with the most boxes.
+/// What boxes are like. All but the motion is of the fullest frame: the first with the most boxes.
 struct Signals {
   int dimension = 2;
   Precision precision = Precision::float32;
-  std::size_t boxes = 0;        ///< those that are there
+  std::size_t boxes = 0;        ///< present ones
   std::size_t absent = 0;       ///< places without a box
   std::size_t infinite = 0;     ///< boxes that reach to infinity
   std::size_t points = 0;       ///< boxes without any extent

@@ -14,6 +14,11 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
   const Algorithm* const algorithm = find_algorithm(name);
   const bool is_ours = algorithm != nullptr && algorithm->kind != AlgorithmKind::peer;
   std::string text = "#include <broadside/broadside.hpp>\n\n";
+  // The library does not know the paper's listings until they are registered.
+  if (is_ours && algorithm->kind == AlgorithmKind::paper)
+    text +=
+        "#include \"paper/listings/descriptions.hpp\"  // of the target Broadside::listings\n\n"
+        "const bool has_listings = (broadside::paper::register_listings(), true);\n\n";
   if (!is_ours)
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);
   // What the library cannot look up by its name is made of its description.

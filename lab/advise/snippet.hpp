@@ -1,4 +1,4 @@
-// The lines of C++ that do as advised.
+// C++ source that follows the advice.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 namespace broadside::lab {
 
 /// A piece of source that compiles as it stands: a function that finds all pairs by the algorithm of `spec`,
-/// or a world that follows them. An algorithm that is none of the library's is made of its description.
+/// or a world that follows them. One of the paper's listings is registered first; an algorithm of the
+/// caller's own is made from its description.
 std::string snippet(std::string_view spec, Mode mode, int dimension, Precision precision);
 
 }  // namespace broadside::lab

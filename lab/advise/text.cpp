@@ -35,7 +35,7 @@ std::string verdict_with_reason(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
-/// The table with a line before those that were in the first round only, where there are others.
+/// The table; a line stands before the algorithms that were in the first round only.
 std::string with_first_round_apart(std::string table, const Advice& advice) {
   const auto first = std::ranges::find(advice.ranking, false, &Ranked::is_finalist);
   if (first == advice.ranking.begin() || first == advice.ranking.end()) return table;

@@ -3,13 +3,43 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "lab/formats/decompressor.hpp"
-
 namespace broadside::lab {
+
+/// Decompresses a file of one or several members (gzip) or frames (zstd), in pieces of any size. One thread
+/// at a time.
+class Decompressor {
+ public:
+  /// How many bytes a call took and gave.
+  struct Progress {
+    std::size_t taken;
+    std::size_t given;
+  };
+
+  virtual ~Decompressor() = default;
+
+  /// Takes bytes from the beginning of `from` and puts what they hold into `to`. It takes or gives at least
+  /// one byte unless it needs more input. Throws FileError where the bytes are damaged.
+  virtual Progress decompress(std::string_view from, std::span<char> to) = 0;
+
+  /// Whether the input may end here: no member or frame is cut off.
+  virtual bool is_whole() const = 0;
+};
+
+/// How many first bytes make_decompressor() needs.
+constexpr std::size_t compression_magic_bytes = 4;
+
+/// What decompresses a file that begins with `beginning`; null if that is neither gzip nor zstd. `name` is
+/// what errors call the file. Throws FileError if the library that it takes was missing at configure time.
+std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, const std::string& name);
+
+/// The two that make_decompressor() chooses from.
+std::unique_ptr<Decompressor> gzip_decompressor(const std::string& name);
+std::unique_ptr<Decompressor> zstd_decompressor(const std::string& name);
 
 /// The bytes of a file, standard input or a pipe, decompressed if they begin as gzip or zstd do. One thread
 /// at a time.

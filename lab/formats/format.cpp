@@ -45,7 +45,7 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
-/// What is suggested for a format's name that is none.
+/// The suggestion for an unknown format's name.
 std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
   std::vector<std::string> known;
   for (const Format& format : formats()) {
@@ -101,7 +101,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
                                 suggested(name, can_be_read), listed(can_be_read)));
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
   if (!input.extension().empty()) refuse_unread(input, input.extension());
-  // A table whose own names nobody knows is one by those that the user gives.
+  // A file is also a table where the user names its columns.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
   if (!options.columns.empty() && table != formats().end()) return *table;
   throw FileError(fmt::format("{}: is in no format known here; expected one of: {}{}", input.name(),
@@ -127,7 +127,7 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
                     format.name, options.ids));
   if (options.say_invalid && !format.can_skip)
     throw FileError(
-        fmt::format("{}: is in format {}, of which --skip-invalid can leave nothing out; expected "
+        fmt::format("{}: is in format {}, where --skip-invalid can leave nothing out; expected "
                     "a table or a map",
                     name, format.name));
   if (options.boxes.empty() ||
@@ -218,7 +218,7 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
 }
 
 const Format& writable_format(const std::filesystem::path& path, std::string_view name) {
-  // Nothing is compressed as it is written.
+  // Output is never compressed.
   const std::string compression = compression_extension_of(path);
   const std::string extension = compression.empty() ? extension_of(path) : compression;
   for (const Format& format : formats()) {

@@ -1,4 +1,4 @@
-// The formats of files that people have, and the one list of them: from a file to frames of boxes and back.
+// The list of file formats: from a file to frames of boxes and back.
 #pragma once
 
 #include <filesystem>
@@ -24,18 +24,18 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How a file is to be read; what is left empty, the file and its format decide.
+/// How to read a file. The file and its format decide what is left empty.
 struct ReadOptions {
   std::string format{};   ///< the name of a format; empty: told by the file's content and name
-  std::string boxes{};    ///< of what the boxes are to be, one of the format's Format::parts
+  std::string boxes{};    ///< what to make boxes of: one of the format's Format::parts
   std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
   std::string layer{};    ///< of a map with several layers, the one to read (empty: all), or an array of .npz
   std::string ids{};      ///< a table's column or a map's property of ids, as --ids; empty: not read
   bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
   int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};
-  /// Where it is there, invalid boxes are left out, as absent ones where the format can hold those, and the
-  /// first are told one by one; otherwise a file with one is refused.
+  /// If set, invalid boxes are left out (as absent boxes where the format has them), and it is called for the
+  /// first of them; otherwise a file with an invalid box is refused.
   std::function<void(std::string_view why)> say_invalid{};
   Progress progress{};
 };
@@ -52,17 +52,17 @@ struct Format {
   std::string summary;                  ///< one line
   std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
   std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
-  bool has_columns = false;             ///< whether ReadOptions::columns means something
-  bool has_layers = false;              ///< whether ReadOptions::layer means something
-  bool can_skip = false;                ///< whether ReadOptions::say_invalid means something
-  bool has_ids = false;                 ///< whether ReadOptions::ids means something
+  bool has_columns = false;             ///< whether ReadOptions::columns applies
+  bool has_layers = false;              ///< whether ReadOptions::layer applies
+  bool can_skip = false;                ///< whether ReadOptions::say_invalid applies
+  bool has_ids = false;                 ///< whether ReadOptions::ids applies
   bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well
 
   /// Whether a file that begins with these bytes (Input::beginning_bytes of them) and has this extension is
   /// of this format.
   std::function<bool(std::string_view bytes, std::string_view extension)> recognises;
 
-  /// Opens an input. Of the options, those that the format has; dimension and precision only where it has a
+  /// Opens an input. Only the options that the format has apply; dimension and precision only where it has a
   /// choice: the caller converts. Throws FileError. Memory for what the file holds, not for what its header
   /// claims.
   std::function<AnyFrameReader(std::unique_ptr<Input>, const ReadOptions&)> open{};
@@ -75,10 +75,10 @@ struct Format {
   bool has_doubles = true;  ///< whether create() takes doubles, in a format that can be written
   bool keeps_ids = false;   ///< whether what it makes writes the boxes' ids
 
-  std::string missing{};  ///< what is not there and how to get it, where files cannot be read for that reason
+  std::string missing{};  ///< the missing library and how to get it; empty where files can be read
 };
 
-/// All formats, in the order in which they are asked whether a file is theirs. Thread-safe.
+/// All formats, in the order in which files are tested for them. Thread-safe.
 std::span<const Format> formats();
 
 /// A file opened for reading, or a scene's boxes in its stead.
@@ -88,8 +88,8 @@ struct BoxFile {
   AnyFrameReader frames;
 };
 
-/// Opens a file in whatever format it is, or standard input where the path is "-". Throws FileError, naming
-/// the formats there are if it is in none, and if an option means nothing in its format.
+/// Opens a file of any format, or standard input where the path is "-". Throws FileError, naming the formats
+/// if the file is in none of them, and if an option does not apply to its format.
 BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// What a file holds, as the lab's scenes need it: floats, in 2D, in 3D, or in both where 3D is made to be
@@ -106,12 +106,12 @@ struct FileContent {
 FileContent read_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The format in which a file is written: that of this name or extension, or, where `name` is empty, that of
-/// the path's extension. Throws FileError naming those that can be written.
+/// the path's extension. Throws FileError naming the formats that can be written.
 const Format& writable_format(const std::filesystem::path& path, std::string_view name = {});
 
 /// Writes a file of frames, or to standard output where the path is "-". The file is whole or not there, and
-/// an old one stays until the new one is whole. Throws FileError. Memory: that of a frame, where the format
-/// does not need to know all before it writes the first.
+/// an old one stays until the new one is whole. Throws FileError. Memory: that of a frame, unless the format
+/// must know all frames first.
 void write_frames(AnyFrameReader frames, const std::filesystem::path& path, const Format& format);
 
 /// Writes a history in the format that the path's extension says. Otherwise as write_frames.

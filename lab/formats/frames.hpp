@@ -31,11 +31,11 @@ std::string precision_text(Precision precision, std::string_view importer);
 template <typename Real>
 constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
 
-/// How many of some coordinates no float holds exactly.
+/// Counts coordinates that no float holds exactly.
 struct Rounding {
   std::uint64_t coordinates = 0;
   std::uint64_t rounded = 0;
-  std::uint64_t lost = 0;  ///< of those rounded: beyond a float's range, where all become infinite or zero
+  std::uint64_t lost = 0;  ///< rounded beyond a float's range, to infinity or zero
 
   template <int D, typename Real>
   void count(std::span<const Box<D, Real>> boxes) {
@@ -72,7 +72,7 @@ struct BoxLabels {
   std::vector<std::string> unread{};  ///< the names of a table's columns that nothing is read from
 };
 
-/// Gives the frames of a file, one after the other. Throws FileError (lab/readers/format.hpp) where the file
+/// Gives the frames of a file, one after the other. Throws FileError (lab/formats/format.hpp) where the file
 /// is wrong, which may be in a later frame. One thread at a time.
 template <int D, typename Real>
 class FrameReader {
@@ -85,8 +85,8 @@ class FrameReader {
   /// Whether there was another frame; `step` then leads to it from the one before.
   virtual bool next(Step<D, Real>& step) = 0;
 
-  /// After the last frame: what had to be left out of a damaged file, and where, and how many coordinates
-  /// were rounded where that was asked for; empty otherwise.
+  /// Valid after the last frame: what a damaged file lacks, and where, and how many coordinates were rounded;
+  /// empty if nothing.
   virtual std::string warning() const { return {}; }
 
   /// Filled as frames are read; null where the file has none.
@@ -116,18 +116,18 @@ class FrameWriter {
 
   virtual void next(const Step<D, Real>& step) = 0;
 
-  /// After the last frame. What is wrong with the stream, the caller sees.
+  /// Called after the last frame. The caller checks the stream.
   virtual void finish() {}
 };
 
-/// One of the four, by dimension and precision.
+/// A reader or writer of any dimension and precision.
 template <template <int, typename> typename T>
 using AnyOf = std::variant<std::unique_ptr<T<2, float>>, std::unique_ptr<T<3, float>>,
                            std::unique_ptr<T<2, double>>, std::unique_ptr<T<3, double>>>;
 using AnyFrameReader = AnyOf<FrameReader>;
 using AnyFrameWriter = AnyOf<FrameWriter>;
 
-/// What `make.template operator()<D, Real>()` gives for this dimension, 2 or 3, and this precision.
+/// Calls `make.template operator()<D, Real>()` for this dimension, 2 or 3, and this precision.
 template <typename Make>
 auto for_boxes_of(int dimension, Precision precision, const Make& make) {
   const bool is_float = precision == Precision::float32;
@@ -139,7 +139,7 @@ auto for_boxes_of(int dimension, Precision precision, const Make& make) {
 int dimension_of(const AnyFrameReader& frames) noexcept;
 Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
 
-/// FrameReader::importer() of any of the four.
+/// FrameReader::importer() of the reader.
 std::string_view importer_of(const AnyFrameReader& frames);
 
 /// The frames of a file whose reader has all its boxes in memory.
@@ -169,7 +169,7 @@ class HistoryReader final : public FrameReader<D, Real> {
   std::size_t next_ = 0;
 };
 
-/// All frames that are left, in memory.
+/// Reads the remaining frames into memory.
 template <int D, typename Real>
 History<D, Real> read_all(FrameReader<D, Real>& frames) {
   History<D, Real> history{frames.first(), {}};

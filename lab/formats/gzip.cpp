@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include "lab/formats/decompressor.hpp"
+#include "lab/formats/byte_source.hpp"
 #include "lab/formats/format.hpp"
 
 namespace broadside::lab {

@@ -15,7 +15,7 @@
 
 namespace broadside::lab {
 
-/// Told, now and then, how many bytes of how many have been read; the second is 0 where nobody knows.
+/// Called now and then with the bytes read and the bytes there are; the second is 0 where unknown.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// The extension of a path with its dot, in lower case; that before .gz or .zst, where it is one of these.

@@ -1,4 +1,4 @@
-// Whether a text is JSON, RFC 8259, before a parser that trusts it is let loose on it.
+// Whether a text is JSON, RFC 8259, before a parser that trusts it reads it.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// A file whose header is known only once the rest has been written.
+// A header that is known only once the rest of the file has been written.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 namespace broadside::lab {
 
 /// Leaves room for a header at the place where a stream stands, takes what follows it, and puts the header
-/// there at the end. Where the stream cannot go back, as in a pipe, all is kept in memory until then. What is
-/// wrong with the stream, the caller sees. One thread at a time.
+/// there at the end. Where the stream cannot go back, as in a pipe, all is kept in memory until then. The
+/// caller checks the stream. One thread at a time.
 class LateHeader {
  public:
   /// The stream must outlive this.

@@ -1,24 +1,26 @@
-// Boxes that are invalid and left out, where that is asked for: each of the first is told, and their number.
+// Leaves out invalid boxes where that is asked for, reports the first of them and counts all.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "lab/formats/format.hpp"
+#include "lab/numbers.hpp"
 
 namespace broadside::lab {
 
-/// Refuses the first box that is invalid or, where ReadOptions::say_invalid is there, leaves out all that
-/// are.
+/// Refuses the first invalid box or, where ReadOptions::say_invalid is set, leaves out all invalid ones.
 class Quarantine {
  public:
-  /// How many boxes are told one by one; the rest are only counted.
+  /// The number of boxes that are reported one by one; the rest are only counted.
   static constexpr std::uint64_t most_told = 20;
 
   explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
 
-  /// Whether `read()` returned. Where it throws a FileError, the box is left out and its error told; without
+  /// Whether `read()` returned. If it throws a FileError, the box is left out and the error reported; without
   /// say_invalid, the error goes on to the caller.
   template <typename Read>
   bool holds(const Read& read) {
@@ -36,10 +38,16 @@ class Quarantine {
   }
 
   /// How many boxes of a file were left out; empty for none.
-  std::string warning(std::string_view file) const;
+  std::string warning(std::string_view file) const {
+    if (count_ == 0) return {};
+    return fmt::format("{}: left out {}{}", file, counted(count_, "invalid box", "invalid boxes"),
+                       count_ > most_told ? fmt::format("; only the first {} are listed", most_told) : "");
+  }
 
  private:
-  void add(std::string_view why);
+  void add(std::string_view why) {
+    if (count_++ < most_told) say_(why);
+  }
 
   std::function<void(std::string_view)> say_;
   std::uint64_t count_ = 0;

@@ -1,4 +1,4 @@
-// Text of files: shown in messages, and split into words.
+// Text of files: shown in messages, split into words, and why it is not a number.
 #pragma once
 
 #include <algorithm>
@@ -30,3 +30,16 @@ inline std::string_view next_word(std::string_view& text) {
 }
 
 }  // namespace broadside::lab
+
+namespace broadside::lab::readers {
+
+/// Why a text is not a number, and what is expected instead.
+struct NumberFault {
+  std::string found;  ///< such as "with a decimal comma"; empty where there is no more to say than the text
+  std::string expected;  ///< such as "a decimal point"; empty where it depends on what reads the number
+};
+
+/// Looks at a text that could not be read as a number.
+NumberFault number_fault(std::string_view text);
+
+}  // namespace broadside::lab::readers

@@ -1,4 +1,4 @@
-// Zip archives in memory, of which NumPy's .npz files are one kind.
+// Zip archives in memory; NumPy's .npz files are such.
 #pragma once
 
 #include <cstddef>

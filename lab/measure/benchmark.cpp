@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -28,20 +30,32 @@ Measurement measurement_of(const Entry& entry) {
   return measurement;
 }
 
-std::string fault_of(const Measurement& measurement, const std::function<std::string()>& run) {
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& check) {
   try {
-    return run();
+    return check();
   } catch (const Stopped&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // the machine's fault
   } catch (const std::exception& thrown) {
-    return fmt::format("{} threw: {}", measurement.algorithm, thrown.what());
+    return fmt::format("{} threw: {}", algorithm, thrown.what());
   }
 }
 
-void fail(Measurement& measurement, const std::string& fault) {
-  measurement.outcome = Outcome::failed;
+bool attempt(Measurement& measurement, const std::function<std::string()>& step) {
+  std::string fault;
+  Outcome outcome = Outcome::failed;
+  try {
+    fault = fault_of(measurement.algorithm, step);
+  } catch (const std::bad_alloc&) {
+    fault = "out of memory; expected fewer boxes or pairs";
+    outcome = Outcome::skipped;
+  }
+  if (fault.empty()) return true;
+  measurement.outcome = outcome;
   measurement.reason = fault;
   measurement.samples_ms.clear();
+  return false;
 }
 
 void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls, double budget) {

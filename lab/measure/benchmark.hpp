@@ -1,5 +1,4 @@
-// What measuring a search and measuring a history have in common: which algorithms take part, and what is
-// called on the way.
+// What measurements of searches and of histories share: the entries, their limits, outcomes and clock.
 #pragma once
 
 #include <chrono>
@@ -14,28 +13,28 @@
 #include <vector>
 
 #include "lab/catalogue.hpp"
-#include "lab/measure/allocation.hpp"
-#include "lab/measure/estimate.hpp"
 #include "lab/measure/measurement.hpp"
+#include "lab/measure/memory.hpp"
+#include "lab/measure/rounds.hpp"
 
 namespace broadside::lab {
 
-/// Thrown between two samples once a comparison is to stop.
+/// Thrown between two samples when a comparison should stop.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "the comparison was stopped"; }
 };
 
-/// Who follows a comparison while it runs. Both are called between samples, in the caller's thread.
+/// Watches a comparison while it runs. Both are called between samples, in the caller's thread.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
-  std::function<void(std::string_view what)> progress{};  ///< what is going on; empty: nothing is called
+  std::function<void(std::string_view what)> progress{};  ///< called with the current step; empty: not called
 
   /// Reports and asks. Throws Stopped.
   void at(std::string_view what) const;
 };
 
-/// What a case is measured with, but for its boxes.
+/// Everything a case is measured with except its boxes.
 struct Benchmark {
   std::span<const Entry> entries;
   std::span<const Algorithm> known;  ///< where references are taken from
@@ -43,7 +42,7 @@ struct Benchmark {
   Watch watch;
 };
 
-/// Milliseconds since it was made, to the nanosecond.
+/// Milliseconds since construction, to the nanosecond.
 class Stopwatch {
  public:
   double milliseconds() const {
@@ -58,12 +57,14 @@ class Stopwatch {
 /// A measurement with the algorithm's name in it and nothing measured.
 Measurement measurement_of(const Entry& entry);
 
-/// Runs `run`, which calls the algorithm and returns what is wrong with its result: returns that, or what the
-/// algorithm threw; empty if nothing is wrong. Lets Stopped through.
-std::string fault_of(const Measurement& measurement, const std::function<std::string()>& run);
+/// Runs a check of an algorithm and returns the fault that it returns, or what the algorithm threw. Lets
+/// Stopped and std::bad_alloc through, which are not the algorithm's fault.
+std::string fault_of(const std::string& algorithm, const std::function<std::string()>& check);
 
-/// Marks the algorithm as wrong. It keeps no time.
-void fail(Measurement& measurement, const std::string& fault);
+/// Runs a step of a measurement, which returns the algorithm's fault. With a fault, or if the algorithm
+/// throws, the measurement has failed; if memory runs out, it is skipped. It then has a reason and no times.
+/// Returns whether all is well. Lets Stopped through.
+bool attempt(Measurement& measurement, const std::function<std::string()>& step);
 
 /// Marks the algorithm as too slow for `budget` seconds, in which it would have to make `calls` calls. The
 /// estimate is of all of them.
@@ -73,7 +74,7 @@ void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls,
 void count_memory(Measurement& measurement, const Algorithm& algorithm,
                   const std::optional<Allocation>& allocation);
 
-/// What boxes have that may be beyond an algorithm's declared limits, absent ones aside.
+/// The properties of boxes that an algorithm's declared limits concern; absent boxes do not count.
 struct Extremes {
   bool infinite = false;  ///< whether any of them reaches to infinity
   double largest = 0;     ///< the greatest magnitude of their finite coordinates

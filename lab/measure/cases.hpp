@@ -16,7 +16,7 @@
 
 namespace broadside::lab {
 
-/// Inputs for a function that is told their dimension and precision.
+/// Inputs for a function whose caller names D and Real: they are not deduced.
 template <int D, typename Real>
 using Histories = std::type_identity_t<std::span<const History<D, Real>>>;
 
@@ -51,7 +51,7 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
 /// part in the first rounds, as many as the effort says, and every result is checked. One measurement a
 /// entry, in their order. Where boxes are of floats, the floor takes part in every round.
 ///
-/// Throws Stopped. What an algorithm throws is its failure and no error.
+/// Throws Stopped. An exception of an algorithm counts as its failure.
 template <int D, typename Real = float>
 CaseResult measure_find(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark);
 
@@ -60,7 +60,7 @@ CaseResult measure_find(const Case& measured, Histories<D, Real> inputs, const B
 /// first rounds, as many as the effort says. In a round the entries take turns frame by frame, and all events
 /// are checked. One measurement an entry, in their order.
 ///
-/// Throws Stopped. What an algorithm throws is its failure and no error.
+/// Throws Stopped. An exception of an algorithm counts as its failure.
 template <int D, typename Real = float>
 std::vector<Measurement> measure_track(const Case& measured, Histories<D, Real> inputs,
                                        const Benchmark& benchmark);

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "lab/measure/cases.hpp"
-#include "lab/measure/pair_count.hpp"
 #include "lab/measure/paired_ratio.hpp"
-#include "lab/measure/processor_share.hpp"
+#include "lab/measure/reference.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
 

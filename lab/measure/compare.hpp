@@ -14,7 +14,7 @@
 
 namespace broadside::lab {
 
-/// What to compare, and what is called on the way.
+/// What to compare, and callbacks.
 struct CompareOptions {
   std::string algorithms = "all";          ///< as Catalogue::select reads it
   std::vector<std::size_t> threads = {1};  ///< that algorithms search with, as with_threads() takes them
@@ -26,13 +26,13 @@ struct CompareOptions {
   std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nothing is called
 };
 
-/// A case that could not be made.
+/// A case that could not be generated.
 struct NotCompared {
   CaseRequest request;
   std::string reason;
 };
 
-/// All that came of it.
+/// The results.
 struct Comparison {
   std::vector<CaseResult> cases;
   std::vector<NotCompared> not_compared;

@@ -1,4 +1,4 @@
-// The events that a history must give, frame by frame, and their hash.
+// The events that tracking a history must report, frame by frame, and their hash.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Events {
   friend bool operator==(const Events&, const Events&) = default;
 };
 
-/// What tracking a history must give.
+/// The expected events of a history.
 struct ExpectedEvents {
   std::vector<Events> frames;  ///< the first frame's, then one for each step
   std::string fault;           ///< what is wrong with the reference itself; empty if nothing is

@@ -8,10 +8,9 @@
 
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/allocation.hpp"
 #include "lab/measure/cases.hpp"
 #include "lab/measure/floor.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 
@@ -22,7 +21,7 @@ namespace {
 /// one only where these differ.
 constexpr std::size_t most_pairs_kept = 1'000'000;
 
-/// In the place of the floor where boxes are of doubles, of which it has none.
+/// Stands in for the floor where boxes are of doubles: they have none.
 struct NoFloor {
   template <typename Boxes>
   void run(const Boxes&, std::span<Pair>) const noexcept {}
@@ -76,7 +75,7 @@ class FindCase {
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
-  /// Fills in why not, if the entry cannot take part.
+  /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
@@ -92,14 +91,13 @@ class FindCase {
       constexpr double is_short_ms = 50;
       return (first < is_short_ms ? std::min(first, call(*finder, some)) : first) / 1e3;
     };
-    const std::string fault = fault_of(measurement, [&]() -> std::string {
+    attempt(measurement, [&]() -> std::string {
       benchmark_.watch.at(measurement.algorithm + ", making the reference");
       touch(expectation(*entry.algorithm, 0).count);
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
         skip(measurement, *estimate, 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(measurement, fault);
     return measurement.reason.empty();
   }
 
@@ -110,24 +108,24 @@ class FindCase {
     pairs_.resize(touched_);
   }
 
-  /// Makes the finder and calls it for the first time: it then has its memory, and how much that is shows.
+  /// Makes the finder and calls it for the first time: it takes its memory, which is counted.
   void warm_up(FindParticipant<D, Real>& participant) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
     measurement.verified_by = expectation(*participant.entry->algorithm, 0).reference.text();
     participant.compared.resize(inputs_.size());
-    settle(participant, fault_of(measurement, [&] {
-             const AllocationMeter meter;
-             participant.finder =
-                 make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
-             call(*participant.finder, boxes_of(0));
-             count_memory(measurement, *participant.entry->algorithm, meter.read());
-             measurement.pairs = pairs_.size();
-             measurement.pair_hash = hash_of(pairs_);
-             measurement.statistics = participant.finder->statistics();
-             measurement.explanation = participant.finder->explanation();
-             return check(participant, 0);
-           }));
+    measurement.outcome = Outcome::verified;
+    attempt(measurement, [&] {
+      const AllocationMeter meter;
+      participant.finder = make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+      call(*participant.finder, boxes_of(0));
+      count_memory(measurement, *participant.entry->algorithm, meter.read());
+      measurement.pairs = pairs_.size();
+      measurement.pair_hash = hash_of(pairs_);
+      measurement.statistics = participant.finder->statistics();
+      measurement.explanation = participant.finder->explanation();
+      return check(participant, 0);
+    });
   }
 
   /// One timed call of each participant that takes part in this round, all on the same boxes; false where
@@ -162,10 +160,10 @@ class FindCase {
   void sample(FindParticipant<D, Real>& participant, std::size_t input, std::size_t round) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
-    settle(participant, fault_of(measurement, [&] {
-             measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
-             return check(participant, input);
-           }));
+    attempt(measurement, [&] {
+      measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
+      return check(participant, input);
+    });
   }
 
   /// Milliseconds for the floor's work, with as many pairs as a search must give.
@@ -187,12 +185,7 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  void settle(FindParticipant<D, Real>& participant, const std::string& fault) {
-    participant.measurement->outcome = Outcome::verified;
-    if (!fault.empty()) fail(*participant.measurement, fault);
-  }
-
-  /// What is wrong with pairs_; empty if nothing is.
+  /// The fault of pairs_; empty if there is none.
   std::string check(FindParticipant<D, Real>& participant, std::size_t input) {
     const ExpectedPairs& expected = expectation(*participant.entry->algorithm, input);
     if (!expected.fault.empty()) return expected.fault;

@@ -13,7 +13,8 @@
 
 namespace broadside::lab {
 
-/// Below so many boxes there is no floor: a comparison of a few hundred boxes is done before they are sorted.
+/// Below this many boxes there is no floor: a comparison of a few hundred boxes is done before they are
+/// sorted.
 inline constexpr std::size_t least_boxes_of_floor = 1'000;
 
 /// One way to find pairs is to sort the boxes along an axis, to bring them into that order, to sweep, and to

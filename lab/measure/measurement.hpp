@@ -1,4 +1,4 @@
-// The lab's records: what was compared, and what came of it.
+// The lab's records: cases, and measurements of algorithms in them.
 #pragma once
 
 #include <cstddef>
@@ -30,14 +30,14 @@ struct Case {
   Mode mode = Mode::find;
 };
 
-/// What came of letting an algorithm into a case.
+/// The outcome of an algorithm in a case.
 enum class Outcome {
   verified,  ///< it was timed, and every pair or event of every timed call was right
-  failed,    ///< it broke the law; its times are of no interest and not kept
-  skipped    ///< it was not let in
+  failed,    ///< it broke the law; its times are dropped
+  skipped    ///< it did not take part, or ran out of memory
 };
 
-/// Where a number lies, with a confidence of 95 %.
+/// A 95 % confidence interval.
 struct Interval {
   double low;
   double high;
@@ -51,9 +51,6 @@ struct PairedRatio {
   double median;                     ///< over the seeds, of each seed's median ratio of its rounds
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
-
-  /// Whether the two cannot be told apart.
-  bool is_level() const noexcept { return interval && interval->includes(1); }
 };
 
 /// One algorithm in one case. What was counted (pairs, hash, statistics, bytes) is of the first seed.
@@ -108,7 +105,7 @@ struct Effort {
       std::numeric_limits<double>::infinity();  ///< no round begins after this, but for the first two
 };
 
-/// A round that takes less costs next to nothing, so no algorithm is far behind.
+/// Rounds shorter than this cost next to nothing, so no algorithm counts as far behind.
 inline constexpr double far_from_seconds = 0.002;
 
 }  // namespace broadside::lab

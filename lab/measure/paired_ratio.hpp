@@ -13,7 +13,7 @@
 
 namespace broadside::lab {
 
-/// Fewer rounds than this give no interval: it would say more than they know.
+/// Fewer rounds than this give no interval: it would claim too much.
 inline constexpr std::size_t least_rounds_of_interval = 5;
 
 /// The time of each round that the measurement took part in, in milliseconds: a call's, or the mean of a
@@ -23,7 +23,7 @@ std::vector<double> round_times(const Measurement& measurement);
 /// Ratios of one pair of entries by seed: round r is on seed r % seeds.
 class RatiosBySeed {
  public:
-  /// Of the rounds that both have. Throws std::invalid_argument if there is none, or no seed.
+  /// From the rounds that both have. Throws std::invalid_argument if there is none, or no seed.
   RatiosBySeed(std::span<const double> times, std::span<const double> others, std::size_t seeds);
 
   std::size_t rounds() const noexcept { return rounds_; }

@@ -12,7 +12,7 @@
 
 namespace broadside::lab {
 
-/// A case that is wanted.
+/// A case to measure.
 struct CaseRequest {
   std::string scene;  ///< as a spec, or the path of a file
   int dimension = 2;
@@ -33,8 +33,8 @@ std::vector<CaseRequest> quick_plan();
 std::vector<CaseRequest> long_plan();
 Effort long_effort();
 
-/// What a user asks for; a list that is empty stands for its standard: every generated scene, 10,000 boxes,
-/// both dimensions, still.
+/// What a user asks for. An empty list stands for its default: every generated scene, 10,000 boxes, both
+/// dimensions, still.
 struct Wishes {
   std::vector<std::string> scenes{};
   std::vector<std::size_t> boxes{};
@@ -46,12 +46,12 @@ struct Wishes {
   FindScene find = [](std::string_view text) { return find_scene(text); };
 };
 
-/// Every combination, but for those that do not exist: a dimension that a scene does not have, a count or a
+/// Every combination that exists; others are left out: a dimension that a scene does not have, a count or a
 /// moving fraction where the scene has its own. Throws InvalidSpec if a scene is unknown or has none of the
 /// dimensions, and what a file's reader throws.
 std::vector<CaseRequest> plan_of(const Wishes& wishes);
 
-/// Those of `plan` that are in one of the dimensions.
+/// The cases of `plan` in one of the dimensions.
 std::vector<CaseRequest> in_dimensions(std::vector<CaseRequest> plan, std::span<const int> dimensions);
 
 }  // namespace broadside::lab

@@ -17,8 +17,8 @@ RatiosBySeed paired(const Measurement& entry, const Measurement& other, const Ca
   return {round_times(entry), round_times(other), std::max<std::size_t>(result.of.seeds.size(), 1)};
 }
 
-/// The fastest of those that `eligible` lets through: of two, the one that is faster in the rounds that both
-/// took part in, as ratios have it.
+/// The fastest of the measurements that `eligible` accepts: of two, the one that is faster in the rounds that
+/// both took part in, as ratios have it.
 template <typename Eligible>
 const Measurement* fastest_among(const CaseResult& result, const Eligible& eligible) {
   const Measurement* fastest = nullptr;

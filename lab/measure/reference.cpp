@@ -6,11 +6,15 @@
 #include <iterator>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "broadside/sinks.hpp"
+
+#include "lab/numbers.hpp"
 
 namespace broadside::lab {
 
@@ -93,5 +97,25 @@ template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std
 template std::unique_ptr<PairFinder<3, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>) const;
 template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>);
+
+template <int D, typename Real>
+void check_pair_count(BoxSpan<D, Real> boxes) {
+  constexpr double most = 250e6;  // 2 GB
+  std::vector<Box<D, Real>> some;
+  for (const std::size_t i : sample_of(boxes.size(), 1'000)) some.push_back(boxes[i]);
+  const double scale =
+      static_cast<double>(boxes.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
+  const double pairs = static_cast<double>(reference_pairs<D, Real>(some).size()) * scale * scale;
+  if (pairs > most) {
+    throw std::runtime_error(fmt::format(
+        "{} boxes with about {:.1e} pairs; expected at most {:.1e}, since pairs are kept to be checked",
+        grouped(boxes.size()), pairs, most));
+  }
+}
+
+template void check_pair_count<2, float>(BoxSpan<2, float>);
+template void check_pair_count<3, float>(BoxSpan<3, float>);
+template void check_pair_count<2, double>(BoxSpan<2, double>);
+template void check_pair_count<3, double>(BoxSpan<3, double>);
 
 }  // namespace broadside::lab

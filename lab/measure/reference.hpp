@@ -1,5 +1,5 @@
-// What the pairs of an algorithm under measurement are compared with: the definition where the boxes are few
-// enough, beyond that an algorithm of another structure whose own pairs are sampled.
+// The reference for an algorithm's pairs: the definition where the boxes are few enough, otherwise an
+// algorithm of another structure, whose own pairs are sampled.
 #pragma once
 
 #include <cstddef>
@@ -65,5 +65,10 @@ std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;
 /// `count` of the numbers below `size`, or all if they are fewer, chosen at random but always the same;
 /// ascending.
 std::vector<std::size_t> sample_of(std::size_t size, std::size_t count);
+
+/// Throws std::runtime_error where boxes have more than some 250,000,000 pairs (2 GB), as estimated from a
+/// sample.
+template <int D, typename Real = float>
+void check_pair_count(BoxSpan<D, Real> boxes);
 
 }  // namespace broadside::lab

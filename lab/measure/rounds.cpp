@@ -1,11 +1,15 @@
-// In which rounds of a case an algorithm takes part.
+// How often a case's algorithms run.
 #include "lab/measure/rounds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
+#include <fmt/format.h>
+
 #include "lab/measure/paired_ratio.hpp"
+#include "lab/numbers.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -25,6 +29,10 @@ double least_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
   return least;
 }
 
+double scaled(double seconds, std::size_t from, std::size_t to, double exponent) {
+  return seconds * std::pow(static_cast<double>(to) / static_cast<double>(from), exponent);
+}
+
 }  // namespace
 
 std::vector<std::size_t> turns(std::size_t entries, std::size_t round) {
@@ -41,7 +49,9 @@ bool has_time(const Effort& effort, std::size_t round, double milliseconds) {
 
 bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit) {
   const std::size_t rounds = measurement.samples_ms.size() / measurement.samples_a_round;
-  if (measurement.outcome == Outcome::failed || rounds >= std::min(limit, effort.most_rounds)) return false;
+  if (measurement.outcome == Outcome::failed || !measurement.reason.empty() ||
+      rounds >= std::min(limit, effort.most_rounds))
+    return false;
   return limit != no_limit || rounds < effort.least_rounds ||
          sum_of(measurement.samples_ms) < effort.share_seconds * 1e3;
 }
@@ -51,11 +61,34 @@ std::size_t round_limit(const Measurement& measurement, std::span<const Measurem
   if (measurement.samples_ms.empty()) return no_limit;
   const double own = least_first_round(all, AlgorithmKind::own);
   const double peer = least_first_round(all, AlgorithmKind::peer);
-  // Where no peer takes part nothing is far behind it, and where nothing of ours does, peers alone count.
+  // Without a peer, nothing is far behind one; without one of ours, peers alone count.
   const double close = std::max({far_from_seconds * 1e3, effort.far_ratio * peer,
                                  own < std::numeric_limits<double>::infinity() ? effort.far_ratio * own : 0});
   if (round_times(measurement).front() > close) return effort.far_rounds;
   return sum_of(measurement.samples_ms) > slow_seconds * 1e3 ? effort.slow_rounds : no_limit;
+}
+
+std::optional<Estimate> estimate_above(double budget, std::size_t boxes,
+                                       const std::function<double(std::size_t)>& seconds_for) {
+  if (boxes <= boxes_worth_estimating) return std::nullopt;
+  const std::size_t few = boxes / 20;
+  const double few_seconds = seconds_for(few);
+  const double worst = scaled(few_seconds, few, boxes, 2);
+  if (worst <= budget) return std::nullopt;
+
+  const std::size_t more = boxes / 5;
+  if (scaled(few_seconds, few, more, 2) > budget) return Estimate{worst, few, 2};
+  const double more_seconds = seconds_for(more);
+  const double ratio = static_cast<double>(more) / static_cast<double>(few);
+  const double growth = std::log(more_seconds / few_seconds) / std::log(ratio);
+  const double exponent = growth >= 1.8 ? 2 : std::max(growth, 1.0);
+  const Estimate estimate{scaled(more_seconds, more, boxes, exponent), more, exponent};
+  return estimate.seconds > budget ? std::optional(estimate) : std::nullopt;
+}
+
+std::string text(const Estimate& estimate) {
+  return fmt::format("estimated {} from {} boxes, scaled by n^{:.2f}", duration(estimate.seconds),
+                     grouped(estimate.from), estimate.exponent);
 }
 
 }  // namespace broadside::lab

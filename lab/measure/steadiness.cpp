@@ -1,4 +1,4 @@
-// Whether measured times are to be trusted: how far the samples of a measurement lie apart.
+// Whether measured times can be trusted.
 #include "lab/measure/steadiness.hpp"
 
 #include <algorithm>
@@ -16,6 +16,25 @@ namespace {
 constexpr double greatest_spread = 1.5;
 
 }  // namespace
+
+double ProcessorShare::value() const {
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+  const double used = static_cast<double>(std::clock() - used_) / CLOCKS_PER_SEC;
+  return passed.count() > 0 ? used / passed.count() : 1;
+}
+
+bool is_busy(double share) {
+  constexpr double least_of_a_quiet_machine = 0.9;
+  return share < least_of_a_quiet_machine;
+}
+
+std::string busy_hint(double share) {
+  if (!is_busy(share)) return "";
+  return fmt::format(
+      "busy: others had the processor for {:.0f} % of the time; times are too long, and not by the same "
+      "factor: quiet the machine and measure again\n",
+      100 * (1 - share));
+}
 
 std::optional<double> spread(std::span<const double> samples, std::size_t period) {
   constexpr std::size_t fewest_repetitions = 3;

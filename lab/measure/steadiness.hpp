@@ -1,7 +1,9 @@
-// Whether measured times are to be trusted: how far the samples of a measurement lie apart.
+// Whether measured times can be trusted: whether others had the processor, and how far samples lie apart.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,9 +13,27 @@
 
 namespace broadside::lab {
 
-/// How many times the least sample the median one is, of samples that come in turns: every `period`-th is of
-/// the same boxes. The median over all boxes that had their turn twice, so that a few stalls do not count;
-/// empty where fewer than three samples are such repetitions.
+/// How much of the time since it was made this process has had a processor: 1 for one thread that always
+/// runs, more where several do. Waiting counts as not having one.
+class ProcessorShare {
+ public:
+  double value() const;
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::clock_t used_ = std::clock();
+};
+
+/// Whether others had the processor for more than a tenth of the time, in a run of one thread.
+bool is_busy(double share);
+
+/// A line that says so where a run of one thread had a processor for less than nine tenths of the time; else
+/// empty.
+std::string busy_hint(double share);
+
+/// The median sample over the least one, where every `period`-th sample is of the same boxes: the median over
+/// all boxes that were sampled twice, so that a few stalls do not count. Empty with fewer than three
+/// repetitions.
 std::optional<double> spread(std::span<const double> samples, std::size_t period);
 
 /// Whether something else slowed the measurement down, so far as its samples tell: its spread() is over 1.5.
@@ -37,7 +57,7 @@ struct Steadiness {
 /// Of one case.
 Steadiness steadiness_of(const CaseResult& result);
 
-/// A line for the end of tables that says how many are unsteady and what to do, of which `more` is the last;
+/// A line for the end of tables that says how many are unsteady and what to do, `more` at last;
 /// empty where none is.
 std::string hint_of(const Steadiness& steadiness, std::string_view more);
 

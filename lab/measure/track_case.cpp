@@ -10,7 +10,7 @@
 
 #include "lab/measure/cases.hpp"
 #include "lab/measure/expected_events.hpp"
-#include "lab/measure/memory_state.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/measure/samples.hpp"
 
@@ -72,7 +72,7 @@ class TrackCase {
   }
 
  private:
-  /// Fills in why not, if the entry cannot take part.
+  /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     const History<D, Real>& history = inputs_[0];
     measurement.reason = unfit(entry, D, extremes_);
@@ -82,13 +82,12 @@ class TrackCase {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       return seconds_of(entry, thinned(history, count, 2));
     };
-    const std::string fault = fault_of(measurement, [&]() -> std::string {
+    attempt(measurement, [&]() -> std::string {
       // A history cannot be left half way, so that its frames share the budget.
       if (const auto estimate = estimate_above(budget, case_.boxes, history_seconds))
         skip(measurement, *estimate, case_.frames + 1, budget);
       return {};
     });
-    if (!fault.empty()) fail(measurement, fault);
     return measurement.reason.empty();
   }
 
@@ -126,8 +125,7 @@ class TrackCase {
     return watch.milliseconds();
   }
 
-  /// Lets every participant follow the first input once, untimed: memory is taken, and how much that is
-  /// shows.
+  /// Has every participant follow the first input once, untimed: it takes its memory, which is counted.
   void warm_up() {
     for (TrackParticipant<D, Real>& participant : participants_) participant.plays = true;
     pass(0, 0, true);
@@ -185,16 +183,13 @@ class TrackCase {
         TrackParticipant<D, Real>& participant = participants_[turn];
         if (!participant.plays) continue;
         benchmark_.watch.at(fmt::format("{}, frame {}", participant.measurement->algorithm, frame));
-        const std::string fault =
-            fault_of(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
-        if (fault.empty()) continue;
-        fail(*participant.measurement, fault);
-        participant.plays = false;
+        participant.plays =
+            attempt(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
       }
     }
   }
 
-  /// One frame of one participant; what is wrong with its events.
+  /// One frame of one participant; returns the fault of its events.
   std::string take(TrackParticipant<D, Real>& participant, const Frame<D, Real>& now, std::size_t frame,
                    bool counts_memory) {
     const ExpectedEvents& expected = *participant.expected;

@@ -49,7 +49,7 @@ float margin_for(std::span<const Box<D>> boxes) {
 }
 
 /// With a margin of its own, where Bullet has one for the whole program, and with its proxies, which Bullet
-/// leaves to who made them to take out one by one.
+/// leaves to its caller to take out one by one.
 class OwnDbvt final : public btDbvtBroadphase {
  public:
   OwnDbvt(float margin, bool deferred) : margin_(margin) { m_deferedcollide = deferred; }

@@ -1,19 +1,42 @@
 // Boxes in one of Bullet's broad phases, whose pairs are those in its cache.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <LinearMath/btVector3.h>
 
-#include "lab/peers/bullet_volume.hpp"
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
 #include "lab/peers/proxies.hpp"
 
 namespace broadside::lab::peers {
+
+template <std::size_t D>
+btVector3 bullet_point(const std::array<float, D>& corner) {
+  if constexpr (D == 2)
+    return {corner[0], corner[1], 0};
+  else
+    return {corner[0], corner[1], corner[2]};
+}
+
+inline void* bullet_data(BoxId id) { return std::bit_cast<void*>(std::uintptr_t{index(id)}); }
+
+inline BoxId id_in(const void* data) { return BoxId(std::bit_cast<std::uintptr_t>(data)); }
+
+/// Such as "Bullet 3.24".
+std::string bullet_version();
 
 /// Makes an empty broad phase, which frees its proxies, for `boxes` and at most `most` boxes.
 template <int D>

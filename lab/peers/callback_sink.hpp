@@ -1,4 +1,4 @@
-// Where a library's callback puts the pairs it is told.
+// Takes pairs from a library's callback.
 #pragma once
 
 #include <exception>
@@ -8,7 +8,7 @@
 namespace broadside::lab::peers {
 
 /// Writes pairs to a sink from within a library's callback. What the sink throws is kept until the library
-/// has returned: neither C nor a structure half walked through is to be unwound.
+/// has returned: an exception must not unwind C code or a traversal half done.
 class CallbackSink {
  public:
   explicit CallbackSink(PairSink& pairs) : pairs_(pairs) {}

@@ -1,4 +1,4 @@
-// The tracker of a library that moves its boxes and then tells which pairs there are, not which are new.
+// A tracker over a library that moves its boxes and then reports all pairs, not the new ones.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace broadside::lab::peers {
 
-/// Makes events of the pairs that a library tells after its boxes moved. The pairs are kept from frame to
+/// Turns the pairs that a library reports after its boxes moved into events. Keeps the pairs from frame to
 /// frame.
 template <int D>
 class PeerTracker : public PairTracker<D> {
  private:
-  /// Forgets all boxes and takes those of `boxes` that are present. `now` are those that will be there next,
-  /// where the library must know the size of its world beforehand.
+  /// Forgets all boxes and takes the present ones of `boxes`. `now` are the next frame's, for a library that
+  /// must know the size of its world beforehand.
   virtual void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) = 0;
 
   /// Takes every change.

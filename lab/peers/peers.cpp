@@ -4,6 +4,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "lab/peers/queries.hpp"
+
 namespace broadside::lab::peers {
 namespace {
 
@@ -13,7 +15,7 @@ struct PeerList {
   std::vector<MissingPeer> missing;
 
   PeerList() {
-    // What is in a branch that is not taken need not exist.
+    // Functions in a discarded branch need not exist.
     if constexpr (BROADSIDE_HAS_CGAL)
       add({cgal_box_intersection()});
     else
@@ -78,5 +80,17 @@ const PeerList& peer_list() {
 std::vector<Algorithm> peers() { return peer_list().there; }
 
 std::span<const MissingPeer> missing_peers() { return peer_list().missing; }
+
+template <int D>
+std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes) {
+  std::vector<std::unique_ptr<QueryPeer<D>>> peers;
+  if constexpr (BROADSIDE_HAS_BOOST) peers.push_back(boost_queries<D>(boxes));
+  if constexpr (D == 2 && BROADSIDE_HAS_BOX2D) peers.push_back(box2d_queries(boxes));
+  if constexpr (D == 3 && BROADSIDE_HAS_EMBREE) peers.push_back(embree_queries(boxes));
+  return peers;
+}
+
+template std::vector<std::unique_ptr<QueryPeer<2>>> query_peers(std::span<const Box<2>>);
+template std::vector<std::unique_ptr<QueryPeer<3>>> query_peers(std::span<const Box<3>>);
 
 }  // namespace broadside::lab::peers

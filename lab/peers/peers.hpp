@@ -12,7 +12,7 @@ namespace broadside::lab::peers {
 /// The peers that were built in, in a fixed order.
 std::vector<Algorithm> peers();
 
-/// A peer that could be there and is not.
+/// A peer that was left out of this build.
 struct MissingPeer {
   std::string name;
   std::string reason;  ///< the package whose lack at configure time left it out
@@ -21,7 +21,7 @@ struct MissingPeer {
 /// The peers that were left out of this build, in the same order. Thread-safe.
 std::span<const MissingPeer> missing_peers();
 
-// One for each file. What is not in the build is declared and not defined.
+// One for each algorithm. Peers that are not in the build are declared but not defined.
 
 Algorithm boost_rtree();
 Algorithm bullet_axis_sweep();

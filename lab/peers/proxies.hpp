@@ -1,4 +1,4 @@
-// A library that follows boxes by itself, box by box, made a tracker and a finder.
+// Adapts a library that follows boxes one by one to a tracker and a finder.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace broadside::lab::peers {
 
-/// What a library knows the boxes by: bodies, proxies, leaves. One for each present box.
+/// A library's own objects for boxes: bodies, proxies, leaves. One for each present box.
 template <int D>
 class Proxies {
  public:
@@ -22,14 +22,14 @@ class Proxies {
   Proxies& operator=(const Proxies&) = delete;
   virtual ~Proxies() = default;
 
-  /// Forgets every box. `boxes` are those that will be there: for libraries that take bounds of the world, or
+  /// Forgets every box. `boxes` will be there: for libraries that take bounds of the world, or
   /// a cell size.
   virtual void clear(std::span<const Box<D>> boxes) = 0;
 
-  /// Whether what clear() laid out does for `boxes` as well; if not, all starts over with them.
+  /// Whether the layout of clear() suits `boxes` as well; if not, clear() is called again.
   virtual bool fits(std::span<const Box<D>>) const { return true; }
 
-  /// Adds a box that is not there, moves or removes one that is. None is absent.
+  /// Adds a new box, or moves or removes a known one. No box is absent.
   virtual void add(BoxId id, const Box<D>& box) = 0;
   virtual void move(BoxId id, const Box<D>& box) = 0;
   virtual void remove(BoxId id) = 0;
@@ -41,7 +41,7 @@ class Proxies {
                        PairSink& pairs) = 0;
 };
 
-/// Adds those of `boxes` that are present to proxies without any.
+/// Adds the present ones of `boxes` to empty proxies.
 template <int D>
 void add_all(Proxies<D>& proxies, std::span<const Box<D>> boxes) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -26,7 +26,7 @@ struct Answers {
   friend bool operator==(const Answers&, const Answers&) = default;
 };
 
-/// An index of finite boxes that others made. Rays have a finite `t_max` and begin in no box.
+/// Another library's index of finite boxes. Rays have a finite `t_max` and begin in no box.
 template <int D>
 class QueryPeer {
  public:
@@ -39,11 +39,11 @@ class QueryPeer {
   virtual Answers all_hits(std::span<const Ray<D>>) { return {}; }
 };
 
-/// Those in this build, with an index over the boxes, which must outlive them.
+/// The peers in this build, each with an index over the boxes, which must outlive them.
 template <int D>
 std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes);
 
-// One for each file. What is not in the build is declared and not defined.
+// One for each library. Peers that are not in the build are declared but not defined.
 
 template <int D>
 std::unique_ptr<QueryPeer<D>> boost_queries(std::span<const Box<D>> boxes);

@@ -1,4 +1,4 @@
-// What peers that must be told a length are told: the extent of a typical box, or a sane cell size.
+// The length that some peers must be given: the extent of a typical box, or a sensible cell size.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace broadside::lab::peers {
 template <int D>
 double typical_extent(std::span<const Box<D>> boxes);
 
-/// The edge of cells for a grid that files a box in every cell it touches: `extents` typical extents, and
+/// The edge of cells for a grid that inserts a box into every cell it touches: `extents` typical extents, and
 /// larger where boxes would otherwise be in more than 8 * 2^D cells each on average, or coordinates in more
 /// than 2^20 cells.
 template <int D>

@@ -19,7 +19,7 @@ std::vector<Scene> box2d();
 std::vector<Scene> bullet();
 
 /// The history of `world.boxes()` after `warm_up` calls of world.step() and over `frames` more. Throws
-/// std::runtime_error if the engine gives something that is no box.
+/// std::runtime_error if the engine gives an invalid box.
 template <int D, typename World>
 History<D> record(World& world, std::size_t warm_up, std::size_t frames) {
   const auto boxes_at = [&world](std::size_t step) {

@@ -25,14 +25,14 @@ struct DrawingLayer {
   std::string active;  ///< of a sweep, half way: its line; and the boxes that it crosses. Empty for others
 };
 
-/// The boxes as seen along one axis, or in 2D as they are. Paths are those of SVG, in units of which the view
+/// The boxes as seen along one axis, or in 2D as they are. Paths are SVG's, in units of the view, which
 /// is `width` wide; what is greater in the world is higher up.
 struct DrawingView {
   std::string axes;  ///< "xy", "xz" or "yz": first what goes to the right
   int width = 1000;
   int height = 1000;
   std::string alone;     ///< the boxes that overlap no other one
-  std::string touching;  ///< those that do
+  std::string touching;  ///< boxes that do
   std::vector<DrawingLayer> layers;
 };
 
@@ -45,7 +45,7 @@ struct Drawing {
   std::vector<DrawingView> views;
 };
 
-/// How many boxes are told apart in a picture.
+/// The number of boxes that an eye can tell apart in a picture.
 inline constexpr std::size_t most_drawn = 600;
 
 /// `most` of the boxes, evenly from the whole array, each made larger about its centre so that they are as
@@ -66,7 +66,7 @@ bool has_outline(const Entry& entry, int dimension);
 /// Draws a frame of a scene, counted from 0, in a dimension that it has: made with `most` boxes, which have
 /// the density of more, or, where their number is the scene's own, thinned() to that. `of` is how many boxes
 /// the scene is said to have; for a number of its own, that is told instead. Entries that do not do the
-/// dimension are left out. Throws InvalidSpec if there are not so many frames; boxes that do not move by
+/// dimension are left out. Throws InvalidSpec if there are fewer frames; boxes that do not move by
 /// themselves have one.
 Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of, std::span<const Entry> entries,
                    std::size_t most = most_drawn, std::uint64_t seed = 1, std::size_t frame = 0);
@@ -74,5 +74,10 @@ Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of, std::
 /// {"scene", "dimension", "boxes", "of", "views": [{"axes", "width", "height", "boxes", "layers":
 /// [{"algorithm", "caption", "levels": [...]}]}]}: all boxes in one path, a sweep's line a level of its own.
 nlohmann::json json_of(const Drawing& drawing);
+
+/// One SVG: a panel for each view and layer, side by side and in rows; only the boxes where there is no
+/// layer. A title and a caption over each panel, a title and a description for screen readers. Light, on a
+/// background of its own, so that it can be read on dark pages too.
+std::string svg_of(const Drawing& drawing);
 
 }  // namespace broadside::lab

@@ -47,7 +47,7 @@ class Edges {
  public:
   explicit Edges(const Window& window) : window_(window) {}
 
-  /// The lines of these rectangles that no call before has returned.
+  /// The lines of these rectangles that no earlier call has returned.
   std::string next_level(std::span<const Rectangle> rectangles);
 
  private:

@@ -1,6 +1,4 @@
 // A drawing as a picture of its own: SVG.
-#include "lab/report/drawing_svg.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "lab/numbers.hpp"
+#include "lab/report/drawing.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -16,7 +15,7 @@ namespace {
 constexpr int panel_width = 420;
 constexpr int gap = 20;
 constexpr int title_height = 46;
-constexpr int key_height = 30;
+constexpr int key_line_height = 16;
 constexpr std::size_t most_columns = 3;
 
 /// How many characters of a caption go into a panel's width.
@@ -63,10 +62,10 @@ struct Panel {
   const DrawingLayer* layer;  // or none
 };
 
-/// What fits of a text, as an SVG; the whole is shown where a mouse rests on it.
-std::string shortened(const std::string& text) {
-  if (text.size() <= caption_length) return escaped(text);
-  return escaped(text.substr(0, caption_length - 3)) + "...<title>" + escaped(text) + "</title>";
+/// The part of a text that fits into `most` characters, as SVG; the whole is shown where a mouse rests on it.
+std::string shortened(const std::string& text, std::size_t most = caption_length) {
+  if (text.size() <= most) return escaped(text);
+  return escaped(text.substr(0, most - 3)) + "...<title>" + escaped(text) + "</title>";
 }
 
 std::string caption_of(const DrawingLayer& layer) {
@@ -112,7 +111,7 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
 std::string description_of(const Drawing& drawing) {
   std::string text = fmt::format("{} in {}D", counted(drawing.boxes, "box", "boxes"), drawing.dimension);
   if (drawing.of > drawing.boxes) text += ", for " + grouped(drawing.of);
-  text += "; those that overlap another one are orange.";
+  text += "; boxes that overlap another one are orange.";
   if (drawing.views.empty()) return text;
   for (const DrawingLayer& layer : drawing.views[0].layers) {
     text += fmt::format(" {}: {}.", layer.algorithm, caption_of(layer));
@@ -150,13 +149,17 @@ std::string svg_of(const Drawing& drawing) {
     y += title_height + highest + gap;
   }
   const int width = gap + static_cast<int>(columns) * (panel_width + gap);
-  const int height = y + key_height;
-  bool swept = false;
-  for (const Panel& panel : panels) swept |= panel.layer != nullptr && !panel.layer->active.empty();
   std::string key = fmt::format("{}, {}", drawing.scene, counted(drawing.boxes, "box", "boxes"));
   if (drawing.of > drawing.boxes) key += " for " + grouped(drawing.of);
-  key += ". Orange: overlaps another.";
-  if (swept) key += " Green: a sweep half way.";
+  key += ".";
+  std::string colours = "Orange: overlaps another.";
+  const bool swept = std::ranges::any_of(
+      panels, [](const Panel& panel) { return panel.layer != nullptr && !panel.layer->active.empty(); });
+  if (swept) colours += " Green: a sweep half way.";
+  // On one line where the picture is wide enough.
+  std::vector<std::string> key_lines = {key + " " + colours};
+  if (key_lines[0].size() > columns * caption_length) key_lines = {key, colours};
+  const int height = y + gap / 2 + key_line_height * static_cast<int>(key_lines.size());
 
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
@@ -174,9 +177,12 @@ std::string svg_of(const Drawing& drawing) {
   }
   text += fmt::format("</defs>\n<rect width=\"{}\" height=\"{}\" fill=\"#f6f8fa\"/>\n", width, height);
   text += body;
-  text += fmt::format("<text class=\"c\" x=\"{}\" y=\"{}\">{}</text>\n</svg>\n", gap, height - gap / 2,
-                      escaped(key));
-  return text;
+  for (const std::string& line : key_lines) {
+    text += fmt::format("<text class=\"c\" x=\"{}\" y=\"{}\">{}</text>\n", gap, y + gap / 2,
+                        shortened(line, columns * caption_length));
+    y += key_line_height;
+  }
+  return text + "</svg>\n";
 }
 
 }  // namespace broadside::lab

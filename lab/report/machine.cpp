@@ -1,4 +1,4 @@
-// Where and from what a measurement came. The BROADSIDE_BUILD_... texts come from the build.
+// The machine, the date and the build.
 #include "lab/report/machine.hpp"
 
 #include <chrono>
@@ -27,6 +27,15 @@ std::string field(const char* file, const std::string& name, char separator) {
     return begin == std::string::npos ? "" : line.substr(begin, end + 1 - begin);
   }
   return {};
+}
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+void read(const Json& json, const char* key, Value& value) {
+  if (!json.is_object()) return;
+  const auto found = json.find(key);
+  if (found != json.end() && !found->is_null()) value = found->get<Value>();
 }
 
 }  // namespace
@@ -61,5 +70,43 @@ std::string today() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
+
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json json_of(const Machine& machine) {
+  return {{"cpu", or_null(machine.cpu)},
+          {"cores", machine.cores == 0 ? Json() : Json(machine.cores)},
+          {"memory_bytes", machine.memory_bytes == 0 ? Json() : Json(machine.memory_bytes)},
+          {"os", or_null(machine.os)}};
+}
+
+Json json_of(const Build& build) {
+  return {{"version", build.version},
+          {"revision", or_null(build.revision)},
+          {"compiler", build.compiler},
+          {"type", or_null(build.type)},
+          {"flags", or_null(build.flags)}};
+}
+
+Machine read_machine(const Json& json) {
+  Machine machine;
+  read(json, "cpu", machine.cpu);
+  read(json, "cores", machine.cores);
+  read(json, "memory_bytes", machine.memory_bytes);
+  read(json, "os", machine.os);
+  return machine;
+}
+
+Build read_build(const Json& json) {
+  Build build;
+  read(json, "version", build.version);
+  read(json, "revision", build.revision);
+  read(json, "compiler", build.compiler);
+  read(json, "type", build.type);
+  read(json, "flags", build.flags);
+  return build;
+}
+
+std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace broadside::lab

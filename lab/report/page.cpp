@@ -7,8 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "lab/report/machine_json.hpp"
-#include "lab/report/page_template.hpp"
+#include "lab/report/machine.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,8 +1,9 @@
-// Results as a page: one file with charts, tables and pictures, which opens in a browser and asks nothing of
-// a network.
+// Results as a page: one file with charts, tables and pictures, which opens in a browser without a network.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace broadside::lab {
 
@@ -20,5 +21,13 @@ std::string page_missing();
 
 /// The page, in HTML. Throws std::runtime_error with page_missing() where that says something.
 std::string page_of(const PageContent& content);
+
+struct PageTemplate {
+  std::span<const std::string_view> before;
+  std::span<const std::string_view> after;
+};
+
+/// Empty where there was nothing to write it with.
+PageTemplate page_template();
 
 }  // namespace broadside::lab

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/report/drawing.hpp"
-#include "lab/report/machine_json.hpp"
+#include "lab/report/machine.hpp"
 
 namespace broadside::lab {
 namespace {

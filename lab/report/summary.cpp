@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "lab/measure/paired_ratio.hpp"
-#include "lab/measure/processor_share.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/steadiness.hpp"

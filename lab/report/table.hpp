@@ -1,15 +1,38 @@
-// A comparison as tables that a person likes to read.
+// A comparison as text: tables, a line a case, and a summary.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "lab/measure/compare.hpp"
+#include "lab/measure/measurement.hpp"
 
 namespace broadside::lab {
 
-/// One case: a line that says what it is, and a line for each algorithm, the fastest first, those without a
-/// time last. Where the floor was timed, its line ends the table, and each time is given in floors as well.
-/// Plain text.
+/// The interval's ends to two significant digits: "17 to 19"; "level" where it holds 1 and nothing further
+/// from 1 than a factor of 1.5; "-" where there is none.
+std::string interval_text(const std::optional<Interval>& interval);
+
+/// A ratio and its interval: "18 (17 to 19)", "1.0 (level)", "5,100".
+std::string ratio_text(double ratio, const std::optional<Interval>& interval);
+
+/// What the results were compared with: "quadtree or sweep_and_prune + 200 sampled boxes"; empty where
+/// nothing was.
+std::string references_of(const CaseResult& result);
+
+/// references_of(), or how many FAILED; "nothing verified" where everything was skipped.
+std::string verdict_of(const CaseResult& result);
+
+/// The names of the columns of case_line().
+std::string case_line_heading();
+
+/// One case: the best of our own, auto's ratio to it, the fastest peer, how many times as fast our best is,
+/// and how the pairs were verified. "-" stands for what was not in the comparison. Ends with a line's end.
+std::string case_line(const CaseResult& result);
+
+/// One case: a line that says what it is, and a line for each algorithm, the fastest first, algorithms
+/// without a time last. Where the floor was timed, its line ends the table, and each time is given in floors
+/// as well. Plain text.
 std::string table_of(const CaseResult& result);
 
 /// What all cases come to: each algorithm's ratio to the fastest as a geometric mean, how many measurements

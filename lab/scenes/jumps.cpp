@@ -50,7 +50,7 @@ History<D> make_jumps(const Settings& settings, const SceneRequest& request) {
 Scene jumps() {
   return {
       .name = "jumps",
-      .summary = "even boxes of which a tenth drifts, until all of them jump in one frame",
+      .summary = "even boxes; a tenth of them drifts, until all of them jump in one frame",
       .source = "Broadside",
       .tunables = {{.name = "every",
                     .summary = "frames from one jump of all boxes to the next",

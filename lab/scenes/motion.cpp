@@ -73,7 +73,7 @@ double mean_extent(const Box<D, Real>& box) {
   return sum / D;
 }
 
-/// A direction times a length, in whole numbers of which at least one is not 0.
+/// A direction times a length, in whole numbers, at least one of them not 0.
 template <int D>
 void make_whole(std::array<double, D>& velocity) {
   const auto steepest =

@@ -26,7 +26,7 @@ Tunable neighbours_tunable();
 double power(double base, double exponent);
 
 /// The side of the cube in which boxes of these sizes, centred uniformly, touch `neighbours` others on
-/// average; 0 if there are not so many others. Only axes from `first_axis` on are spread: on those before,
+/// average; 0 if there are too few others. Only axes from `first_axis` on are spread: on those before,
 /// all boxes touch. Cost O(n).
 template <int D>
 double world_side(std::span<const Size<D>> sizes, double neighbours, int first_axis = 0);

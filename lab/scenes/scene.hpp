@@ -90,7 +90,7 @@ struct NamedScene {
 
 /// The scene that `text` names: a spec such as "power_law:exponent=2" of one in scenes(), or the path of a
 /// file that one of the readers reads, and its spec; "-" is standard input. Throws InvalidSpec naming the
-/// scenes there are, or FileError (lab/readers/format.hpp).
+/// scenes there are, or FileError (lab/formats/format.hpp).
 NamedScene find_scene(std::string_view text);
 NamedScene find_scene(std::string_view text, const ReadOptions& files);
 

@@ -1,6 +1,4 @@
 // The smallest history of boxes on which an algorithm fails.
-#include "lab/verify/smallest_failure.hpp"
-
 #include <exception>
 #include <new>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/verify/verify.hpp"
+#include "lab/verify/verify_history.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -21,18 +20,6 @@ namespace {
 constexpr std::size_t most_boxes_made_smaller_by_definition = 2'000;
 
 }  // namespace
-
-std::string fault_of(const std::string& algorithm, const std::function<std::string()>& run) {
-  try {
-    return run();
-  } catch (const Stopped&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;  // the machine's fault
-  } catch (const std::exception& thrown) {
-    return fmt::format("{} threw: {}", algorithm, thrown.what());
-  }
-}
 
 template <int D, typename Real>
 std::string fault_on(const History<D, Real>& history, const Entry& entry, std::span<const Algorithm> known) {

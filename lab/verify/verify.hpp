@@ -26,7 +26,7 @@ struct Divergence {
   std::string text;       ///< a sentence that names the algorithm, the frame, the pair and both boxes
 };
 
-/// Boxes for a function that is told their dimension and precision.
+/// Boxes for a function whose caller names D and Real: they are not deduced.
 template <int D, typename Real>
 using BoxSpan = std::type_identity_t<std::span<const Box<D, Real>>>;
 
@@ -39,8 +39,8 @@ std::vector<Pair> reference_pairs(BoxSpan<D, Real> boxes);
 template <int D, typename Real>
 using ExpectedPairs = std::type_identity_t<std::function<std::vector<Pair>(std::span<const Box<D, Real>>)>>;
 
-/// What differs first between `found`, in any order, and the sorted `expected`; empty if they are equal as
-/// sets and each pair of `found` is there once.
+/// The first difference between `found`, in any order, and the sorted `expected`; empty if they are equal as
+/// sets and `found` has each pair once.
 std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected);
 
 /// The same divergence, with the algorithm's name, what was looked at, the frame and both boxes in its text.
@@ -62,8 +62,8 @@ std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const His
                                         std::string_view name,
                                         const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
 
-/// What differs first between a frame's events, as a tracker gave them, and those that lead from the sorted
-/// pairs `before` to `now`; empty if nothing does and the events are sorted.
+/// The first difference between a tracker's events of a frame and the ones that lead from the sorted pairs
+/// `before` to `now`; empty if there is none and the events are sorted.
 template <int D, typename Real = float>
 std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
                                        std::span<const Pair> before, std::span<const Pair> now,

@@ -10,20 +10,19 @@
 
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
-#include "lab/verify/smallest_failure.hpp"
 #include "lab/verify/verify_history.hpp"
 
 namespace broadside::lab {
 namespace {
 
-/// What is wrong with the entry on the boxes of a file; empty if nothing is.
+/// The fault of the entry on the boxes of a file; empty if there is none.
 template <int D, typename Real>
 std::string fault_in(BoxFile file, const Entry& entry, std::span<const Algorithm> known) {
   auto& frames = std::get<std::unique_ptr<FrameReader<D, Real>>>(file.frames);
   return fault_on<D, Real>(read_all(*frames), entry, known);
 }
 
-/// A name that no file in the current folder has: what is there may be the very file that was verified.
+/// A name that no file in the current folder has: an existing file may be the one that was verified.
 std::filesystem::path free_name(std::string_view extension) {
   std::filesystem::path path = fmt::format("counterexample{}", extension);
   for (int number = 2; std::filesystem::exists(path); ++number)

@@ -1,5 +1,4 @@
-// The law on somebody's own file: every algorithm on every frame, and, where one fails, a small file that
-// shows it.
+// The law on a user's file: every algorithm on every frame and, where one fails, a small file that shows it.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +21,14 @@ struct VerifyOptions {
   std::string algorithms = "own,paper";  ///< as Catalogue::select reads it
   double budget_seconds = 10;            ///< that an algorithm may take over all frames, and a counterexample
 
-  /// Where the smallest input on which the first of those that fail does so is written, in the format of the
+  /// Where the smallest input on which the first failing algorithm fails is written, in the format of the
   /// extension. Empty: counterexample.csv in the current folder, or .btrace where boxes move, with a number
   /// in its name where there is such a file already.
   std::filesystem::path counterexample{};
   Watch watch{};
 };
 
-/// What came of one algorithm.
+/// The verdict on one algorithm.
 struct Verdict {
   std::string algorithm;  ///< its spec
   Outcome outcome = Outcome::verified;
@@ -48,7 +47,7 @@ struct Counterexample {
   std::string command;  ///< the arguments of the program that show it again
 };
 
-/// All that came of a file.
+/// The verdicts on a file.
 struct Verification {
   std::string file;
   int dimension;
@@ -56,7 +55,7 @@ struct Verification {
   std::string importer;   ///< the library that may have rounded its numbers to float; empty if none did
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
-  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where nobody got there
+  std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
   std::vector<Verdict> verdicts{};
   std::optional<Counterexample> counterexample{};
   std::string warning{};  ///< what had to be left out of a damaged file; empty otherwise
@@ -65,11 +64,11 @@ struct Verification {
   bool all_verified() const;
 };
 
-/// Checks algorithms on what is left of a file, in its precision. In each frame a finder's pairs are compared
-/// with the expected ones and, where boxes move, a tracker's events with what leads from one frame's to the
-/// next. Expected are the pairs by definition, unless that would take more than some seconds: then those of
-/// another algorithm, of which a sample is compared with the definition in up to twenty frames, and whoever
-/// differs from it is judged by the definition.
+/// Checks algorithms on the remaining frames of a file, in its precision. In each frame a finder's pairs are
+/// compared with the expected ones and, where boxes move, a tracker's events with what leads from one frame's
+/// to the next. The expected pairs follow the definition, unless that would take more than some seconds. Then
+/// they come from another algorithm; a sample of its pairs is compared with the definition in up to twenty
+/// frames, and an algorithm that differs from it is judged by the definition.
 ///
 /// An algorithm that would exceed its budget on the fullest frame is skipped; one whose budget is used up
 /// stops, and its verdict says in which frame. Throws FileError, InvalidSpec, and Stopped if the watch says

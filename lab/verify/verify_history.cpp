@@ -11,9 +11,9 @@
 
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/estimate.hpp"
+#include "lab/measure/benchmark.hpp"
 #include "lab/measure/reference.hpp"
-#include "lab/verify/smallest_failure.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/verify/verify.hpp"
 
 namespace broadside::lab {
@@ -183,7 +183,7 @@ class HistoryCheck {
                       .frames = frame + 1};
   }
 
-  /// Adds what is wrong with a reference, unless it has failed as an entry already.
+  /// Adds the fault of a reference, unless it has failed as an entry already.
   void add_fault(const Verdict& fault) {
     const auto same = [&](const Verdict& other) {
       return other.algorithm == fault.algorithm && other.outcome == Outcome::failed;
@@ -192,7 +192,7 @@ class HistoryCheck {
       result_.verdicts.push_back(fault);
   }
 
-  /// What is wrong with one frame of a participant's.
+  /// The fault in one frame of a participant.
   std::string check(Participant<D, Real>& participant, std::span<const Box<D, Real>> boxes,
                     std::size_t frame) {
     const std::string name = participant.entry->spec.text();

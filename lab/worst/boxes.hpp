@@ -41,7 +41,8 @@ Point<D> anywhere(Random& random) {
   return point;
 }
 
-/// The side of cubes, of which `count` scattered over the unit cube touch `neighbours` others on average.
+/// The side of cubes such as touch `neighbours` others on average where `count` are scattered over the unit
+/// cube.
 template <int D>
 double side_for(double neighbours, std::size_t count) {
   return power(neighbours / static_cast<double>(std::max<std::size_t>(count, 1)), 1.0 / D) / 2;

@@ -36,7 +36,7 @@ struct InputFamily {
   std::vector<DrawnTunable> tunables;
   MakeDoubleBoxes<2> boxes_2d;
   MakeDoubleBoxes<3> boxes_3d;
-  bool fixed_order = false;  ///< the order of the boxes is the point of it
+  bool fixed_order = false;  ///< the order of the boxes matters
   bool two_sets = false;  ///< few pairs between two halves, about n^2 within each: for find_between() alone
 };
 

@@ -16,7 +16,7 @@
 
 namespace broadside::lab {
 
-/// What is called with the boxes.
+/// The call that is made with the boxes.
 enum class Call { find, between, track };
 
 /// Boxes, and the call that is made with them. Everything but the number of boxes.
@@ -34,7 +34,7 @@ struct HardInput {
   std::string order = "made";  ///< "made", "shuffled" or "reversed"
   std::uint64_t seed = 1;
 
-  /// What parse_input() reads back to the same input.
+  /// The text that parse_input() reads back to the same input.
   std::string text() const;
 };
 
@@ -54,7 +54,7 @@ History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size
 /// How many of `boxes` boxes are in the left set; 0 unless the call is to find_between().
 std::size_t left_count(const HardInput& input, std::size_t boxes);
 
-/// Even boxes, otherwise asked about in the same way: what the input is compared with.
+/// Even boxes with the same call: the input that this one is compared with.
 HardInput uniform_for(const HardInput& input);
 
 /// Every family with its standard values, in both dimensions and precisions and with every call, and inputs

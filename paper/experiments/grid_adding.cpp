@@ -16,7 +16,7 @@
 
 #include "lab/measure/samples.hpp"
 #include "lab/verify/verify.hpp"
-#include "paper/experiments/boxes.hpp"
+#include "paper/experiments/laboratory.hpp"
 
 namespace broadside::lab {
 namespace {

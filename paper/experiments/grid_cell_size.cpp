@@ -10,8 +10,8 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/scenes/scene.hpp"
-#include "paper/experiments/boxes.hpp"
 #include "paper/experiments/descriptions.hpp"
+#include "paper/experiments/laboratory.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -67,7 +67,7 @@ std::vector<std::pair<double, std::string>> sizes_of(const Grid& grid, const Len
 /// Adds a scene's curve, and what the grid's own choice takes beside it.
 void measure_scene(const Laboratory& laboratory, const std::string& scene, const Grid& grid, Table& curves,
                    Table& choices) {
-  // As many as brute force in a single cell can be waited for; of ours so many that looking for a size, which
+  // As many as brute force in a single cell allows; of ours as many that looking for a size, which
   // takes as long for any number of boxes, is a small part of the search.
   const std::size_t boxes = grid.algorithm == "paper_grid" ? laboratory.either<std::size_t>(10'000, 4'000)
                                                            : laboratory.either<std::size_t>(40'000, 24'000);
@@ -230,7 +230,7 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.reason = fmt::format(
       "In {} of {} scenes both the smallest and the largest cells take the paper's grid more than {} times "
-      "as long as the best, which are so many boxes long: {}. Sizes that cost less than that span a factor "
+      "as long as the best, in lengths of a box: {}. Sizes that cost less than that span a factor "
       "of {} to {}. Of our grid's {} curves, {} have both ends as high. With the size that it chooses "
       "itself, a grid takes, as a mean: {}.",
       balanced.size(), generated_scenes.size(), clearly, fmt::join(optima, ", "), rounded(narrowest),

@@ -6,8 +6,8 @@
 
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/mending.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/mending.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {

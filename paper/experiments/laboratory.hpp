@@ -1,10 +1,14 @@
 // What experiments measure with: algorithms in turns on a scene, every result checked.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "broadside/box.hpp"
 
 #include "lab/catalogue.hpp"
 #include "lab/measure/benchmark.hpp"
@@ -16,7 +20,7 @@
 
 namespace broadside::lab {
 
-/// The place where an experiment is done: how thorough it is, and who watches.
+/// Where an experiment is done: how thorough it is, and what watches it.
 class Laboratory {
  public:
   /// `quick` for a first impression: smaller numbers and fewer samples. All fifteen experiments then take
@@ -80,5 +84,26 @@ Cell bytes_cell(const Measurement& measurement);
 
 /// A number over another one, such as tests over boxes; nothing and text stay what they are.
 Cell over(const Cell& cell, double divisor);
+
+/// The boxes of the scene that `scene` names, in motion if the request has frames; throws as find_scene() and
+/// make_history().
+template <int D>
+History<D> history_of(std::string_view scene, const SceneRequest& request) {
+  const NamedScene named = find_scene(scene);
+  return make_history<D>(named.scene, named.spec, request);
+}
+
+/// The least box that holds all of these; of none, the absent box.
+template <int D>
+Box<D> bounds_of(std::span<const Box<D>> boxes) {
+  Box<D> bounds = absent_box<D>();
+  for (const Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
+    }
+  }
+  return bounds;
+}
 
 }  // namespace broadside::lab

@@ -11,7 +11,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/samples.hpp"
-#include "paper/experiments/boxes.hpp"
+#include "paper/experiments/laboratory.hpp"
 #include "paper/listings/coherent_tracker.hpp"
 
 namespace broadside::lab {
@@ -53,9 +53,11 @@ std::vector<FrameEvents> expected_events(const History<D>& history) {
 
 struct Samples {
   std::vector<double> mending_ms;
+  std::vector<double> structure_ms;
   std::vector<double> searching_ms;
   std::vector<double> frame_ms;
   double moved = 0;
+  double visited = 0;
   double movers = 0;
   double references = 0;
 };
@@ -79,8 +81,10 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
     samples.frame_ms.push_back(watch.milliseconds());
     const paper::UpdateParts& parts = coherent.parts();
     samples.mending_ms.push_back(parts.detecting_ms + parts.mending_ms);
+    samples.structure_ms.push_back(parts.mending_ms);
     samples.searching_ms.push_back(parts.searching_ms);
     samples.moved += static_cast<double>(parts.moved);
+    samples.visited += static_cast<double>(parts.visited);
     samples.movers += static_cast<double>(parts.movers);
     samples.references +=
         static_cast<double>(tracker->statistics()->references) / static_cast<double>(boxes.size());
@@ -96,40 +100,59 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
 
 template <int D>
 std::vector<MendingCost> measure_mending(const Laboratory& laboratory, const std::vector<std::string>& specs,
-                                         const CaseRequest& request) {
-  const History<D> history = history_of<D>(request.scene, {.boxes = request.boxes,
-                                                           .frames = request.frames,
-                                                           .moving = request.moving,
-                                                           .drift = request.drift,
-                                                           .teleport = request.teleport});
+                                         const std::string& name, const History<D>& history) {
   const std::vector<FrameEvents> expected = expected_events<D>(history);
-  std::vector<Samples> samples(specs.size());
+  std::vector<Samples> all(specs.size());
   const Stopwatch watch;
   const double budget_ms = laboratory.either(1000.0, 100.0) * static_cast<double>(specs.size());
   const std::size_t rounds = laboratory.either<std::size_t>(7, 2);
   for (std::size_t round = 0; round < rounds && (round < 2 || watch.milliseconds() < budget_ms); ++round) {
     for (std::size_t i = 0; i < specs.size(); ++i) {
-      laboratory.at(fmt::format("{} on {} of {} boxes", specs[i], request.scene, request.boxes));
-      play<D>(specs[i], history, expected, samples[i]);
+      laboratory.at(fmt::format("{} on {} of {} boxes", specs[i], name, history.boxes.size()));
+      play<D>(specs[i], history, expected, all[i]);
     }
   }
   std::vector<MendingCost> costs;
-  for (const Samples& of : samples) {
-    const auto frames = static_cast<double>(of.frame_ms.size());
-    const double mending = median(of.mending_ms);
+  for (const Samples& samples : all) {
+    const auto frames = static_cast<double>(samples.frame_ms.size());
+    const double mending = median(samples.mending_ms);
     costs.push_back({.mending_ms = mending,
-                     .searching_ms = median(of.searching_ms),
-                     .frame_ms = median(of.frame_ms),
-                     .moved = of.moved / std::max(1.0, of.movers),
-                     .references = of.references / frames,
-                     .mover_ns = 1e6 * mending / std::max(1.0, of.movers / frames)});
+                     .structure_ms = median(samples.structure_ms),
+                     .searching_ms = median(samples.searching_ms),
+                     .frame_ms = median(samples.frame_ms),
+                     .moved = samples.moved / std::max(1.0, samples.movers),
+                     .visited = samples.visited / std::max(1.0, samples.movers),
+                     .references = samples.references / frames,
+                     .mover_ns = 1e6 * mending / std::max(1.0, samples.movers / frames)});
   }
   return costs;
+}
+
+template <int D>
+std::vector<MendingCost> measure_mending(const Laboratory& laboratory, const std::vector<std::string>& specs,
+                                         const CaseRequest& request) {
+  return measure_mending<D>(laboratory, specs, request.scene,
+                            history_of<D>(request.scene, {.boxes = request.boxes,
+                                                          .frames = request.frames,
+                                                          .moving = request.moving,
+                                                          .drift = request.drift,
+                                                          .teleport = request.teleport}));
+}
+
+std::vector<std::string> sweeps_by(const std::vector<std::string>& updates) {
+  std::vector<std::string> specs;
+  for (const std::string& update : updates) specs.push_back("paper_sweep_and_prune:update=" + update);
+  return specs;
 }
 
 template std::vector<MendingCost> measure_mending<2>(const Laboratory&, const std::vector<std::string>&,
                                                      const CaseRequest&);
 template std::vector<MendingCost> measure_mending<3>(const Laboratory&, const std::vector<std::string>&,
                                                      const CaseRequest&);
+
+template std::vector<MendingCost> measure_mending<2>(const Laboratory&, const std::vector<std::string>&,
+                                                     const std::string&, const History<2>&);
+template std::vector<MendingCost> measure_mending<3>(const Laboratory&, const std::vector<std::string>&,
+                                                     const std::string&, const History<3>&);
 
 }  // namespace broadside::lab

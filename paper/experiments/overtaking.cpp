@@ -9,7 +9,7 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -24,8 +24,7 @@ struct Field {
 };
 
 const std::vector<Field>& fields() {
-  static const std::vector<std::string> ours = {"grid", "sweep_and_prune", "quadtree", "hierarchical_grid",
-                                                "bvh"};
+  static const std::vector<std::string> ours = {"grid", "sweep_and_prune", "quadtree", "bvh"};
   static const std::vector<Field> list = {{"paper",
                                            "The paper's algorithms, in 2D",
                                            2,

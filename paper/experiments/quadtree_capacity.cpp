@@ -9,7 +9,7 @@
 
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,4 +1,4 @@
-// Section VI-D: a box that moves in a quadtree is filed anew relative to where it was, by way of siblings and
+// Section VI-D: a box that moves in a quadtree is reinserted relative to where it was, by way of siblings and
 // cousins, or from the root; and what that means for boxes that span many leaves.
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/mending.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -20,7 +20,7 @@ constexpr double usual_drift = 0.2;
 /// What is less than this faster is as fast.
 constexpr double margin = 0.1;
 
-/// A way that takes so many times as long as the one from the root is horrible.
+/// A way that takes this many times as long as the one from the root is horrible.
 constexpr double horrible = 2;
 
 struct Trial {
@@ -82,17 +82,17 @@ Chart chart_of(const std::string& title, const std::string& x, const std::string
 std::vector<Table> measure(const Laboratory& laboratory) {
   Table depth{.name = "depth",
               .title =
-                  "A mover filed anew, by the number of boxes: the deeper the tree, the longer the way "
+                  "A mover reinserted, by the number of boxes: the deeper the tree, the longer the way "
                   "from the root",
               .columns = columns_after({{"tree"}, {"boxes"}}),
               .charts = {chart_of("By the number of boxes", "boxes", cousins_gain)}};
   Table step{.name = "step",
-             .title = "A mover filed anew, by how far it goes in a frame",
+             .title = "A mover reinserted, by how far it goes in a frame",
              .columns = columns_after({{"tree"}, {"drift", "of a box"}}),
              .charts = {chart_of("By how far a mover goes", "drift", cousins_gain)}};
   Table spanning{.name = "spanning",
                  .title =
-                     "A mover filed anew, by the leaves that a box is in: neighbours make boxes larger "
+                     "A mover reinserted, by the leaves that a box is in: neighbours make boxes larger "
                      "against leaves",
                  .columns = columns_after({{"tree"}, {"neighbours"}}),
                  .charts = {chart_of("By the leaves a box is in", "leaves a box", cousins_gain),

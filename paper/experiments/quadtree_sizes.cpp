@@ -164,7 +164,7 @@ double growth_over_sizes(const Table& sizes, const std::string& algorithm, std::
   return numbers.back() / numbers.front();
 }
 
-/// The first size of which one box in a hundred doubles the references; the last one if none does.
+/// The first size at which one box in a hundred doubles the references; the last one if none does.
 double doubling_size(const Table& sizes) {
   const auto points = sizes.where("algorithm", listing).points("size of a large box", "references a box");
   for (const auto& [size, references] : points) {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/formats/format.hpp"
-#include "lab/measure/processor_share.hpp"
-#include "lab/report/machine_json.hpp"
+#include "lab/measure/steadiness.hpp"
+#include "lab/report/machine.hpp"
 #include "paper/experiments/results.hpp"
 
 namespace broadside::lab {
@@ -164,7 +164,7 @@ Cell read_cell(const Json& json, const std::string& where) {
       fmt::format("{}: {}; expected a finite number, a text or null", where, json.dump().substr(0, 40)));
 }
 
-/// A column is of numbers or of texts: whoever judges by numbers would not see that one is missing.
+/// A column is of numbers or of texts: a judge by numbers would not see that one is missing.
 void check_kinds(const Table& table, const std::string& where) {
   for (const Column& column : table.columns) {
     if (table.numbers(column.name).empty() || table.texts(column.name).empty()) continue;

@@ -10,8 +10,8 @@
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/sweep_worlds.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -9,58 +9,17 @@
 #include <fmt/format.h>
 
 #include "lab/numbers.hpp"
-#include "paper/experiments/boxes.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/growth.hpp"
+#include "paper/experiments/laboratory.hpp"
 #include "paper/experiments/mending.hpp"
-#include "paper/experiments/sweep_orders.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {
 
 const std::string insertion = "insertion";
-const std::string anew = "sort anew";
+const std::string rebuild = "rebuild";
 const std::string heap = "heap";
-
-/// What came of one step of all boxes, for their order along an axis.
-struct Disturbance {
-  double places_a_box = 0;
-  double insertion_ms = 0;
-  double anew_ms = 0;
-  double heap_ms = 0;
-};
-
-template <int D>
-Disturbance disturb(const std::string& scene, int axis, const SceneRequest& request, std::size_t times) {
-  const History<D> history = history_of<D>(scene, request);
-  std::vector<SweptBox> order;
-  for (std::uint32_t i = 0; i < history.boxes.size(); ++i) order.push_back({history.boxes[i].min[axis], i});
-  std::sort(order.begin(), order.end());
-  std::vector<Box<D>> boxes = history.boxes;
-  apply(history.steps.at(0), boxes);
-  for (SweptBox& box : order) box.min = boxes[box.id].min[axis];
-
-  std::vector<SweptBox> expected = order;
-  std::sort(expected.begin(), expected.end());
-  std::vector<SweptBox> space;
-  Disturbance found;
-  const auto check = [&expected](const std::vector<SweptBox>& sorted, const std::string& by) {
-    if (sorted != expected) throw std::runtime_error(by + ": boxes out of order; expected them sorted");
-  };
-  found.insertion_ms = sorting_ms(order, times, [&](std::vector<SweptBox>& some) {
-    found.places_a_box = static_cast<double>(sort_by_insertion(some)) / static_cast<double>(some.size());
-  });
-  found.anew_ms =
-      sorting_ms(order, times, [](std::vector<SweptBox>& some) { std::sort(some.begin(), some.end()); });
-  found.heap_ms = sorting_ms(order, times, [&](std::vector<SweptBox>& some) { sort_by_heap(some, space); });
-  std::vector<SweptBox> sorted = order;
-  sort_by_insertion(sorted);
-  check(sorted, insertion);
-  sorted = order;
-  sort_by_heap(sorted, space);
-  check(sorted, heap);
-  return found;
-}
 
 /// How far all boxes go in a frame, in their own sizes; the last motion is a jump anywhere.
 struct Motion {
@@ -77,41 +36,36 @@ std::vector<Motion> motions() {
   return all;
 }
 
-Table measure_sorting(const Laboratory& laboratory) {
-  Table table{.name = "sorting",
-              .title = "Mending a sweep's order where all boxes move: uniform boxes in 2D",
-              .columns = {{"motion"}, {"sort"}, {"boxes"}, {"places moved a box"}, {"time a box", "ns"}},
-              .charts = {log_log_chart("Time to mend the order over how far it is disturbed",
-                                       "places moved a box", "time a box", "sort")}};
-  const auto boxes = laboratory.either<std::size_t>(10'000, 4'000);
-  for (const Motion& motion : motions()) {
-    laboratory.at("sweep_insertion: sorting, " + motion.text);
-    const Disturbance found = disturb<2>(
-        "uniform", 0,
-        {.boxes = boxes, .frames = 1, .moving = 1, .drift = motion.drift, .teleport = motion.teleport},
-        laboratory.either<std::size_t>(21, 9));
-    const auto count = static_cast<double>(boxes);
-    const auto add = [&](const std::string& sort, double milliseconds) {
-      table.add({motion.text, sort, count, found.places_a_box, milliseconds * 1e6 / count});
-    };
-    add(insertion, found.insertion_ms);
-    add(anew, found.anew_ms);
-    add(heap, found.heap_ms);
-  }
-  return table;
-}
-
-/// A world in which a sweep meets boxes along its axis: as many a length in a corridor, more in a plane.
-struct World {
-  std::string text;
-  std::string scene;
-  int dimension;
-  int axis;
-};
-
 const std::string corridor = "corridor";
 const std::string plane = "plane";
 const std::string space = "space";
+
+/// Boxes that all go a tenth of their size.
+template <int D>
+History<D> drifting(const std::string& scene, std::size_t boxes) {
+  return history_of<D>(scene, {.boxes = boxes, .frames = 4, .moving = 1, .drift = 0.1});
+}
+
+/// Boxes along the x axis: each length of it holds as many, however many boxes there are.
+History<2> along_x(std::size_t boxes) {
+  History<2> history = drifting<2>("one_line", boxes);  // along y
+  const auto turn = [](Box2& box) {
+    std::swap(box.min[0], box.min[1]);
+    std::swap(box.max[0], box.max[1]);
+  };
+  std::ranges::for_each(history.boxes, turn);
+  for (Step<2>& step : history.steps) std::ranges::for_each(step.boxes, turn);
+  return history;
+}
+
+/// Insertion and rebuild, in that order.
+std::vector<MendingCost> measure_world(const Laboratory& laboratory, const std::string& world,
+                                       std::size_t boxes) {
+  const std::vector<std::string> specs = sweeps_by({insertion, rebuild});
+  if (world == space) return measure_mending<3>(laboratory, specs, world, drifting<3>("uniform", boxes));
+  return measure_mending<2>(laboratory, specs, world,
+                            world == plane ? drifting<2>("uniform", boxes) : along_x(boxes));
+}
 
 Table measure_growth(const Laboratory& laboratory) {
   Table table{.name = "growth",
@@ -126,26 +80,20 @@ Table measure_growth(const Laboratory& laboratory) {
                                        "places moved a box", "world"),
                          log_log_chart("Time of insertion sort over the number of boxes", "boxes",
                                        "insertion", "world")}};
-  const std::vector<World> worlds = {
-      {corridor, "one_line", 2, 1}, {plane, "uniform", 2, 0}, {space, "uniform", 3, 0}};
-  for (const World& world : worlds) {
-    for (std::size_t boxes = 1'000; boxes <= laboratory.either<std::size_t>(256'000, 64'000); boxes *= 4) {
-      laboratory.at(fmt::format("sweep_insertion: {} of {} boxes", world.text, boxes));
-      const SceneRequest request{.boxes = boxes, .frames = 1, .moving = 1, .drift = 0.1};
-      const std::size_t times = laboratory.either<std::size_t>(11, 5);
-      const Disturbance found = world.dimension == 2 ? disturb<2>(world.scene, world.axis, request, times)
-                                                     : disturb<3>(world.scene, world.axis, request, times);
+  for (const std::string& world : {corridor, plane, space}) {
+    for (std::size_t boxes = 1'000; boxes <= laboratory.either<std::size_t>(64'000, 16'000); boxes *= 4) {
+      const std::vector<MendingCost> costs = measure_world(laboratory, world, boxes);
       const auto count = static_cast<double>(boxes);
-      table.add({world.text, count, found.places_a_box, found.places_a_box * count, found.insertion_ms,
-                 found.anew_ms});
+      table.add({world, count, costs[0].moved, costs[0].moved * count, costs[0].structure_ms,
+                 costs[1].structure_ms});
     }
   }
   return table;
 }
 
-const std::vector<std::string> updates = {"insertion", "heap", "binary", "rebuild"};
+const std::vector<std::string> updates = {insertion, heap, "binary", rebuild};
 
-Table measure_frames(const Laboratory& laboratory, const Table& sorting) {
+Table measure_frames(const Laboratory& laboratory) {
   Table table{.name = "frames",
               .title = "Frames of the paper's sweep where all boxes move: uniform boxes in 2D",
               .columns = {{"motion"},
@@ -155,37 +103,34 @@ Table measure_frames(const Laboratory& laboratory, const Table& sorting) {
                           {"mending", "ms"},
                           {"sweeping", "ms"},
                           {"time", "ms"}},
-              .charts = {log_log_chart("Time of a frame over how far the order is disturbed",
+              .charts = {log_log_chart("Time of mending over how far the order is disturbed",
+                                       "places moved a box", "mending", "update"),
+                         log_log_chart("Time of a frame over how far the order is disturbed",
                                        "places moved a box", "time", "update")}};
-  std::vector<std::string> specs;
-  for (const std::string& update : updates) specs.push_back("paper_sweep_and_prune:update=" + update);
   const auto boxes = laboratory.either<std::size_t>(10'000, 4'000);
   for (const Motion& motion : motions()) {
     const std::vector<MendingCost> costs =
-        measure_mending<2>(laboratory, specs,
+        measure_mending<2>(laboratory, sweeps_by(updates),
                            {.scene = "uniform",
                             .boxes = boxes,
                             .moving = 1,
                             .frames = laboratory.either<std::size_t>(10, 4),
                             .drift = motion.drift,
                             .teleport = motion.teleport});
-    const double places = sorting.where("motion", motion.text).number("places moved a box");
     for (std::size_t i = 0; i < updates.size(); ++i)
-      table.add({motion.text, updates[i], static_cast<double>(boxes), places, costs[i].mending_ms,
+      table.add({motion.text, updates[i], static_cast<double>(boxes), costs[0].moved, costs[i].mending_ms,
                  costs[i].searching_ms, costs[i].frame_ms});
   }
   return table;
 }
 
 std::vector<Table> measure(const Laboratory& laboratory) {
-  Table sorting = measure_sorting(laboratory);
-  Table frames = measure_frames(laboratory, sorting);
-  return {std::move(sorting), measure_growth(laboratory), std::move(frames)};
+  return {measure_growth(laboratory), measure_frames(laboratory)};
 }
 
-/// How a sort's time a box goes with the places moved.
-std::vector<std::pair<double, double>> line(const Table& sorting, const std::string& sort) {
-  auto points = sorting.where("sort", sort).points("places moved a box", "time a box");
+/// The time of mending by an update over the places moved.
+std::vector<std::pair<double, double>> mending_by(const Table& frames, const std::string& update) {
+  auto points = frames.where("update", update).points("places moved a box", "mending");
   std::erase_if(points, [](const auto& point) { return !(point.first > 0); });
   std::ranges::sort(points);
   return points;
@@ -208,7 +153,6 @@ std::pair<double, double> ratios(const Table& frames, const std::string& other) 
 }
 
 Finding judge(const std::vector<Table>& tables) {
-  const Table& sorting = table_named(tables, "sorting");
   const Table& growth = table_named(tables, "growth");
   const Table& frames = table_named(tables, "frames");
   const auto grows = [&growth](const std::string& world, std::string_view column) {
@@ -217,18 +161,17 @@ Finding judge(const std::vector<Table>& tables) {
   const double in_corridor = grows(corridor, "places moved");
   const double in_plane = grows(plane, "places moved");
   const double in_space = grows(space, "places moved");
-  const auto inserted = line(sorting, insertion);
-  const auto sorted = line(sorting, anew);
-  const auto heaped = line(sorting, heap);
-  if (inserted.empty() || sorted.empty() || heaped.empty())
-    throw std::invalid_argument("table 'sorting' lacks a sort; expected insertion, sort anew and heap");
+  const auto inserted = mending_by(frames, insertion);
+  const auto sorted = mending_by(frames, rebuild);
+  if (inserted.empty() || sorted.empty())
+    throw std::invalid_argument("table 'frames' lacks times of mending; expected insertion's and rebuild's");
   const std::optional<double> limit = crossover(sorted, inserted);
   const bool is_ahead = inserted.front().second < sorted.front().second;
   // From where a box passes one other, its time grows with them.
   const double gain = sorted.front().second / inserted.front().second;
   const double loss = inserted.back().second / sorted.back().second;
   const auto [least_over_heap, most_over_heap] = ratios(frames, heap);
-  const auto [least_over_rebuild, most_over_rebuild] = ratios(frames, "rebuild");
+  const auto [least_over_rebuild, most_over_rebuild] = ratios(frames, rebuild);
   constexpr double linear = 1.15;
 
   Finding finding;
@@ -262,7 +205,6 @@ Finding judge(const std::vector<Table>& tables) {
                      {"places_moved_in_largest_plane", passed.back(), "places a box"},
                      {"gain_over_sorting", gain},
                      {"loss_where_boxes_jump", loss},
-                     {"heap_over_sorting", heaped.front().second / sorted.front().second},
                      {"least_frame_over_heap", least_over_heap},
                      {"most_frame_over_heap", most_over_heap},
                      {"least_frame_over_rebuild", least_over_rebuild},
@@ -274,21 +216,21 @@ Finding judge(const std::vector<Table>& tables) {
 }  // namespace
 
 Experiment sweep_insertion() {
-  return {.number = 12,
-          .name = "sweep_insertion",
-          .title = "Insertion sort and an order that is nearly kept",
-          .claim =
-              "The improved method would make reinserting objects only takes O(n) using insertion sort if "
-              "objects in the collection are relatively in order.",
-          .section = "VI-C",
-          .measured =
-              "By how many places boxes move in a sweep's order and what sorting takes, over how far they go "
-              "and over their number in a corridor, a plane and in space; then frames of "
-              "paper_sweep_and_prune, whose kept "
-              "order is mended (update=insertion, heap or binary) or sorted anew (update=rebuild) and swept "
-              "once.",
-          .measure = measure,
-          .judge = judge};
+  return {
+      .number = 12,
+      .name = "sweep_insertion",
+      .title = "Insertion sort and an order that is nearly kept",
+      .claim =
+          "The improved method would make reinserting objects only takes O(n) using insertion sort if "
+          "objects in the collection are relatively in order.",
+      .section = "VI-C",
+      .measured =
+          "paper_sweep_and_prune, whose kept order is mended (update=insertion, heap or binary) or sorted "
+          "anew (update=rebuild) and then swept once: the places by which boxes move in the order, and "
+          "the time of mending, sweeping and the whole frame, over how far all boxes go; and mending "
+          "over the number of boxes in a corridor, a plane and in space.",
+      .measure = measure,
+      .judge = judge};
 }
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// Beyond the paper: who wins where, what auto loses, and what SIMD, the BVH and threads add.
+// Beyond the paper: which algorithm wins where, what auto loses, and what SIMD, the BVH and threads add.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -45,13 +45,21 @@ std::string name_of(const Table& fields, const std::vector<Cell>& row) {
   return fmt::format("{}, {} boxes", *map, rounded(*boxes));
 }
 
+/// The single algorithms that a table of fields has times of: its columns between auto's and the fastest's.
+std::vector<std::string> single_algorithms_in(const Table& fields) {
+  std::vector<std::string> names;
+  for (std::size_t i = fields.column("auto") + 1; i < fields.column("fastest"); ++i)
+    names.push_back(fields.columns[i].name);
+  return names;
+}
+
 /// The records of auto and of each single algorithm, auto's first.
 std::vector<Record> records_of(const Table& fields) {
   if (fields.rows.size() < 2)
     throw std::invalid_argument(
         fmt::format("table '{}' has {} rows; expected at least 2", fields.name, fields.rows.size()));
   std::vector<Record> records = {{.name = "auto"}};
-  for (const std::string& name : single_algorithms()) records.push_back({.name = name});
+  for (std::string& name : single_algorithms_in(fields)) records.push_back({.name = std::move(name)});
   const std::size_t moving = fields.column("moving");
   for (const std::vector<Cell>& row : fields.rows) {
     std::vector<std::optional<double>> times;
@@ -91,11 +99,12 @@ bool loses_least(const std::vector<Record>& records, std::vector<double> Record:
 
 /// In the fields that the BVH wins, the time of the best of the others over the BVH's.
 std::vector<double> bvh_gains(const Table& fields) {
+  const std::vector<std::string> names = single_algorithms_in(fields);
   std::vector<double> gains;
   for (const std::vector<Cell>& row : fields.rows) {
     const auto* const bvh = std::get_if<double>(&row[fields.column("bvh")]);
     std::optional<double> other;
-    for (const std::string& name : single_algorithms()) {
+    for (const std::string& name : names) {
       const auto* const time = std::get_if<double>(&row[fields.column(name)]);
       if (name != "bvh" && time != nullptr) other = std::min(other.value_or(*time), *time);
     }
@@ -192,7 +201,7 @@ Finding judge(const std::vector<Table>& tables) {
   const Record& automatic = records[0];
 
   const Record* safest =
-      nullptr;  // the single one that loses least in the mean, of those that were everywhere
+      nullptr;  // of the single ones measured everywhere, the one that loses least in the mean
   bool any_everywhere_best = false;
   std::string wins;
   for (const Record& record : std::span(records).subspan(1)) {
@@ -244,7 +253,7 @@ Finding judge(const std::vector<Table>& tables) {
 Experiment winners() {
   return {.number = 15,
           .name = "winners",
-          .title = "Who wins where",
+          .title = "Which algorithm wins where",
           .claim =
               "No single algorithm is the fastest everywhere: how many boxes there are, how dense they "
               "stand, how their sizes differ and how many move decide. Looking at the boxes and choosing, as "

@@ -1,4 +1,5 @@
-// Who is the fastest where: six maps over the number of boxes and one thing that makes boxes easy or hard.
+// Which algorithm is the fastest where: six maps over the number of boxes and one thing that makes boxes easy
+// or hard.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -47,8 +48,8 @@ std::string scene_of(const Map& map, double value) {
   return "uniform";
 }
 
-/// Ours that can win with so many boxes: quadratic search has lost from some thousands on, and costs the
-/// most.
+/// Our algorithms that can win with this many boxes: quadratic search has lost from some thousands on, and
+/// costs the most.
 std::string entries(std::size_t boxes) {
   std::string list = "auto";
   for (const std::string& name : single_algorithms()) {
@@ -80,7 +81,7 @@ Effort effort_of_peers(const Laboratory& laboratory) {
           .slow_rounds = 1};
 }
 
-/// The fastest of those that were measured, auto aside.
+/// The fastest measured one, auto aside.
 const Measurement* fastest(const CaseResult& result) {
   const Measurement* best = nullptr;
   for (const Measurement& measurement : result.measurements) {
@@ -90,7 +91,7 @@ const Measurement* fastest(const CaseResult& result) {
   return best;
 }
 
-/// Those that may be the fastest where there are more boxes: all but who is far behind already.
+/// The algorithms that may be the fastest where there are more boxes: all that are not far behind already.
 std::string not_hopeless(const CaseResult& result) {
   constexpr double far = 4;
   const Measurement* const best = fastest(result);
@@ -131,14 +132,13 @@ std::vector<Cell> row_of(const Map& map, std::size_t boxes, double value, const 
 }  // namespace
 
 const std::vector<std::string>& single_algorithms() {
-  static const std::vector<std::string> names = {"brute_force", "grid", "sweep_and_prune",
-                                                 "quadtree",    "bvh",  "hierarchical_grid"};
+  static const std::vector<std::string> names = {"brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"};
   return names;
 }
 
 Table measure_fields(const Laboratory& laboratory) {
   Table table{.name = "fields",
-              .title = "The time of each of ours, and who is the fastest of them and of the peers",
+              .title = "The time of each of ours, and the fastest of them and of the peers",
               .columns = {{"map"}, {"boxes"}}};
   for (const std::string_view axis : axes) table.columns.push_back({std::string(axis)});
   table.columns.push_back({"auto", "ms"});

@@ -1,4 +1,5 @@
-// What experiment 15 measures: who is the fastest where, and what instruction sets and threads add.
+// What experiment 15 measures: which algorithm is the fastest where, and what instruction sets and threads
+// add.
 #pragma once
 
 #include <string>

@@ -74,7 +74,7 @@ void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, 
     return statistics;
   };
   parts_ = {};
-  if (change.rebuild) {  // the events start from the frame before, of which nothing was kept
+  if (change.rebuild) {  // the events start from the frame before, and nothing of it was kept
     build_anew(change.before);
     search_into(pairs_);
     parts_ = {};

@@ -15,13 +15,13 @@
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/grid_listing.hpp"
-#include "paper/listings/grid_tracker.hpp"
+#include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {
 namespace {
 
-/// Of more cells, an outline has only those that a box is in.
+/// Beyond this many cells, an outline has only the cells that hold a box.
 constexpr std::size_t most_drawn = 1 << 16;
 
 class Grid final : public PairFinder<2>, public Outlined<2> {
@@ -42,7 +42,7 @@ class Grid final : public PairFinder<2>, public Outlined<2> {
     this->count(statistics);
   }
 
-  /// Every cell or, of very many, those that a box is in.
+  /// Every cell or, of very many, the ones that hold a box.
   Outline<2> lay_out(std::span<const Box2> boxes) override {
     grid_.initialize(boxes);
     const std::size_t columns = grid_.columns();

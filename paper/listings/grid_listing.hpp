@@ -27,7 +27,7 @@ class GridListing {
   /// `cell` is the side of a cell, or 0 if the boxes are to choose it.
   GridListing(const WorldSettings& world, double cell) : world_settings_(world), cell_(cell) {}
 
-  /// Algorithm 2 for these boxes, of which absent ones do not count: empty cells.
+  /// Algorithm 2 for these boxes, absent ones left aside: empty cells.
   void initialize(std::span<const Box2> boxes);
 
   /// Algorithm 3, "Spanning Add Element", for all boxes that are present.

@@ -1,7 +1,5 @@
 // Section VI-B of paper.md: the references of boxes that changed are put into other cells, then Algorithm 4
 // searches all cells. What was mended, and why, is in docs/paper/errata.md.
-#include "paper/listings/grid_tracker.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/grid_listing.hpp"
+#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {

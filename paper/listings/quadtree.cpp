@@ -11,7 +11,7 @@
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/quadtree_listing.hpp"
-#include "paper/listings/quadtree_tracker.hpp"
+#include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {

@@ -1,7 +1,5 @@
 // Section VI-D of paper.md: the references of boxes that changed are put into other leaves, then Algorithm 10
 // traverses the tree. What was mended in the text, and why, is in docs/paper/errata.md.
-#include "paper/listings/quadtree_tracker.hpp"
-
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +7,7 @@
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/quadtree_listing.hpp"
+#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {

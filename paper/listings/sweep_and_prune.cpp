@@ -10,7 +10,7 @@
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/sweep_listing.hpp"
-#include "paper/listings/sweep_tracker.hpp"
+#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {

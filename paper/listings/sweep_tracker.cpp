@@ -1,7 +1,5 @@
 // Section VI-C of paper.md: the order of the sweep is kept and mended, then Algorithm 5 sweeps once. What was
 // mended in the text, and why, is in docs/paper/errata.md.
-#include "paper/listings/sweep_tracker.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/sweep_listing.hpp"
+#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {

@@ -23,7 +23,11 @@ std::string listed(const Names& names) {
 double read_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
+  if (end != text.data() + text.size()) return std::nan("");
+  // Out of range: too large, unless the exponent is negative.
+  if (error == std::errc::result_out_of_range)
+    return text.find("e-") == text.npos ? std::numeric_limits<double>::infinity() : 0;
+  return error == std::errc() ? value : std::nan("");
 }
 
 /// The shortest text that reads back to `value`.
@@ -45,7 +49,7 @@ std::string range(const Tunable& tunable, double found) {
   // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
   if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
     return kind + " above 0";
-  if (most(tunable) == std::numeric_limits<double>::max())
+  if (most(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
     return kind + " of at least " + text_of(tunable.least);
   return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));
 }

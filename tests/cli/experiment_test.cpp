@@ -101,6 +101,13 @@ TEST(ExperimentVerb, JudgesAFileByItsTables) {
   EXPECT_THAT(refuted.output, HasSubstr("Verdict: does not hold. 1 of 2 numbers"));
 }
 
+TEST(ExperimentVerb, JudgesResultsOfAnEarlierVersionAsTheyAre) {
+  const std::string old = BROADSIDE_SOURCE_DIR "/tests/fixtures/experiments_v1_hierarchical_grid.json";
+  const Ended judged = run({"experiment", "--from", old});
+  EXPECT_EQ(judged.status, 0) << judged.errors;
+  EXPECT_THAT(judged.output, AllOf(HasSubstr("hierarchical_grid in 3D"), HasSubstr("Verdict: holds. ")));
+}
+
 TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
   const TemporaryFolder folder;
   OrderedJson json = results();

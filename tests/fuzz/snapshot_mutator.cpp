@@ -235,7 +235,7 @@ void SnapshotMutator<D, Real>::change_flags() {
 template <int D, typename Real>
 void SnapshotMutator<D, Real>::change_options() {
   constexpr std::array<std::string_view, 9> specs = {"brute_force", "grid",    "sweep_and_prune",
-                                                     "quadtree",    "bvh",     "hierarchical_grid",
+                                                     "quadtree",    "bvh",     "grid:cell=2",
                                                      "auto",        "nothing", "grid:cell=0.01"};
   constexpr std::array<double, 6> margins = {0,     1,     -1,
                                              1e-60, 1e300, std::numeric_limits<double>::quiet_NaN()};

@@ -1,11 +1,11 @@
 // Bars: one or several for each text. They lie where the texts are long or many, so that these can be read.
 import {
-  above, axis_name, below, category_axis, frame, legend_height, shortened, text_width, value_axis,
+  above, axisName, below, categoryAxis, frame, legendHeight, shortened, textWidth, valueAxis,
 } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
 import type { Interval } from "./ratios.ts";
-import { colours_of } from "./theme.ts";
+import { coloursOf } from "./theme.ts";
 import { whiskerSeries } from "./whiskers.ts";
 
 export interface BarsSpec {
@@ -35,21 +35,21 @@ function describe(spec: BarsSpec, text: (value: number, at: number) => string): 
     return ` ${label}: ${values.join(", ")}.`;
   });
   const more = spec.labels.length > most ? ` And ${spec.labels.length - most} more.` : "";
-  return `${spec.title}. Bar chart of ${axis_name(spec.y)} by ${axis_name(spec.x)}.${parts.join("")}${more}`;
+  return `${spec.title}. Bar chart of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
 }
 
 /** Bars of `spec`, the first label at the top or at the left. */
-export function draw_bars(spec: BarsSpec, place: Place): Drawn {
+export function drawBars(spec: BarsSpec, place: Place): Drawn {
   const { theme } = place;
   const whiskers = spec.whiskers ?? [];
   const text = (value: number, at: number): string => spec.texts?.[at]?.full ?? rounded(value);
   const description = describe(spec, text);
   const names = spec.series.map((series) => series.name);
-  const colours = colours_of(names, theme);
+  const colours = coloursOf(names, theme);
   const single = spec.series.length === 1;
-  const widest = Math.max(0, ...spec.labels.map(text_width));
+  const widest = Math.max(0, ...spec.labels.map(textWidth));
   const lying = widest > (place.width - 60) / Math.max(1, spec.labels.length) - 10 || spec.labels.length > 12;
-  const legend = legend_height(names, place.width);
+  const legend = legendHeight(names, place.width);
   const values = [
     ...spec.series.flatMap((series) => series.values.filter((value) => value !== null)),
     ...whiskers.flatMap((interval) => interval ?? []),
@@ -57,15 +57,15 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
   // A bar on a logarithmic axis begins where the axis does, so the least one needs room to be seen.
   const ends = spec.from !== undefined ? [...values, spec.from]
     : spec.y.log ? [...values, ...values.map((value) => value / 1.3)] : values;
-  const axis = value_axis(spec.y, ends, place);
-  const number_axis: Record<string, unknown> = {
+  const axis = valueAxis(spec.y, ends, place);
+  const numberAxis: Record<string, unknown> = {
     ...axis,
     scale: false,
     ...(axis["min"] === undefined ? {} : { startValue: spec.from ?? axis["min"] }),
   };
   const most = place.width < 520 ? 22 : 42;
   const labels = spec.labels.map((label) => (lying ? shortened(label, most) : label));
-  const label_axis = category_axis(labels, place);
+  const labelAxis = categoryAxis(labels, place);
   const thick = single ? 20 : Math.max(9, 14 - spec.series.length);
   const height = lying
     ? legend + 56 + spec.labels.length * (single ? 24 : spec.series.length * thick + 12)
@@ -77,16 +77,16 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
       ...frame(names, description, place),
       grid: lying
         ? {
-          left: Math.max(0, ...labels.map(text_width)) + 12, right: single ? 56 : 20, top: legend + 6, bottom: 50,
+          left: Math.max(0, ...labels.map(textWidth)) + 12, right: single ? 56 : 20, top: legend + 6, bottom: 50,
           outerBoundsMode: "none",
         }
         : { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
       xAxis: lying
-        ? { ...number_axis, ...below(axis_name(spec.y), place) }
-        : { ...label_axis, ...below(axis_name(spec.x), place) },
+        ? { ...numberAxis, ...below(axisName(spec.y), place) }
+        : { ...labelAxis, ...below(axisName(spec.x), place) },
       yAxis: lying
-        ? { ...label_axis, inverse: true, axisLabel: { color: theme.text, fontSize: 12, interval: 0 } }
-        : { ...number_axis, ...above(axis_name(spec.y), place) },
+        ? { ...labelAxis, inverse: true, axisLabel: { color: theme.text, fontSize: 12, interval: 0 } }
+        : { ...numberAxis, ...above(axisName(spec.y), place) },
       tooltip: {
         ...frame(names, description, place).tooltip,
         trigger: "axis",
@@ -95,7 +95,7 @@ export function draw_bars(spec: BarsSpec, place: Place): Drawn {
       },
       series: [...spec.series.map((series, i) => ({
         type: "bar" as const,
-        name: series.name === "" ? axis_name(spec.y) : series.name,
+        name: series.name === "" ? axisName(spec.y) : series.name,
         color: colours[i] ?? theme.muted,
         barMaxWidth: lying ? thick : 48,
         barGap: "10%",

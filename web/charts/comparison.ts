@@ -1,6 +1,6 @@
 // How algorithms rank in each case and over all cases, by the rules of lab/measure/ranking.cpp.
 import type { Measurement, Ratio } from "./data.ts";
-import { geometric_mean, grouped } from "./numbers.ts";
+import { geometricMean, grouped } from "./numbers.ts";
 
 /** What was measured on the same boxes. */
 export interface Case {
@@ -18,7 +18,7 @@ export interface Timed extends Measurement {
   median_ms: number;
 }
 
-export function is_timed(measurement: Measurement): measurement is Timed {
+export function isTimed(measurement: Measurement): measurement is Timed {
   return measurement.median_ms !== null;
 }
 
@@ -27,13 +27,13 @@ export function percent(share: number): string {
 }
 
 /** An algorithm, with its threads where there are several and its spec does not say how many. */
-export function label_of(measurement: Measurement): string {
-  const says_threads = measurement.algorithm.split(":").includes(`threads=${measurement.threads}`);
-  return measurement.threads > 1 && !says_threads ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
+export function labelOf(measurement: Measurement): string {
+  const saysThreads = measurement.algorithm.split(":").includes(`threads=${measurement.threads}`);
+  return measurement.threads > 1 && !saysThreads ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
 }
 
 /** Of measurements, in the order in which the cases come. */
-export function cases_of(measurements: readonly Measurement[]): Case[] {
+export function casesOf(measurements: readonly Measurement[]): Case[] {
   const cases = new Map<string, Case>();
   for (const measurement of measurements) {
     const { scene, dimension, boxes, moving, mode, frames, drift, teleport, floor_ms } = measurement;
@@ -50,9 +50,9 @@ export function cases_of(measurements: readonly Measurement[]): Case[] {
   return [...cases.values()];
 }
 
-/** Those that have a time, the fastest first. */
+/** The measurements that have a time, the fastest first. */
 export function ranking(of: Case): Timed[] {
-  return of.measurements.filter(is_timed).sort((a, b) => a.median_ms - b.median_ms);
+  return of.measurements.filter(isTimed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
 /** The fastest of ours other than auto, which takes one of the others; auto where it is the only one. */
@@ -62,7 +62,7 @@ export function bestOwn(of: Case): Timed | undefined {
 }
 
 /** The time of the fastest peer over that of our best; undefined where one of them is not there. */
-export function lead_of(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
+export function leadOf(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
   const own = bestOwn(of);
   const peer = ranking(of).find((measurement) => measurement.kind === "peer");
   if (own === undefined || !peer?.ratio_to_best_own) return undefined;
@@ -85,7 +85,7 @@ export function standings(cases: readonly Case[]): Standing[] {
     const ranked = ranking(of);
     const best = ranked[0]?.median_ms ?? 0;
     for (const measurement of ranked) {
-      const label = label_of(measurement);
+      const label = labelOf(measurement);
       const entry = ratios.get(label) ?? { kind: measurement.kind, ratios: [], fastest: 0 };
       ratios.set(label, entry);
       entry.ratios.push(measurement.ratio_to_fastest?.median ?? 1);
@@ -98,7 +98,7 @@ export function standings(cases: readonly Case[]): Standing[] {
       kind: entry.kind,
       cases: entry.ratios.length,
       fastest: entry.fastest,
-      ratio: geometric_mean(entry.ratios),
+      ratio: geometricMean(entry.ratios),
     }))
     .sort((a, b) => a.ratio - b.ratio);
 }

@@ -1,21 +1,21 @@
 // The charts of a comparison.
-import { draw_bars } from "./bars.ts";
+import { drawBars } from "./bars.ts";
 import type { BarsSpec } from "./bars.ts";
-import { is_timed, label_of, lead_of, percent, ranking, standings } from "./comparison.ts";
+import { isTimed, labelOf, leadOf, percent, ranking, standings } from "./comparison.ts";
 import type { Case } from "./comparison.ts";
 import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
-import { draw_lines } from "./lines.ts";
-import { draw_map } from "./map.ts";
-import { short, time_text } from "./numbers.ts";
+import { drawLines } from "./lines.ts";
+import { drawMap } from "./map.ts";
+import { short, timeText } from "./numbers.ts";
 import { intervalOf, intervalText, shortRatioText } from "./ratios.ts";
-import { family_colour } from "./theme.ts";
+import { familyColour } from "./theme.ts";
 import type { Theme } from "./theme.ts";
 
 const time = { name: "time", unit: "ms", log: true };
 
-function colour_of(measurement: { algorithm: string }, theme: Theme): string {
-  return family_colour(measurement.algorithm, theme) ?? theme.muted;
+function colourOf(measurement: { algorithm: string }, theme: Theme): string {
+  return familyColour(measurement.algorithm, theme) ?? theme.muted;
 }
 
 const noText = { short: "", full: "none" };
@@ -30,80 +30,80 @@ function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "series" |
 }
 
 /** The times of all algorithms in a case, as multiples of the fastest. */
-export function draw_ratios(of: Case, place: Place): Drawn {
+export function drawRatios(of: Case, place: Place): Drawn {
   const ranked = ranking(of);
-  return draw_bars({
+  return drawBars({
     title: `Times as multiples of the fastest: ${of.name}`,
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: true },
-    labels: ranked.map(label_of),
+    labels: ranked.map(labelOf),
     ...ratioBars(ranked.map((measurement) => measurement.ratio_to_fastest)),
-    colours: ranked.map((measurement) => colour_of(measurement, place.theme)),
+    colours: ranked.map((measurement) => colourOf(measurement, place.theme)),
     from: 1,
   }, place);
 }
 
 /** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
-export function draw_standings(cases: readonly Case[], place: Place): Drawn {
+export function drawStandings(cases: readonly Case[], place: Place): Drawn {
   const all = standings(cases);
-  return draw_bars({
+  return drawBars({
     title: "Times as multiples of the fastest, geometric mean of the cases that an algorithm does",
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: true },
     labels: all.map((standing) => standing.algorithm),
     series: [{ name: "", values: all.map((standing) => standing.ratio) }],
-    colours: all.map((standing) => colour_of(standing, place.theme)),
+    colours: all.map((standing) => colourOf(standing, place.theme)),
     from: 1,
   }, place);
 }
 
 /** The same for auto and, of each other library, the algorithm that does best. */
-export function draw_libraries(cases: readonly Case[], place: Place): Drawn {
+export function drawLibraries(cases: readonly Case[], place: Place): Drawn {
   const seen = new Set<string>();
   const shown = standings(cases).filter(({ algorithm, kind }) => {
     if (kind !== "peer") return algorithm === "auto";
     const library = algorithm.split("_", 1)[0] ?? algorithm;
     return !seen.has(library) && seen.add(library);
   });
-  return draw_bars({
+  return drawBars({
     title: "Times as multiples of the fastest algorithm's, geometric mean of the cases that an algorithm does",
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: false },
     labels: shown.map((standing) => standing.algorithm),
     series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
-    colours: shown.map((standing) => colour_of(standing, place.theme)),
+    colours: shown.map((standing) => colourOf(standing, place.theme)),
   }, place);
 }
 
 /** How many times as fast our best is as the fastest peer, case by case. */
-export function draw_leads(cases: readonly Case[], place: Place): Drawn {
+export function drawLeads(cases: readonly Case[], place: Place): Drawn {
   const leads = cases.flatMap((of) => {
-    const lead = lead_of(of);
+    const lead = leadOf(of);
     return lead === undefined ? [] : [{ of, ...lead }];
   });
-  return draw_bars({
+  return drawBars({
     title: "The fastest peer's time over that of our best",
     x: { name: "case", unit: "" },
     y: { name: "times as fast", unit: "", log: true },
-    labels: leads.map(({ of }) => short_name(of)),
+    labels: leads.map(({ of }) => shortName(of)),
     ...ratioBars(leads.map(({ ratio }) => ratio)),
-    colours: leads.map(({ own }) => colour_of(own, place.theme)),
+    colours: leads.map(({ own }) => colourOf(own, place.theme)),
     from: 1,
   }, place);
 }
 
 /** A case in as few characters as tell it: "uniform 2D 10k". */
-export function short_name(of: Case): string {
-  return `${of.scene.replace(":boxes=", " ")} ${of.dimension}D ${size_text(of)}`;
+export function shortName(of: Case): string {
+  return `${of.scene.replace(":boxes=", " ")} ${of.dimension}D ${sizeText(of)}`;
 }
 
 /** Its boxes, and how many of these move. */
-function size_text(of: Case): string {
+function sizeText(of: Case): string {
   return short(Number(of.boxes.toPrecision(3))) + (of.mode === "track" ? `, ${percent(of.moving)}` : "");
 }
 
 /** The scenes that were measured with several numbers of boxes, all else being equal. */
-export function scaled_scenes(cases: readonly Case[]): { scene: string; dimension: number; mode: string; moving: number }[] {
+export function scaledScenes(cases: readonly Case[]): { scene: string; dimension: number; mode: string; moving: number }[] {
   const groups = new Map<string, { first: Case; counts: Set<number> }>();
   for (const of of cases) {
     const key = JSON.stringify([of.scene, of.dimension, of.mode, of.mode === "track" ? percent(of.moving) : 0]);
@@ -115,9 +115,9 @@ export function scaled_scenes(cases: readonly Case[]): { scene: string; dimensio
     .map(({ first: { scene, dimension, mode, moving } }) => ({ scene, dimension, mode, moving }));
 }
 
-/** Time over the number of boxes in one of scaled_scenes(), a line for each of at most `most` algorithms. */
-export function draw_scaling(
-  cases: readonly Case[], of: ReturnType<typeof scaled_scenes>[number], place: Place,
+/** Time over the number of boxes in one of scaledScenes(), a line for each of at most `most` algorithms. */
+export function drawScaling(
+  cases: readonly Case[], of: ReturnType<typeof scaledScenes>[number], place: Place,
   kinds: readonly Measurement["kind"][] = ["own"], most = 8,
 ): Drawn {
   const chosen = cases.filter((other) => other.scene === of.scene && other.dimension === of.dimension &&
@@ -125,21 +125,21 @@ export function draw_scaling(
   const lines = new Map<string, [number, number][]>();
   for (const other of chosen) {
     for (const measurement of other.measurements) {
-      if (!is_timed(measurement) || !kinds.includes(measurement.kind)) continue;
-      const points = lines.get(label_of(measurement)) ?? [];
-      lines.set(label_of(measurement), points);
+      if (!isTimed(measurement) || !kinds.includes(measurement.kind)) continue;
+      const points = lines.get(labelOf(measurement)) ?? [];
+      lines.set(labelOf(measurement), points);
       points.push([other.boxes, measurement.median_ms]);
     }
   }
   const last = Math.max(...chosen.map((other) => other.boxes));
-  // Those that get furthest, and of these the fastest there.
+  // The algorithms that get furthest, and of these the fastest there.
   const rank = (points: readonly [number, number][]): number => {
     const end = points.reduce((a, b) => (b[0] > a[0] ? b : a));
     return end[0] === last ? end[1] : Infinity;
   };
   const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, most);
   const moves = of.mode === "track" ? `, ${percent(of.moving)} moving` : "";
-  return draw_lines({
+  return drawLines({
     title: `Time over the number of boxes: ${of.scene}, ${of.dimension}D${moves}`,
     x: { name: "boxes", unit: "", log: true },
     y: time,
@@ -150,35 +150,35 @@ export function draw_scaling(
 }
 
 /** The times of a moving case's frames, one history after the other, with each algorithm's 99th percentile. */
-export function draw_frames(of: Case, place: Place, most = 6): Drawn {
+export function drawFrames(of: Case, place: Place, most = 6): Drawn {
   const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, most);
   // The slow ones were shown fewer histories.
   const fewest = Math.min(...shown.map((measurement) => measurement.samples_ms?.length ?? 0));
   const frames = shown[0]?.frames ?? 0;
-  return draw_lines({
+  return drawLines({
     title: `Time of each frame, and the 99th percentile (dashed): ${of.name}`,
     x: { name: fewest > frames ? `frame (a new history every ${frames})` : "frame", unit: "", log: false },
     y: time,
     plain: true,
     lines: shown.map((measurement) => ({
-      name: label_of(measurement),
+      name: labelOf(measurement),
       points: (measurement.samples_ms ?? []).slice(0, fewest).map((sample, i) => [i + 1, sample] as const),
       ...(measurement.p99_ms === null ? {} : { level: ["p99", measurement.p99_ms] as const }),
     })),
   }, place);
 }
 
-/** Who is fastest in each case: scenes with their numbers of boxes up, dimensions across. */
-export function draw_winners(cases: readonly Case[], place: Place, kinds?: readonly Measurement["kind"][]): Drawn {
-  const row_of = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${size_text(of)}`;
+/** The fastest in each case: scenes with their numbers of boxes up, dimensions across. */
+export function drawWinners(cases: readonly Case[], place: Place, kinds?: readonly Measurement["kind"][]): Drawn {
+  const rowOf = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${sizeText(of)}`;
   const fields = cases.flatMap((of) => {
     const best = ranking(of).find((measurement) => kinds === undefined || kinds.includes(measurement.kind));
     return best === undefined ? [] : [{
-      x: `${of.dimension}D`, y: row_of(of), value: best.algorithm,
-      note: `${of.name}: ${time_text(best.median_ms)}`,
+      x: `${of.dimension}D`, y: rowOf(of), value: best.algorithm,
+      note: `${of.name}: ${timeText(best.median_ms)}`,
     }];
   });
-  return draw_map({
+  return drawMap({
     title: "The fastest in each case",
     x: { name: "dimension", unit: "" },
     y: { name: "scene", unit: "" },

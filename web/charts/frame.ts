@@ -26,12 +26,12 @@ export interface AxisSpec {
   log: boolean;
 }
 
-export function axis_name(axis: { name: string; unit: string }): string {
+export function axisName(axis: { name: string; unit: string }): string {
   return axis.unit === "" ? axis.name : `${axis.name} (${axis.unit})`;
 }
 
 /** How wide a text is at most, more or less, at 12 px; the same with and without a DOM. */
-export function text_width(text: string): number {
+export function textWidth(text: string): number {
   return text.length * 7.2;
 }
 
@@ -42,14 +42,14 @@ export function shortened(text: string, most: number): string {
   return `${text.slice(0, most - 1 - half)}…${text.slice(text.length - half)}`;
 }
 
-const legend_line = 22;
+const legendLine = 22;
 
 /** How many lines a legend takes at a width. */
-function legend_lines(names: readonly string[], width: number): number {
+function legendLines(names: readonly string[], width: number): number {
   let lines = 1;
   let used = 0;
   for (const name of names) {
-    const item = text_width(name) + 42;
+    const item = textWidth(name) + 42;
     if (used > 0 && used + item > width - 16) {
       ++lines;
       used = 0;
@@ -59,12 +59,12 @@ function legend_lines(names: readonly string[], width: number): number {
   return lines;
 }
 
-export function legend_height(names: readonly string[], width: number): number {
-  return names.length < 2 ? 0 : legend_lines(names, width) * legend_line + 6;
+export function legendHeight(names: readonly string[], width: number): number {
+  return names.length < 2 ? 0 : legendLines(names, width) * legendLine + 6;
 }
 
 /** Ticks of a logarithmic axis, and its ends: powers of ten, or 1, 2 and 5 where there are few of these. */
-export function log_ticks(values: readonly number[]): { min: number; max: number; ticks: number[] } {
+export function logTicks(values: readonly number[]): { min: number; max: number; ticks: number[] } {
   const positive = values.filter((value) => value > 0);
   const least = Math.min(...positive);
   const most = Math.max(...positive);
@@ -87,7 +87,7 @@ export function log_ticks(values: readonly number[]): { min: number; max: number
 type AxisPart = Record<string, unknown>;
 
 /** A numeric axis over `values`. */
-export function value_axis(axis: AxisSpec, values: readonly number[], place: Place): AxisPart {
+export function valueAxis(axis: AxisSpec, values: readonly number[], place: Place): AxisPart {
   const { theme } = place;
   const style = {
     axisLine: { show: false },
@@ -96,7 +96,7 @@ export function value_axis(axis: AxisSpec, values: readonly number[], place: Pla
     axisLabel: { color: theme.muted, fontSize: 12, hideOverlap: true, formatter: (value: number) => short(value) },
   };
   if (!axis.log || !values.some((value) => value > 0)) return { type: "value", scale: true, ...style };
-  const { min, max, ticks } = log_ticks(values);
+  const { min, max, ticks } = logTicks(values);
   return {
     type: "log",
     min,
@@ -107,7 +107,7 @@ export function value_axis(axis: AxisSpec, values: readonly number[], place: Pla
   };
 }
 
-export function category_axis(labels: readonly string[], place: Place): AxisPart {
+export function categoryAxis(labels: readonly string[], place: Place): AxisPart {
   const { theme } = place;
   return {
     type: "category",
@@ -142,7 +142,7 @@ export function above(name: string, place: Place): AxisPart {
 /** The option that every chart begins with. */
 export function frame(names: readonly string[], description: string, place: Place): EChartsOption {
   const { theme } = place;
-  const legend = legend_height(names, place.width);
+  const legend = legendHeight(names, place.width);
   return {
     animation: false,
     backgroundColor: "transparent",

@@ -2,11 +2,11 @@
 export * from "./comparison.ts";
 export * from "./comparison_charts.ts";
 export * from "./data.ts";
-export { draw_bars } from "./bars.ts";
-export { draw_lines } from "./lines.ts";
-export { draw_map } from "./map.ts";
-export { draw_table_chart, cell_text, column_of } from "./table_chart.ts";
-export { dark, light, colours_of, family_colour, family_of } from "./theme.ts";
+export { drawBars } from "./bars.ts";
+export { drawLines } from "./lines.ts";
+export { drawMap } from "./map.ts";
+export { drawTableChart, cellText, columnOf } from "./table_chart.ts";
+export { dark, light, coloursOf, familyColour, familyOf } from "./theme.ts";
 export type { Theme } from "./theme.ts";
 export type { Drawn, Place } from "./frame.ts";
 export * from "./numbers.ts";

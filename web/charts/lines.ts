@@ -1,8 +1,8 @@
 // Lines over a number: times against n, U-curves, frame times.
-import { above, axis_name, below, category_axis, frame, legend_height, mark, value_axis } from "./frame.ts";
+import { above, axisName, below, categoryAxis, frame, legendHeight, mark, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
-import { colours_of } from "./theme.ts";
+import { coloursOf } from "./theme.ts";
 
 export interface Line {
   /** Empty where there is only one. */
@@ -24,7 +24,7 @@ export interface LinesSpec {
 }
 
 /** A text and the unit of it, where it has one. */
-function with_unit(value: number | string, unit: string): string {
+function withUnit(value: number | string, unit: string): string {
   const text = typeof value === "number" ? rounded(value) : value;
   return unit === "" ? text : `${text} ${unit}`;
 }
@@ -34,34 +34,34 @@ function describe(spec: LinesSpec, lines: readonly Line[]): string {
     const [first, last] = [line.points[0], line.points[line.points.length - 1]];
     if (first === undefined || last === undefined) return "";
     const name = line.name === "" ? spec.y.name : line.name;
-    return ` ${name}: ${with_unit(first[1], spec.y.unit)} at ${with_unit(first[0], spec.x.unit)}, ` +
-      `${with_unit(last[1], spec.y.unit)} at ${with_unit(last[0], spec.x.unit)}.`;
+    return ` ${name}: ${withUnit(first[1], spec.y.unit)} at ${withUnit(first[0], spec.x.unit)}, ` +
+      `${withUnit(last[1], spec.y.unit)} at ${withUnit(last[0], spec.x.unit)}.`;
   });
-  return `${spec.title}. Line chart of ${axis_name(spec.y)} over ${axis_name(spec.x)}` +
+  return `${spec.title}. Line chart of ${axisName(spec.y)} over ${axisName(spec.x)}` +
     `${spec.x.log || spec.y.log ? ", logarithmic" : ""}.${parts.join("")}`;
 }
 
 /** Lines of `spec`. Points that a logarithmic axis cannot show are left out. */
-export function draw_lines(spec: LinesSpec, place: Place): Drawn {
+export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const shown = (value: number | string, axis: AxisSpec): boolean =>
     typeof value === "string" || !axis.log || value > 0;
   const lines = spec.lines
     .map((line) => ({ ...line, points: line.points.filter(([x, y]) => shown(x, spec.x) && shown(y, spec.y)) }))
     .filter((line) => line.points.length > 0);
   const names = lines.map((line) => line.name);
-  const colours = colours_of(names, place.theme);
+  const colours = coloursOf(names, place.theme);
   const description = describe(spec, lines);
   const all = lines.flatMap((line) => line.points);
   const levels = lines.flatMap((line) => (line.level === undefined ? [] : [line.level[1]]));
   const numeric = all.every(([x]) => typeof x === "number");
   const categories = [...new Set(all.map(([x]) => String(x)))];
   const x = numeric
-    ? value_axis(spec.x, all.map(([at]) => Number(at)), place)
-    : category_axis(categories, place);
+    ? valueAxis(spec.x, all.map(([at]) => Number(at)), place)
+    : categoryAxis(categories, place);
   // A few things that are counted: no ticks between them.
   const xs = all.map(([at]) => at);
   const counts = !spec.x.log && xs.every((at) => Number.isInteger(at) && Number(at) >= 0 && Number(at) <= 20);
-  const legend = legend_height(names, place.width);
+  const legend = legendHeight(names, place.width);
   const height = Math.round(Math.min(380, Math.max(280, place.width * 0.55))) + legend;
   return {
     description,
@@ -69,16 +69,16 @@ export function draw_lines(spec: LinesSpec, place: Place): Drawn {
     option: {
       ...frame(names, description, place),
       grid: { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
-      xAxis: { ...x, ...(counts ? { minInterval: 1 } : {}), ...below(axis_name(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
+      xAxis: { ...x, ...(counts ? { minInterval: 1 } : {}), ...below(axisName(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
       yAxis: {
-        ...value_axis(spec.y, [...all.map(([, at]) => at), ...levels], place),
+        ...valueAxis(spec.y, [...all.map(([, at]) => at), ...levels], place),
         scale: false,
-        ...above(axis_name(spec.y), place),
+        ...above(axisName(spec.y), place),
       },
       tooltip: {
         ...frame(names, description, place).tooltip,
         trigger: spec.plain === true ? "item" : "axis",
-        valueFormatter: (value: unknown) => (typeof value === "number" ? with_unit(value, spec.y.unit) : String(value)),
+        valueFormatter: (value: unknown) => (typeof value === "number" ? withUnit(value, spec.y.unit) : String(value)),
       },
       series: lines.map((line, i) => {
         const { symbol, dash } = mark(i);

@@ -1,9 +1,9 @@
-// The map of winners: a field for each x and y, coloured by who is fastest there, and told by its name too.
+// The map of winners: a field for each x and y, coloured by the fastest there, and labelled with its name too.
 import type { CustomSeriesRenderItem } from "echarts";
 
-import { axis_name, below, category_axis, font, frame, legend_height, shortened, text_width } from "./frame.ts";
+import { axisName, below, categoryAxis, font, frame, legendHeight, shortened, textWidth } from "./frame.ts";
 import type { Drawn, Place } from "./frame.ts";
-import { colours_of } from "./theme.ts";
+import { coloursOf } from "./theme.ts";
 
 export interface Field {
   x: string;
@@ -23,7 +23,7 @@ export interface MapSpec {
 }
 
 /** Black or white, whichever reads better on a colour such as "#0072b2". */
-function ink_on(colour: string): string {
+function inkOn(colour: string): string {
   const part = (at: number): number => {
     const value = parseInt(colour.slice(at, at + 2), 16) / 255;
     return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
@@ -35,19 +35,19 @@ function describe(spec: MapSpec): string {
   const wins = new Map<string, number>();
   for (const { value } of spec.fields) wins.set(value, (wins.get(value) ?? 0) + 1);
   const parts = [...wins].sort((a, b) => b[1] - a[1]).map(([value, count]) => `${value} in ${count}`);
-  return `${spec.title}. Map with ${spec.fields.length} fields, ${axis_name(spec.x)} across and ${axis_name(spec.y)} ` +
+  return `${spec.title}. Map with ${spec.fields.length} fields, ${axisName(spec.x)} across and ${axisName(spec.y)} ` +
     `up, each with the name of the winner: ${parts.join(", ")}.`;
 }
 
-export function draw_map(spec: MapSpec, place: Place): Drawn {
+export function drawMap(spec: MapSpec, place: Place): Drawn {
   const values = [...new Set(spec.fields.map((field) => field.value))].sort();
-  const colours = colours_of(values, place.theme);
+  const colours = coloursOf(values, place.theme);
   const description = describe(spec);
-  const legend = legend_height(values, place.width);
+  const legend = legendHeight(values, place.width);
   const ys = spec.ys.map((label) => shortened(label, place.width < 520 ? 16 : 40));
-  const left = Math.max(0, ...ys.map(text_width)) + 12;
+  const left = Math.max(0, ...ys.map(textWidth)) + 12;
   const top = Math.max(legend, 28) + 26;
-  const draw_field = (name: string, colour: string): CustomSeriesRenderItem => (_, api) => {
+  const drawField = (name: string, colour: string): CustomSeriesRenderItem => (_, api) => {
     const [x = 0, y = 0] = api.coord([api.value(0), api.value(1)]);
     const size = api.size?.([1, 1]);
     const [width = 0, height = 0] = Array.isArray(size) ? size : [];
@@ -63,7 +63,7 @@ export function draw_map(spec: MapSpec, place: Place): Drawn {
         {
           type: "text",
           style: {
-            text: most < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), most), x, y, fill: ink_on(colour),
+            text: most < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), most), x, y, fill: inkOn(colour),
             font: `11px ${font}`,
             align: "center", verticalAlign: "middle",
           },
@@ -79,13 +79,13 @@ export function draw_map(spec: MapSpec, place: Place): Drawn {
       legend: { ...frame(values, description, place).legend, show: values.length > 0, icon: "roundRect" },
       grid: { left, right: 12, top, bottom: 50, outerBoundsMode: "none" },
       xAxis: {
-        ...category_axis(spec.xs, place),
-        ...below(axis_name(spec.x), place),
+        ...categoryAxis(spec.xs, place),
+        ...below(axisName(spec.x), place),
         axisLabel: { color: place.theme.text, fontSize: 12, interval: "auto" },
       },
       yAxis: {
-        ...category_axis(ys, place),
-        name: axis_name(spec.y),
+        ...categoryAxis(ys, place),
+        name: axisName(spec.y),
         nameLocation: "end",
         nameTextStyle: { color: place.theme.text, fontSize: 12, align: "left", padding: [0, 0, 0, 4 - left] },
         axisLabel: { color: place.theme.text, fontSize: 12, interval: 0 },
@@ -96,7 +96,7 @@ export function draw_map(spec: MapSpec, place: Place): Drawn {
           type: "custom" as const,
           name: value,
           color: colour,
-          renderItem: draw_field(value, colour),
+          renderItem: drawField(value, colour),
           encode: { x: 0, y: 1 },
           data: spec.fields
             .filter((field) => field.value === value)

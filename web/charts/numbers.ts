@@ -29,28 +29,28 @@ export function short(value: number): string {
 }
 
 /** A time in the unit that suits it. */
-export function time_text(milliseconds: number): string {
+export function timeText(milliseconds: number): string {
   if (milliseconds >= 1000) return rounded(milliseconds / 1000) + " s";
   if (milliseconds < 0.001) return rounded(milliseconds * 1e6) + " ns";
   return milliseconds < 1 ? rounded(milliseconds * 1000) + " µs" : rounded(milliseconds) + " ms";
 }
 
 /** A size in the unit that suits it, as in the program's tables: 1 kB is 1,000 bytes. */
-export function bytes_text(bytes: number): string {
+export function bytesText(bytes: number): string {
   if (bytes < 1000) return `${Math.round(bytes)} B`;
   if (bytes < 999.5e3) return `${rounded(bytes / 1e3)} kB`;
   if (bytes < 999.5e6) return `${rounded(bytes / 1e6)} MB`;
   return `${rounded(bytes / 1e9)} GB`;
 }
 
-export function geometric_mean(values: readonly number[]): number {
+export function geometricMean(values: readonly number[]): number {
   return Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
 }
 
 /** A ratio of two times to two significant digits, which is what intervals allow: "0.97", "1.0", "19", "1,300". */
-export function ratio_text(ratio: number): string {
-  const rounded_off = ratio.toPrecision(2);
-  return Number(rounded_off) < 10 ? rounded_off : grouped(Number(rounded_off));
+export function ratioText(ratio: number): string {
+  const roundedOff = ratio.toPrecision(2);
+  return Number(roundedOff) < 10 ? roundedOff : grouped(Number(roundedOff));
 }
 
 function trimmed(value: number): string {

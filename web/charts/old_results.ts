@@ -1,5 +1,5 @@
 // Comparisons of the schema before, "broadside.results/1", as those of today.
-import { bestOwn, cases_of, ranking } from "./comparison.ts";
+import { bestOwn, casesOf, ranking } from "./comparison.ts";
 import type { Comparison, Measurement, Ratio, RatioName } from "./data.ts";
 
 /** Has no rounds and no ratios, and a field that was always null. */
@@ -22,7 +22,7 @@ export function inTodaysShape(comparison: Comparison | OldComparison): Compariso
   const measurements = comparison.measurements.map(({ search_ms: _, ...old }): Measurement => ({
     ...old, rounds: null, ratio_to_fastest: null, ratio_to_best_own: null, ratio_to_fastest_peer: null,
   }));
-  for (const of of cases_of(measurements)) {
+  for (const of of casesOf(measurements)) {
     const [fastest] = ranking(of);
     const own = bestOwn(of);
     const peer = ranking(of).find(({ kind }) => kind === "peer");

@@ -1,6 +1,6 @@
 // Ratios of times with their intervals, and how they are shown.
 import type { Ratio } from "./data.ts";
-import { ratio_text } from "./numbers.ts";
+import { ratioText } from "./numbers.ts";
 
 export type Interval = readonly [low: number, high: number];
 
@@ -20,14 +20,21 @@ export function isFaster(ratio: Ratio): boolean {
   return (intervalOf(ratio)?.[1] ?? ratio.median) < 1;
 }
 
-/** "19 (18 to 20)", "1.0 (level)", or the ratio alone where it has no interval. */
+/** Whether to say that the two are level: isLevel() by an interval that is not wide. */
+function readsLevel(ratio: Ratio): boolean {
+  const wide = 1.5;
+  const [low, high] = intervalOf(ratio) ?? [0, Infinity];
+  return isLevel(ratio) && low >= 1 / wide && high <= wide;
+}
+
+/** "19 (18 to 20)", "1.0 (level)", "2.1 (0.60 to 7.0)", or the ratio alone where it has no interval. */
 export function intervalText(ratio: Ratio): string {
   const interval = intervalOf(ratio);
-  if (interval === undefined) return ratio_text(ratio.median);
-  return `${ratio_text(ratio.median)} (${isLevel(ratio) ? "level" : interval.map(ratio_text).join(" to ")})`;
+  if (interval === undefined) return ratioText(ratio.median);
+  return `${ratioText(ratio.median)} (${readsLevel(ratio) ? "level" : interval.map(ratioText).join(" to ")})`;
 }
 
 /** The same in short: "19", "level". */
 export function shortRatioText(ratio: Ratio): string {
-  return isLevel(ratio) ? "level" : ratio_text(ratio.median);
+  return readsLevel(ratio) ? "level" : ratioText(ratio.median);
 }

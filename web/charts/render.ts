@@ -20,7 +20,7 @@ echarts.setPlatformAPI({
 });
 
 /** With numbers of at most two decimals, no more than a picture needs, a title and a description. */
-export function svg_of(drawn: Drawn, options: SvgOptions): string {
+export function svgOf(drawn: Drawn, options: SvgOptions): string {
   const { width } = options;
   const height = options.height ?? drawn.height;
   const chart = echarts.init(null, null, { renderer: "svg", ssr: true, width, height });
@@ -40,7 +40,7 @@ function settled(svg: string, title: string, description: string): string {
   const names = `${title === "" ? "" : `<title>${escaped(title)}</title>`}<desc>${escaped(description)}</desc>`;
   // ECharts numbers its ids on from one chart to the next.
   const ids = new Map<string, string>();
-  const id_of = (found: string): string => {
+  const idOf = (found: string): string => {
     const id = ids.get(found) ?? `part-${ids.size + 1}`;
     ids.set(found, id);
     return id;
@@ -48,7 +48,7 @@ function settled(svg: string, title: string, description: string): string {
   return svg
     .replace(/<style ?>[\s\S]*?<\/style>\s*/g, "")
     .replace(/ class="[^"]*"/g, "")
-    .replace(/\bzr\d+-[a-z]+\d+\b/g, id_of)
+    .replace(/\bzr\d+-[a-z]+\d+\b/g, idOf)
     .replace(/ (ecmeta_[a-z_]+)="[^"]*"/g, "")
     .replace(/(?<=[\s",(MLHVCQAZmlhvcqaz])-?\d+\.\d{3,}(?:e-?\d+)?/g, (number) => String(Number(Number(number).toFixed(2)) + 0))
     .replace(/^(<svg[^>]*>)/, `$1${names}`) + "\n";

@@ -1,13 +1,13 @@
 // A chart of an experiment's table.
-import { draw_bars } from "./bars.ts";
+import { drawBars } from "./bars.ts";
 import type { Cell, ChartSpec, Table } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
-import { draw_lines } from "./lines.ts";
-import { draw_map } from "./map.ts";
+import { drawLines } from "./lines.ts";
+import { drawMap } from "./map.ts";
 import { rounded } from "./numbers.ts";
 
 /** The place of a column. Throws an Error naming those there are. */
-export function column_of(table: Table, name: string): number {
+export function columnOf(table: Table, name: string): number {
   const at = table.columns.findIndex((column) => column.name === name);
   if (at < 0) {
     const names = table.columns.map((column) => column.name).join(", ");
@@ -16,19 +16,19 @@ export function column_of(table: Table, name: string): number {
   return at;
 }
 
-export function cell_text(cell: Cell): string {
+export function cellText(cell: Cell): string {
   return cell === null ? "–" : typeof cell === "number" ? rounded(cell) : cell;
 }
 
 /** The rows that a chart shows. */
-function rows_of(table: Table, chart: ChartSpec): Cell[][] {
-  const conditions = chart.where.map(([name, text]) => [column_of(table, name), text] as const);
+function rowsOf(table: Table, chart: ChartSpec): Cell[][] {
+  const conditions = chart.where.map(([name, text]) => [columnOf(table, name), text] as const);
   return table.rows.filter((row) =>
-    conditions.every(([at, text]) => row[at] === text || (row[at] !== null && cell_text(row[at] ?? null) === text)));
+    conditions.every(([at, text]) => row[at] === text || (row[at] !== null && cellText(row[at] ?? null) === text)));
 }
 
 function distinct(rows: readonly Cell[][], column: number): string[] {
-  return [...new Set(rows.flatMap((row) => (row[column] == null ? [] : [cell_text(row[column])])))];
+  return [...new Set(rows.flatMap((row) => (row[column] == null ? [] : [cellText(row[column])])))];
 }
 
 /** Numbers rise, texts stay in the order in which they come. */
@@ -36,35 +36,35 @@ function ordered(rows: readonly Cell[][], column: number): string[] {
   const cells = rows.flatMap((row) => (row[column] == null ? [] : [row[column]]));
   if (cells.every((cell) => typeof cell === "number"))
     cells.sort((a, b) => Number(a) - Number(b));
-  return [...new Set(cells.map(cell_text))];
+  return [...new Set(cells.map(cellText))];
 }
 
 /** Throws an Error if the chart names a column that the table has not. */
-export function draw_table_chart(table: Table, chart: ChartSpec, place: Place): Drawn {
-  const rows = rows_of(table, chart);
-  const x = column_of(table, chart.x);
-  const y = column_of(table, chart.y);
+export function drawTableChart(table: Table, chart: ChartSpec, place: Place): Drawn {
+  const rows = rowsOf(table, chart);
+  const x = columnOf(table, chart.x);
+  const y = columnOf(table, chart.y);
   const [x_column, y_column] = [table.columns[x], table.columns[y]];
   if (x_column === undefined || y_column === undefined) throw new Error(`table '${table.name}' has no columns`);
   if (chart.kind === "map") {
-    const value = column_of(table, chart.value);
+    const value = columnOf(table, chart.value);
     const ys = ordered(rows, y);
-    return draw_map({
+    return drawMap({
       title: chart.title,
       x: x_column,
       y: y_column,
       xs: ordered(rows, x),
       ys: rows.every((row) => typeof row[y] === "number") ? ys : ys.reverse(),
       fields: rows.filter((row) => row[x] != null && row[y] != null && row[value] != null)
-        .map((row) => ({ x: cell_text(row[x] ?? null), y: cell_text(row[y] ?? null), value: cell_text(row[value] ?? null) })),
+        .map((row) => ({ x: cellText(row[x] ?? null), y: cellText(row[y] ?? null), value: cellText(row[value] ?? null) })),
     }, place);
   }
-  const series = chart.series === "" ? -1 : column_of(table, chart.series);
-  const name_of = (row: readonly Cell[]): string => (series < 0 ? "" : cell_text(row[series] ?? null));
+  const series = chart.series === "" ? -1 : columnOf(table, chart.series);
+  const nameOf = (row: readonly Cell[]): string => (series < 0 ? "" : cellText(row[series] ?? null));
   const names = series < 0 ? [""] : distinct(rows, series);
   if (chart.kind === "bars") {
     const labels = ordered(rows, x);
-    return draw_bars({
+    return drawBars({
       title: chart.title,
       x: x_column,
       y: { ...y_column, log: chart.log_y },
@@ -72,18 +72,18 @@ export function draw_table_chart(table: Table, chart: ChartSpec, place: Place): 
       series: names.map((name) => ({
         name,
         values: labels.map((label) => {
-          const cell = rows.find((row) => name_of(row) === name && cell_text(row[x] ?? null) === label)?.[y];
+          const cell = rows.find((row) => nameOf(row) === name && cellText(row[x] ?? null) === label)?.[y];
           return typeof cell === "number" && (!chart.log_y || cell > 0) ? cell : null;
         }),
       })),
     }, place);
   }
-  return draw_lines({
+  return drawLines({
     title: chart.title,
     x: { ...x_column, log: chart.log_x },
     y: { ...y_column, log: chart.log_y },
     lines: names.map((name) => {
-      const points = rows.filter((row) => name_of(row) === name).flatMap((row): [number | string, number][] => {
+      const points = rows.filter((row) => nameOf(row) === name).flatMap((row): [number | string, number][] => {
         const [at, value] = [row[x], row[y]];
         return at != null && typeof value === "number" ? [[at, value]] : [];
       });

@@ -34,7 +34,6 @@ const families: Record<string, readonly [string, string]> = {
   auto: ["#1d2430", "#f4f6f9"],
   brute_force: ["#7b8494", "#99a2b0"],
   grid: ["#e69f00", "#f0b43c"],
-  hierarchical_grid: ["#d55e00", "#f0803c"],
   sweep_and_prune: ["#0072b2", "#4aa8e8"],
   quadtree: ["#009e73", "#2fc49a"],
   bvh: ["#b5569a", "#e08fbe"],
@@ -52,15 +51,15 @@ const families: Record<string, readonly [string, string]> = {
 };
 
 /** The family that an algorithm is named for: "grid" of grid:cell=2 and of paper_grid, "bullet" of bullet_dbvt. */
-export function family_of(algorithm: string): string | undefined {
+export function familyOf(algorithm: string): string | undefined {
   const name = (algorithm.split(/[: (,]/, 1)[0] ?? "").replace(/^paper_/, "");
   if (name in families) return name;
   const library = name.split("_", 1)[0] ?? "";
   return library in families ? library : undefined;
 }
 
-export function family_colour(algorithm: string, theme: Theme): string | undefined {
-  const family = family_of(algorithm);
+export function familyColour(algorithm: string, theme: Theme): string | undefined {
+  const family = familyOf(algorithm);
   const colours = family === undefined ? undefined : families[family];
   return colours?.[theme.name === "light" ? 0 : 1];
 }
@@ -69,10 +68,10 @@ export function family_colour(algorithm: string, theme: Theme): string | undefin
  * A colour for each name: its family's where all are of different families or of one library each; else those of a
  * family that is there already get the next of the palette that is not taken.
  */
-export function colours_of(names: readonly string[], theme: Theme): string[] {
+export function coloursOf(names: readonly string[], theme: Theme): string[] {
   const taken = new Set<string>();
   const own = names.map((name) => {
-    const colour = family_colour(name, theme);
+    const colour = familyColour(name, theme);
     if (colour === undefined || taken.has(colour)) return undefined;
     taken.add(colour);
     return colour;

@@ -1,22 +1,22 @@
-// The comparison: who is fastest where, by how much, and every measurement.
-import { cases_of, is_timed, label_of, lead_of, ranking, standings } from "../charts/comparison.ts";
+// The comparison: which algorithm is fastest where, by how much, and every measurement.
+import { casesOf, isTimed, labelOf, leadOf, ranking, standings } from "../charts/comparison.ts";
 import type { Case } from "../charts/comparison.ts";
 import {
-  draw_frames, draw_leads, draw_ratios, draw_scaling, draw_standings, draw_winners, scaled_scenes,
+  drawFrames, drawLeads, drawRatios, drawScaling, drawStandings, drawWinners, scaledScenes,
 } from "../charts/comparison_charts.ts";
 import type { Comparison, Measurement, Ratio } from "../charts/data.ts";
-import { bytes_text, geometric_mean, grouped, ratio_text, rounded, time_text } from "../charts/numbers.ts";
+import { bytesText, geometricMean, grouped, ratioText, rounded, timeText } from "../charts/numbers.ts";
 import type { OldComparison } from "../charts/old_results.ts";
 import { intervalOf, intervalText, isLevel } from "../charts/ratios.ts";
-import { data_table } from "./data_table.ts";
+import { dataTable } from "./data_table.ts";
 import type { DataColumn } from "./data_table.ts";
 import { add, choices, el, picker } from "./dom.ts";
-import { csv_of_comparison, download_button } from "./downloads.ts";
-import { chart_figure } from "./figure.ts";
+import { csvOfComparison, downloadButton } from "./downloads.ts";
+import { chartFigure } from "./figure.ts";
 import { facts, tile } from "./summary.ts";
 import type { Doubts } from "./summary.ts";
 
-function outcome_of(measurement: Measurement): string {
+function outcomeOf(measurement: Measurement): string {
   if (measurement.verified === null) return "skipped";
   if (!measurement.verified) return "FAILED";
   return measurement.unsteady === true ? "verified, unsteady" : "verified";
@@ -28,13 +28,13 @@ function plural(count: number, one: string): string {
 
 function rangeText(ratio: Ratio): string {
   const interval = intervalOf(ratio);
-  return interval === undefined ? "" : ` (${ratio_text(interval[0])} to ${ratio_text(interval[1])})`;
+  return interval === undefined ? "" : ` (${ratioText(interval[0])} to ${ratioText(interval[1])})`;
 }
 
 function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
   const best = standings(cases)[0];
   const leads = cases.flatMap((of) => {
-    const lead = lead_of(of);
+    const lead = leadOf(of);
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   const worst = leads.reduce<(typeof leads)[number] | undefined>(
@@ -46,9 +46,9 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
     best !== undefined && tile("Fastest over all", best.algorithm,
       `${rounded(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
     leads.length > 0 && tile("Ours against the fastest peer",
-      `${rounded(geometric_mean(leads.map(({ ratio }) => ratio.median)))} times`,
+      `${rounded(geometricMean(leads.map(({ ratio }) => ratio.median)))} times`,
       `as fast, the best of each; geometric mean of ${plural(leads.length, "case")}`),
-    worst !== undefined && tile("At the least", isLevel(worst.ratio) ? "level" : `${ratio_text(worst.ratio.median)} times`,
+    worst !== undefined && tile("At the least", isLevel(worst.ratio) ? "level" : `${ratioText(worst.ratio.median)} times`,
       `${isLevel(worst.ratio) ? "with it" : "as fast"}${rangeText(worst.ratio)}: ${worst.of.name}: ${worst.own.algorithm} against ${worst.peer.algorithm}`),
     tile("Verified", failed.length === 0 ? `all ${grouped(measured)}` : `${grouped(failed.length)} FAILED`,
       `${plural(measured, "measurement")} in ${plural(cases.length, "case")}; ${grouped(skipped)} skipped` +
@@ -77,15 +77,15 @@ const kinds: [string, string, Measurement["kind"][]][] = [
 ];
 
 function scaling(cases: readonly Case[]): HTMLElement | null {
-  const scenes = scaled_scenes(cases);
+  const scenes = scaledScenes(cases);
   const [first] = scenes;
   if (first === undefined) return null;
   let scene = first;
   let kind = kinds[0]?.[2] ?? [];
   const caption = (): string => `Time over the number of boxes: ${scene.scene}, ${scene.dimension}D`;
-  const draw = (): void => figure.show(caption(), (place) => draw_scaling(cases, scene, place, kind));
-  const figure = chart_figure(caption(), (place) => draw_scaling(cases, scene, place, kind), "Both axes are logarithmic; at most eight algorithms.");
-  const there = kinds.filter(([, , some]) => cases.some((of) => of.measurements.some((m) => is_timed(m) && some.includes(m.kind))));
+  const draw = (): void => figure.show(caption(), (place) => drawScaling(cases, scene, place, kind));
+  const figure = chartFigure(caption(), (place) => drawScaling(cases, scene, place, kind), "Both axes are logarithmic; at most eight algorithms.");
+  const there = kinds.filter(([, , some]) => cases.some((of) => of.measurements.some((m) => isTimed(m) && some.includes(m.kind))));
   return el("div", { class: "card", id: "scaling" }, el("h3", {}, "How time grows"), el("div", { class: "controls" },
     scenes.length > 1 && picker("Scene", scenes.map((one, i) => [String(i), `${one.scene}, ${one.dimension}D${one.mode === "track" ? ", moving" : ""}`]), (value) => {
       scene = scenes[Number(value)] ?? scene;
@@ -97,8 +97,8 @@ function scaling(cases: readonly Case[]): HTMLElement | null {
     })), figure.element);
 }
 
-const time = (value: number | null): string => (value === null ? "–" : time_text(value));
-const remarks_of = (m: Measurement): string | null =>
+const time = (value: number | null): string => (value === null ? "–" : timeText(value));
+const remarksOf = (m: Measurement): string | null =>
   [m.unsteady === true ? "unsteady" : null, m.skipped ?? m.explanation].filter((part) => part !== null).join("; ") || null;
 const number = (value: number | null): string => (value === null ? "–" : rounded(value));
 
@@ -114,42 +114,42 @@ function ratioColumn(title: string, ratioOf: (m: Measurement) => Ratio | null): 
   };
 }
 
-function case_table(of: Case): HTMLElement {
-  return data_table<Measurement>({
+function caseTable(of: Case): HTMLElement {
+  return dataTable<Measurement>({
     caption: of.name,
-    rows: [...ranking(of), ...of.measurements.filter((measurement) => !is_timed(measurement))],
+    rows: [...ranking(of), ...of.measurements.filter((measurement) => !isTimed(measurement))],
     columns: [
-      { title: "algorithm", value: label_of },
+      { title: "algorithm", value: labelOf },
       { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
       ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
       ratioColumn("to our best", (m) => m.ratio_to_best_own),
       ratioColumn("to the fastest peer", (m) => m.ratio_to_fastest_peer),
       { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
-      { title: "rounds", value: (m) => m.rounds, text: (m) => (is_timed(m) && m.rounds !== null ? grouped(m.rounds) : "–") },
+      { title: "rounds", value: (m) => m.rounds, text: (m) => (isTimed(m) && m.rounds !== null ? grouped(m.rounds) : "–") },
       { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
-      { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
-      { title: "remarks", long: true, value: remarks_of, text: (m) => remarks_of(m) ?? "" },
+      { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytesText(m.own_bytes)) },
+      { title: "remarks", long: true, value: remarksOf, text: (m) => remarksOf(m) ?? "" },
     ],
   });
 }
 
 /** One case after the other: ratios, frames, all that was measured. */
-function case_view(cases: readonly Case[]): HTMLElement | null {
+function caseView(cases: readonly Case[]): HTMLElement | null {
   let of = cases[0];
   if (of === undefined) return null;
   const first = of;
-  const ratios = chart_figure(`Multiples of the fastest: ${of.name}`, (place) => draw_ratios(first, place), whiskersNote(cases).trim());
-  const frames = chart_figure("", (place) => draw_frames(first, place), "At most the six fastest; dashed: each one's 99th percentile.");
+  const ratios = chartFigure(`Multiples of the fastest: ${of.name}`, (place) => drawRatios(first, place), whiskersNote(cases).trim());
+  const frames = chartFigure("", (place) => drawFrames(first, place), "At most the six fastest; dashed: each one's 99th percentile.");
   const table = el("div");
   const floor = el("p", { class: "note" });
   const show = (): void => {
     const chosen = of;
     if (chosen === undefined) return;
-    ratios.show(`Multiples of the fastest: ${chosen.name}`, (place) => draw_ratios(chosen, place));
+    ratios.show(`Multiples of the fastest: ${chosen.name}`, (place) => drawRatios(chosen, place));
     frames.element.hidden = chosen.mode !== "track";
-    if (chosen.mode === "track") frames.show(`Time of each frame: ${chosen.name}`, (place) => draw_frames(chosen, place));
-    table.replaceChildren(case_table(chosen));
-    floor.textContent = chosen.floor_ms === null ? "" : `The floor, boxes sorted and gathered and as many pairs written: ${time_text(chosen.floor_ms)}.`;
+    if (chosen.mode === "track") frames.show(`Time of each frame: ${chosen.name}`, (place) => drawFrames(chosen, place));
+    table.replaceChildren(caseTable(chosen));
+    floor.textContent = chosen.floor_ms === null ? "" : `The floor, boxes sorted and gathered and as many pairs written: ${timeText(chosen.floor_ms)}.`;
   };
   const box = el("div", { class: "card", id: "cases" }, el("h3", {}, "Case by case"), el("div", { class: "controls" },
     cases.length > 1 && picker("Case", cases.map((one, i) => [String(i), one.name]), (value) => {
@@ -160,13 +160,13 @@ function case_view(cases: readonly Case[]): HTMLElement | null {
   return box;
 }
 
-function measurements_table(comparison: Comparison): HTMLElement {
+function measurementsTable(comparison: Comparison): HTMLElement {
   const columns: DataColumn<Measurement>[] = [
     { title: "scene", value: (m) => m.scene },
     { title: "D", value: (m) => m.dimension },
     { title: "boxes", value: (m) => m.boxes, text: (m) => grouped(m.boxes) },
     { title: "moving", value: (m) => (m.mode === "track" ? m.moving : null), text: (m) => (m.mode === "track" ? `${rounded(m.moving * 100)} %` : "–") },
-    { title: "algorithm", value: label_of },
+    { title: "algorithm", value: labelOf },
     { title: "kind", value: (m) => m.kind },
     { title: "median", value: (m) => m.median_ms, text: (m) => time(m.median_ms) },
     ratioColumn("to the fastest", (m) => m.ratio_to_fastest),
@@ -176,11 +176,11 @@ function measurements_table(comparison: Comparison): HTMLElement {
     { title: "pairs", value: (m) => m.pairs, text: (m) => (m.pairs === null ? "–" : grouped(m.pairs)) },
     { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
     { title: "references", value: (m) => m.references, text: (m) => number(m.references) },
-    { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytes_text(m.own_bytes)) },
-    { title: "outcome", value: outcome_of },
-    { title: "remarks", long: true, value: remarks_of, text: (m) => remarks_of(m) ?? "" },
+    { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytesText(m.own_bytes)) },
+    { title: "outcome", value: outcomeOf },
+    { title: "remarks", long: true, value: remarksOf, text: (m) => remarksOf(m) ?? "" },
   ];
-  return data_table({
+  return dataTable({
     caption: "All measurements",
     rows: comparison.measurements,
     columns,
@@ -189,8 +189,8 @@ function measurements_table(comparison: Comparison): HTMLElement {
       { title: "Scene", value: (m) => m.scene },
       { title: "Dimension", value: (m) => `${m.dimension}D` },
       { title: "Kind", value: (m) => m.kind },
-      { title: "Algorithm", value: label_of },
-      { title: "Outcome", value: outcome_of },
+      { title: "Algorithm", value: labelOf },
+      { title: "Outcome", value: outcomeOf },
     ],
   });
 }
@@ -198,39 +198,39 @@ function measurements_table(comparison: Comparison): HTMLElement {
 export function doubtsOfComparison({ measurements, busy, processor_share }: Comparison): Doubts {
   return {
     busy, processorShare: processor_share, unsteady: measurements.filter(({ unsteady }) => unsteady === true).length,
-    measurements: measurements.filter(is_timed).length,
+    measurements: measurements.filter(isTimed).length,
   };
 }
 
 /** The sections of a comparison, each [id, title, element]. Its JSON is handed out as it was `written`. */
-export function comparison_sections(
+export function comparisonSections(
   comparison: Comparison, date: string, written: Comparison | OldComparison,
 ): [string, string, HTMLElement][] {
-  const cases = cases_of(comparison.measurements);
+  const cases = casesOf(comparison.measurements);
   const target = comparison.measurements.find((measurement) => measurement.target !== null)?.target ?? null;
-  const leads = cases.some((of) => lead_of(of) !== undefined);
+  const leads = cases.some((of) => leadOf(of) !== undefined);
   const summary = el("section", {}, tiles(comparison, cases), failures(comparison),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts({ ...comparison, date, target }),
       el("p", { class: "downloads", style: "margin: 1rem 0 0" },
-        download_button("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(written)), " ",
-        download_button("Save as CSV", "comparison.csv", "text/csv", () => csv_of_comparison(comparison)))));
+        downloadButton("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(written)), " ",
+        downloadButton("Save as CSV", "comparison.csv", "text/csv", () => csvOfComparison(comparison)))));
   const charts = el("section", {});
   if (cases.length > 1) {
     add(charts, el("div", { class: "pair" },
-      el("div", { class: "card" }, el("h3", {}, "Over all cases"), chart_figure(
-        "Times as multiples of the fastest", (place) => draw_standings(cases, place),
+      el("div", { class: "card" }, el("h3", {}, "Over all cases"), chartFigure(
+        "Times as multiples of the fastest", (place) => drawStandings(cases, place),
         "Geometric mean over the cases that an algorithm does.").element),
-      el("div", { class: "card" }, el("h3", {}, "Who wins where"), chart_figure(
-        "The fastest in each case", (place) => draw_winners(cases, place),
+      el("div", { class: "card" }, el("h3", {}, "Which algorithm wins where"), chartFigure(
+        "The fastest in each case", (place) => drawWinners(cases, place),
         "Scene, boxes and, where they move, how many of them.").element)),
-    leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chart_figure(
-      "How many times as fast as the fastest peer our best is", (place) => draw_leads(cases, place),
+    leads && el("div", { class: "card" }, el("h3", {}, "Against other libraries"), chartFigure(
+      "How many times as fast as the fastest peer our best is", (place) => drawLeads(cases, place),
       `Below 1, the peer is faster. Each bar has the colour of our best, which is never auto: that takes one of the others.${whiskersNote(cases)}`).element));
   }
-  add(charts, scaling(cases), case_view(cases));
+  add(charts, scaling(cases), caseView(cases));
   return [
     ["summary", "Summary", summary],
     ["charts", "Charts", charts],
-    ["measurements", "Measurements", el("section", {}, el("div", { class: "card" }, measurements_table(comparison)))],
+    ["measurements", "Measurements", el("section", {}, el("div", { class: "card" }, measurementsTable(comparison)))],
   ];
 }

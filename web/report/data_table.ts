@@ -1,6 +1,6 @@
 // Tables that sort and filter: a real <table>, buttons in its head, aria-sort, and how many rows are left told aloud.
 import { grouped } from "../charts/numbers.ts";
-import { el, new_id, picker, say } from "./dom.ts";
+import { el, newId, picker, say } from "./dom.ts";
 
 export interface DataColumn<Row> {
   title: string;
@@ -21,15 +21,15 @@ export interface DataTableSpec<Row> {
   caption: string;
   columns: readonly DataColumn<Row>[];
   rows: readonly Row[];
-  /** A list to choose from for each; those that would offer one choice are left out. */
+  /** A list to choose from for each; lists that would offer one choice are left out. */
   filters?: readonly DataFilter<Row>[];
   /** With a field in which rows are searched by their texts. */
   search?: boolean;
 }
 
-const page_rows = 100;
+const pageRows = 100;
 
-function text_of<Row>(column: DataColumn<Row>, row: Row): string {
+function textOf<Row>(column: DataColumn<Row>, row: Row): string {
   return column.text?.(row) ?? String(column.value(row) ?? "–");
 }
 
@@ -39,25 +39,25 @@ function compare(a: number | string | null, b: number | string | null, direction
   return direction * String(a).localeCompare(String(b), "en", { numeric: true });
 }
 
-export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
+export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   const chosen = new Map<DataFilter<Row>, string>();
   let searched = "";
   let sorted = -1;
   let direction = 1;
-  let most = page_rows;
+  let most = pageRows;
 
   const numeric = spec.columns.map((column) => spec.rows.every((row) => typeof column.value(row) !== "string"));
-  const class_of = (i: number): string => (numeric[i] === true ? "number" : spec.columns[i]?.long === true ? "long" : "");
+  const classOf = (i: number): string => (numeric[i] === true ? "number" : spec.columns[i]?.long === true ? "long" : "");
   const body = el("tbody");
   const count = el("p", { class: "note" });
   const more = el("button", { type: "button", class: "more", onclick: () => {
     most = Infinity;
     show();
   } });
-  const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: class_of(i) },
-    el("button", { type: "button", onclick: () => sort_by(i) }, column.title)));
+  const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: classOf(i) },
+    el("button", { type: "button", onclick: () => sortBy(i) }, column.title)));
 
-  function sort_by(i: number): void {
+  function sortBy(i: number): void {
     direction = sorted === i ? -direction : 1;
     sorted = i;
     heads.forEach((head, at) => {
@@ -68,12 +68,12 @@ export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
     say(`sorted by ${spec.columns[i]?.title ?? ""}, ${direction > 0 ? "ascending" : "descending"}`);
   }
 
-  function rows_left(): Row[] {
+  function rowsLeft(): Row[] {
     const words = searched.toLowerCase().split(/\s+/).filter((word) => word !== "");
     const left = spec.rows.filter((row) =>
       [...chosen].every(([filter, value]) => filter.value(row) === value) &&
       (words.length === 0 || (() => {
-        const text = spec.columns.map((column) => text_of(column, row)).join(" ").toLowerCase();
+        const text = spec.columns.map((column) => textOf(column, row)).join(" ").toLowerCase();
         return words.every((word) => text.includes(word));
       })()));
     const column = spec.columns[sorted];
@@ -81,10 +81,10 @@ export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
   }
 
   function show(): void {
-    const left = rows_left();
+    const left = rowsLeft();
     const shown = left.slice(0, most);
     body.replaceChildren(...shown.map((row) =>
-      el("tr", {}, ...spec.columns.map((column, i) => el("td", { class: class_of(i) }, text_of(column, row))))));
+      el("tr", {}, ...spec.columns.map((column, i) => el("td", { class: classOf(i) }, textOf(column, row))))));
     const rows = left.length === 1 ? "row" : "rows";
     count.textContent = left.length === spec.rows.length
       ? `${grouped(left.length)} ${rows}` : `${grouped(left.length)} of ${grouped(spec.rows.length)} rows`;
@@ -93,7 +93,7 @@ export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
   }
 
   function filtered(): void {
-    most = page_rows;
+    most = pageRows;
     show();
     say(count.textContent ?? "");
   }
@@ -114,13 +114,13 @@ export function data_table<Row>(spec: DataTableSpec<Row>): HTMLElement {
     } });
     controls.push(el("label", {}, "Search", input));
   }
-  const id = new_id("table");
+  const id = newId("table");
   show();
   return el("div", { class: "data-table" },
     controls.length > 0 && el("div", { class: "controls" }, ...controls),
     // A region that scrolls must be reachable by the keyboard.
     el("div", { class: "scroll", role: "region", tabindex: 0, "aria-labelledby": id },
       el("table", {}, el("caption", { id }, spec.caption), el("thead", {}, el("tr", {}, ...heads)), body)),
-    (controls.length > 0 || spec.rows.length > page_rows) && count,
+    (controls.length > 0 || spec.rows.length > pageRows) && count,
     more);
 }

@@ -37,7 +37,7 @@ export function say(text: string): void {
 }
 
 let ids = 0;
-export function new_id(name: string): string {
+export function newId(name: string): string {
   return `${name}-${++ids}`;
 }
 
@@ -54,7 +54,7 @@ export function picker(
 export function choices(
   label: string, options: readonly (readonly [value: string, text: string])[], changed: (value: string) => void,
 ): HTMLFieldSetElement {
-  const name = new_id("choice");
+  const name = newId("choice");
   return el("fieldset", {}, el("legend", {}, label), el("div", { class: "choices" },
     ...options.map(([value, text], i) => el("label", {},
       el("input", { type: "radio", name, value, checked: i === 0, onchange: () => changed(value) }),

@@ -11,7 +11,7 @@ function save(name: string, type: string, text: string): void {
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }
 
-export function download_button(label: string, name: string, type: "application/json" | "text/csv", text: () => string): HTMLElement {
+export function downloadButton(label: string, name: string, type: "application/json" | "text/csv", text: () => string): HTMLElement {
   return el("button", { type: "button", onclick: () => save(name, type, text()) }, label);
 }
 
@@ -21,21 +21,21 @@ function field(value: unknown): string {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-export function csv_of_rows(heads: readonly string[], rows: readonly (readonly unknown[])[]): string {
+export function csvOfRows(heads: readonly string[], rows: readonly (readonly unknown[])[]): string {
   return [heads, ...rows].map((row) => row.map(field).join(",") + "\r\n").join("");
 }
 
 const ratioParts = ["of", "median", "low", "high", "rounds"] as const;
 
 /** A line for each measurement; its samples stand in one field, a space between; a ratio is five fields. */
-export function csv_of_comparison({ measurements }: Comparison): string {
+export function csvOfComparison({ measurements }: Comparison): string {
   const names = Object.keys(measurements[0] ?? {}) as (keyof Measurement)[];
   const isRatio = (name: keyof Measurement): name is RatioName => name.startsWith("ratio_to_");
   const heads = names.flatMap((name) => (isRatio(name) ? ratioParts.map((part) => `${name}_${part}`) : [name]));
-  return csv_of_rows(heads, measurements.map((measurement) => names.flatMap((name) =>
+  return csvOfRows(heads, measurements.map((measurement) => names.flatMap((name) =>
     (isRatio(name) ? ratioParts.map((part) => measurement[name]?.[part]) : [measurement[name]]))));
 }
 
-export function csv_of_table(table: Table): string {
-  return csv_of_rows(table.columns.map(({ name, unit }) => (unit === "" ? name : `${name} (${unit})`)), table.rows);
+export function csvOfTable(table: Table): string {
+  return csvOfRows(table.columns.map(({ name, unit }) => (unit === "" ? name : `${name} (${unit})`)), table.rows);
 }

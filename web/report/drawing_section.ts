@@ -1,5 +1,5 @@
 // The scenes drawn: boxes, and what an algorithm lays over them.
-import { on_theme, theme } from "./themes.ts";
+import { onTheme, theme } from "./themes.ts";
 import { grouped } from "../charts/numbers.ts";
 import { choices, el, picker, say, svg } from "./dom.ts";
 
@@ -27,7 +27,7 @@ export interface Drawing {
   views: View[];
 }
 
-const most_zoom = 40;
+const mostZoom = 40;
 
 /** A picture that is zoomed and moved by wheel, buttons, pointer and keys. */
 class Picture {
@@ -69,7 +69,7 @@ class Picture {
     this.image.replaceChildren(
       svg("title", {}, document.createTextNode(what)),
       svg("path", { class: "boxes", d: view.boxes }),
-      ...(layer?.levels ?? []).map((d, depth) => svg("path", { class: "level", d, style: `stroke: ${level_colour(depth)}` })));
+      ...(layer?.levels ?? []).map((d, depth) => svg("path", { class: "level", d, style: `stroke: ${levelColour(depth)}` })));
     this.place();
   }
 
@@ -80,7 +80,7 @@ class Picture {
   }
 
   scale(by: number): void {
-    this.zoom = Math.min(most_zoom, Math.max(1, this.zoom * by));
+    this.zoom = Math.min(mostZoom, Math.max(1, this.zoom * by));
     this.place();
     say(`zoom ${Math.round(this.zoom * 100)} %`);
   }
@@ -116,12 +116,12 @@ class Picture {
 }
 
 /** From warm to cool with depth, in either theme. */
-function level_colour(depth: number): string {
+function levelColour(depth: number): string {
   const { palette } = theme();
   return palette[[1, 2, 3, 4, 5, 7][depth % 6] ?? 1] ?? "currentColor";
 }
 
-export function drawing_section(drawings: readonly Drawing[]): [string, string, HTMLElement] | undefined {
+export function drawingSection(drawings: readonly Drawing[]): [string, string, HTMLElement] | undefined {
   let drawing = drawings[0];
   if (drawing === undefined) return undefined;
   let axes = "";
@@ -158,7 +158,7 @@ export function drawing_section(drawings: readonly Drawing[]): [string, string, 
     show();
   };
   begin();
-  on_theme(show);
+  onTheme(show);
   const button = (text: string, name: string, action: () => void): HTMLElement =>
     el("button", { type: "button", "aria-label": name, onclick: action }, text);
   return ["scenes", "Scenes", el("section", {}, el("div", { class: "card" },

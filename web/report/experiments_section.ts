@@ -1,11 +1,11 @@
 // The experiments: each claim, its verdict and what it rests on.
 import type { Cell, Experiment, Experiments, Table } from "../charts/data.ts";
-import { bytes_text, grouped, rounded } from "../charts/numbers.ts";
-import { cell_text, draw_table_chart } from "../charts/table_chart.ts";
-import { data_table } from "./data_table.ts";
+import { bytesText, grouped, rounded } from "../charts/numbers.ts";
+import { cellText, drawTableChart } from "../charts/table_chart.ts";
+import { dataTable } from "./data_table.ts";
 import { el } from "./dom.ts";
-import { csv_of_table, download_button } from "./downloads.ts";
-import { chart_figure } from "./figure.ts";
+import { csvOfTable, downloadButton } from "./downloads.ts";
+import { chartFigure } from "./figure.ts";
 import { facts, tile } from "./summary.ts";
 import type { Doubts } from "./summary.ts";
 
@@ -17,22 +17,22 @@ function badge(experiment: Experiment): HTMLElement {
   return el("span", { class: `badge ${look}` }, el("span", { "aria-hidden": "true" }, `${sign} `), text);
 }
 
-function table_view(table: Table): HTMLElement {
-  return el("div", {}, data_table<Cell[]>({
+function tableView(table: Table): HTMLElement {
+  return el("div", {}, dataTable<Cell[]>({
     caption: table.title,
     rows: table.rows,
     search: table.rows.length > 12,
     columns: table.columns.map((column, i) => ({
       title: column.unit === "" ? column.name : `${column.name} (${column.unit})`,
       value: (row) => row[i] ?? null,
-      text: (row) => cell_text(row[i] ?? null),
+      text: (row) => cellText(row[i] ?? null),
     })),
   }), el("p", { class: "downloads", style: "margin: .5rem 0 1rem" },
-    download_button("Save as CSV", `${table.name}.csv`, "text/csv", () => csv_of_table(table))));
+    downloadButton("Save as CSV", `${table.name}.csv`, "text/csv", () => csvOfTable(table))));
 }
 
-function figure_text(value: number, unit: string): string {
-  if (unit === "bytes" && value >= 1000) return bytes_text(value);
+function figureText(value: number, unit: string): string {
+  if (unit === "bytes" && value >= 1000) return bytesText(value);
   return rounded(value) + (unit === "" ? "" : ` ${unit}`);
 }
 
@@ -40,12 +40,12 @@ function figures(experiment: Experiment): HTMLElement | null {
   const all = Object.entries(experiment.figures);
   if (all.length === 0) return null;
   return el("ul", { class: "figures" }, ...all.map(([name, { value, unit }]) =>
-    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, figure_text(value, unit)))));
+    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, figureText(value, unit)))));
 }
 
 function view(experiment: Experiment): HTMLElement {
   const charts = experiment.tables.flatMap((table) => table.charts.map((chart) =>
-    chart_figure(chart.title, (place) => draw_table_chart(table, chart, place)).element));
+    chartFigure(chart.title, (place) => drawTableChart(table, chart, place)).element));
   const rows = experiment.tables.reduce((sum, table) => sum + table.rows.length, 0);
   const section = experiment.section === "beyond" ? "beyond the paper" : `section ${experiment.section} of the paper`;
   return el("article", { class: "card", id: experiment.name, "aria-labelledby": `${experiment.name}-title` },
@@ -56,7 +56,7 @@ function view(experiment: Experiment): HTMLElement {
     figures(experiment),
     el("p", { class: "note" }, `Measured: ${experiment.measured}`),
     charts.length > 0 && el("div", { class: "charts" }, ...charts),
-    el("details", {}, el("summary", {}, `What was measured, as tables (${grouped(rows)} rows)`), ...experiment.tables.map(table_view)));
+    el("details", {}, el("summary", {}, `What was measured, as tables (${grouped(rows)} rows)`), ...experiment.tables.map(tableView)));
 }
 
 export function doubtsOfExperiments({ experiments, busy, processor_share }: Experiments): Doubts {
@@ -68,7 +68,7 @@ export function doubtsOfExperiments({ experiments, busy, processor_share }: Expe
 }
 
 /** The sections of experiments, each [id, title, element]. */
-export function experiment_sections(results: Experiments): [string, string, HTMLElement][] {
+export function experimentSections(results: Experiments): [string, string, HTMLElement][] {
   const { experiments } = results;
   const count = (verdict: Experiment["verdict"]): string => String(experiments.filter((one) => one.verdict === verdict).length);
   const seconds = experiments.reduce((sum, one) => sum + one.seconds, 0);
@@ -82,7 +82,7 @@ export function experiment_sections(results: Experiments): [string, string, HTML
       el("li", {}, el("span", {}, `${one.number}.`), el("a", { href: `#${one.name}` }, one.title), el("span", {}, badge(one)))))),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts(results),
       el("p", { class: "downloads", style: "margin: 1rem 0 0" },
-        download_button("Save as JSON", "experiments.json", "application/json", () => JSON.stringify(results)))));
+        downloadButton("Save as JSON", "experiments.json", "application/json", () => JSON.stringify(results)))));
   return [
     ["verdicts", "Verdicts", summary],
     ["experiments", "Experiments", el("section", {}, ...experiments.map(view))],

@@ -2,11 +2,11 @@
 import { echarts } from "../charts/echarts.ts";
 import type { Drawn, Place } from "../charts/frame.ts";
 import { el } from "./dom.ts";
-import { is_printing, on_theme, theme } from "./themes.ts";
+import { isPrinting, onTheme, theme } from "./themes.ts";
 
 type Draw = (place: Place) => Drawn;
 
-const print_width = 660;
+const printWidth = 660;
 
 export interface ChartFigure {
   element: HTMLElement;
@@ -27,7 +27,7 @@ class ChartView {
     this.redraw();
   }
 
-  come_near(): void {
+  comeNear(): void {
     if (this.near) return;
     this.near = true;
     this.redraw();
@@ -39,8 +39,8 @@ class ChartView {
   }
 
   redraw(): void {
-    if (!this.near && !is_printing()) return;
-    const width = is_printing() ? print_width : this.element.clientWidth;
+    if (!this.near && !isPrinting()) return;
+    const width = isPrinting() ? printWidth : this.element.clientWidth;
     if (width === 0) return;
     this.width = width;
     const drawn = this.draw({ theme: theme(), width });
@@ -57,7 +57,7 @@ const views = new Map<Element, ChartView>();
 
 const sights = new IntersectionObserver((entries) => {
   for (const entry of entries) {
-    if (entry.isIntersecting) views.get(entry.target)?.come_near();
+    if (entry.isIntersecting) views.get(entry.target)?.comeNear();
   }
 }, { rootMargin: "500px" });
 
@@ -65,12 +65,12 @@ const sizes = new ResizeObserver((entries) => {
   for (const entry of entries) views.get(entry.target)?.fit(entry.contentRect.width);
 });
 
-on_theme(() => {
+onTheme(() => {
   for (const view of views.values()) view.redraw();
 });
 
 /** A chart under its caption. */
-export function chart_figure(caption: string, draw: Draw, note = ""): ChartFigure {
+export function chartFigure(caption: string, draw: Draw, note = ""): ChartFigure {
   const view = new ChartView(draw);
   views.set(view.element, view);
   sights.observe(view.element);

@@ -2,13 +2,13 @@
 import type { Comparison, Experiments } from "../charts/data.ts";
 import { inTodaysShape } from "../charts/old_results.ts";
 import type { OldComparison } from "../charts/old_results.ts";
-import { comparison_sections, doubtsOfComparison } from "./comparison_section.ts";
+import { comparisonSections, doubtsOfComparison } from "./comparison_section.ts";
 import { add, el } from "./dom.ts";
-import { drawing_section } from "./drawing_section.ts";
+import { drawingSection } from "./drawing_section.ts";
 import type { Drawing } from "./drawing_section.ts";
-import { doubtsOfExperiments, experiment_sections } from "./experiments_section.ts";
+import { doubtsOfExperiments, experimentSections } from "./experiments_section.ts";
 import { doubtsNotice } from "./summary.ts";
-import { begin_themes } from "./themes.ts";
+import { beginThemes } from "./themes.ts";
 
 /** What lab/report/page.cpp puts together. */
 interface ReportDocument {
@@ -22,9 +22,9 @@ function build(report: ReportDocument): void {
   const { comparison: written, experiments, drawings } = report;
   const comparison = written === null ? null : inTodaysShape(written);
   const sections: [string, string, HTMLElement][] = [];
-  if (comparison !== null && written !== null) sections.push(...comparison_sections(comparison, report.date, written));
-  if (experiments !== null) sections.push(...experiment_sections(experiments));
-  const pictures = drawing_section(drawings);
+  if (comparison !== null && written !== null) sections.push(...comparisonSections(comparison, report.date, written));
+  if (experiments !== null) sections.push(...experimentSections(experiments));
+  const pictures = drawingSection(drawings);
   if (pictures !== undefined) sections.push(pictures);
 
   const title = comparison !== null ? "Algorithms compared" : "The paper's claims, tested";
@@ -47,5 +47,5 @@ function build(report: ReportDocument): void {
   }
 }
 
-begin_themes();
+beginThemes();
 build(JSON.parse(document.getElementById("document")?.textContent ?? "null") as ReportDocument);

@@ -1,6 +1,6 @@
 // What a reader wants to know first: what was done, where, and what came of it.
 import type { Build, Machine } from "../charts/data.ts";
-import { bytes_text, grouped } from "../charts/numbers.ts";
+import { bytesText, grouped } from "../charts/numbers.ts";
 import { el } from "./dom.ts";
 
 /** A figure that stands out. */
@@ -28,7 +28,7 @@ export function doubtsNotice({ busy, processorShare, unsteady, measurements }: D
     el("p", {}, "Quiet the machine and measure again before you quote these times."));
 }
 
-function command_text(command: readonly string[]): string {
+function commandText(command: readonly string[]): string {
   const quoted = (word: string): string => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
   return command.map((word, i) => quoted(i === 0 ? word.replace(/^.*\//, "") : word)).join(" ");
 }
@@ -39,13 +39,13 @@ export function facts(of: { machine: Machine; build: Build; command: string[]; d
   const cores = machine.cores === null ? "" : `, ${machine.cores} ${machine.cores === 1 ? "core" : "cores"}`;
   const all: [string, string | Node][] = [
     ["Machine", (machine.cpu ?? "unknown processor") + cores],
-    ["Memory", machine.memory_bytes === null ? "" : bytes_text(machine.memory_bytes)],
+    ["Memory", machine.memory_bytes === null ? "" : bytesText(machine.memory_bytes)],
     ["System", machine.os ?? ""],
     ["Build", `Broadside ${build.version}${build.revision === null ? "" : ` (${build.revision})`}, ${build.compiler}`],
     ["Flags", [build.type, build.flags].filter((part) => part !== null && part !== "").join(": ")],
     ["Instruction set", of.target ?? ""],
     ["Date", of.date],
-    ["Command", el("code", {}, command_text(of.command))],
+    ["Command", el("code", {}, commandText(of.command))],
   ];
   return el("dl", { class: "facts" },
     ...all.filter(([, value]) => value !== "").flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));

@@ -12,12 +12,12 @@ export function theme(): Theme {
   return (chosen ?? (system.matches ? "dark" : "light")) === "dark" ? dark : light;
 }
 
-export function is_printing(): boolean {
+export function isPrinting(): boolean {
   return printing;
 }
 
 /** Calls `listener` whenever the theme has changed, or the page is about to be printed. */
-export function on_theme(listener: () => void): void {
+export function onTheme(listener: () => void): void {
   listeners.push(listener);
 }
 
@@ -29,7 +29,7 @@ function show(): void {
   for (const listener of listeners) listener();
 }
 
-export function begin_themes(): void {
+export function beginThemes(): void {
   show();
   system.addEventListener("change", show);
   document.getElementById("theme")?.addEventListener("click", () => {

@@ -1,15 +1,18 @@
 // What the charts make of tables and comparisons.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 
 import {
-  bytes_text, cases_of, colours_of, dark, draw_frames, draw_leads, draw_lines, draw_ratios, draw_scaling, draw_standings,
-  draw_table_chart, draw_winners, family_of, grouped, label_of, lead_of, light, rounded, scaled_scenes, short, standings,
-  inTodaysShape, intervalText, ratio_text, time_text,
+  bytesText, casesOf, coloursOf, dark, drawFrames, drawLeads, drawLines, drawRatios, drawScaling, drawStandings,
+  drawTableChart, drawWinners, familyOf, grouped, labelOf, leadOf, light, rounded, scaledScenes, short, standings,
+  inTodaysShape, intervalText, ratioText, timeText,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
-import { log_ticks } from "../charts/frame.ts";
-import { svg_of } from "../charts/render.ts";
+import { logTicks } from "../charts/frame.ts";
+import { svgOf } from "../charts/render.ts";
+import { project } from "../../paper/web/tests/fixture.ts";
 import { comparison, oldComparison } from "./fixture.ts";
 
 const place: Place = { theme: light, width: 640 };
@@ -31,63 +34,63 @@ function spec(changes: Partial<ChartSpec>): ChartSpec {
 
 type Series = { name: string; data: unknown[]; color: string };
 
-function series_of(drawn: Drawn): Series[] {
+function seriesOf(drawn: Drawn): Series[] {
   return drawn.option.series as unknown as Series[];
 }
 
 test("lines are sorted by x, a line for each series, without what is missing or cannot be on a logarithmic axis", () => {
-  const [mixed, uniform] = series_of(draw_table_chart(table, spec({}), place));
+  const [mixed, uniform] = seriesOf(drawTableChart(table, spec({}), place));
   assert.deepEqual(mixed?.data, [[1, 1], [2, 0.5]]);
   assert.deepEqual(uniform?.data, [[1, 3]]);
-  const linear = series_of(draw_table_chart(table, spec({ log_y: false }), place));
+  const linear = seriesOf(drawTableChart(table, spec({ log_y: false }), place));
   assert.deepEqual(linear[1]?.data, [[1, 3], [4, 0]]);
 });
 
 test("a chart shows only the rows that it asks for", () => {
-  const series = series_of(draw_table_chart(table, spec({ where: [["scene", "mixed"]] }), place));
+  const series = seriesOf(drawTableChart(table, spec({ where: [["scene", "mixed"]] }), place));
   assert.deepEqual(series.map(({ name }) => name), ["mixed"]);
 });
 
 test("bars have a place for every label, empty where there is no number", () => {
-  const drawn = draw_table_chart(table, spec({ kind: "bars", log_y: false }), place);
-  const values = series_of(drawn).map(({ data }) => (data as { value: unknown }[]).map(({ value }) => value));
+  const drawn = drawTableChart(table, spec({ kind: "bars", log_y: false }), place);
+  const values = seriesOf(drawn).map(({ data }) => (data as { value: unknown }[]).map(({ value }) => value));
   assert.deepEqual(values, [[1, 0.5, "-"], [3, "-", 0]]);
 });
 
 test("a map has a series for each winner", () => {
-  const drawn = draw_table_chart(table, spec({ kind: "map", y: "scene", value: "best" }), place);
-  assert.deepEqual(series_of(drawn).map(({ name, data }) => [name, data.length]), [["bvh", 1], ["grid", 4]]);
+  const drawn = drawTableChart(table, spec({ kind: "map", y: "scene", value: "best" }), place);
+  assert.deepEqual(seriesOf(drawn).map(({ name, data }) => [name, data.length]), [["bvh", 1], ["grid", 4]]);
 });
 
-test("a column that is not there is named with those that are", () => {
-  assert.throws(() => draw_table_chart(table, spec({ x: "cells" }), place),
+test("a missing column is named with the columns there are", () => {
+  assert.throws(() => drawTableChart(table, spec({ x: "cells" }), place),
     /table 'cells' has no column 'cells'; expected one of cell size, time, scene, best/);
 });
 
 test("a chart tells in words what it shows", () => {
-  const { description } = draw_table_chart(table, spec({}), place);
+  const { description } = drawTableChart(table, spec({}), place);
   assert.match(description, /^Time\. Line chart of time \(ms\) over cell size, logarithmic\. mixed: 1 ms at 1, 0\.500 ms at 2\./);
 });
 
 test("an algorithm has its family's colour in every chart", () => {
-  assert.equal(family_of("grid:cell=2.5"), "grid");
-  assert.equal(family_of("paper_grid"), "grid");
-  assert.equal(family_of("bullet_dbvt"), "bullet");
-  assert.equal(family_of("mixed"), undefined);
-  assert.equal(colours_of(["chipmunk_space_hash"], light)[0], colours_of(["chipmunk_bb_tree", "chipmunk_space_hash"], light)[1]);
-  assert.deepEqual(colours_of(["bvh", "grid"], light), [colours_of(["grid", "bvh"], light)[1], "#e69f00"]);
-  assert.notDeepEqual(colours_of(["bvh"], light), colours_of(["bvh"], dark));
+  assert.equal(familyOf("grid:cell=2.5"), "grid");
+  assert.equal(familyOf("paper_grid"), "grid");
+  assert.equal(familyOf("bullet_dbvt"), "bullet");
+  assert.equal(familyOf("mixed"), undefined);
+  assert.equal(coloursOf(["chipmunk_space_hash"], light)[0], coloursOf(["chipmunk_bb_tree", "chipmunk_space_hash"], light)[1]);
+  assert.deepEqual(coloursOf(["bvh", "grid"], light), [coloursOf(["grid", "bvh"], light)[1], "#e69f00"]);
+  assert.notDeepEqual(coloursOf(["bvh"], light), coloursOf(["bvh"], dark));
 });
 
 test("no two of up to eight series have the same colour", () => {
   const names = ["grid:cell=1", "grid:cell=2", "grid", "bvh", "uniform", "mixed", "1", "2"];
-  assert.equal(new Set(colours_of(names, light)).size, names.length);
-  assert.equal(new Set(colours_of(names, dark)).size, names.length);
+  assert.equal(new Set(coloursOf(names, light)).size, names.length);
+  assert.equal(new Set(coloursOf(names, dark)).size, names.length);
 });
 
 test("ticks of a logarithmic axis span the values", () => {
   for (const values of [[1, 2], [0.003, 4000], [7], [1, 1e9], [0.2, 0.9]]) {
-    const { min, max, ticks } = log_ticks(values);
+    const { min, max, ticks } = logTicks(values);
     assert.ok(min <= Math.min(...values) && max >= Math.max(...values), String(values));
     assert.ok(ticks.length >= 1 && ticks.length <= 8, String(ticks));
   }
@@ -96,12 +99,12 @@ test("ticks of a logarithmic axis span the values", () => {
 test("numbers are told with three digits", () => {
   assert.deepEqual([0, 1234567, 0.012345, 12.345, 5, 99.99].map(rounded), ["0", "1,234,567", "0.0123", "12.3", "5", "100.0"]);
   assert.deepEqual([1000, 250000, 0.05, 2e6].map(short), ["1k", "250k", "0.05", "2M"]);
-  assert.deepEqual([0.0123, 1.5, 2500, 0.0002].map(time_text), ["12.3 µs", "1.50 ms", "2.50 s", "200 ns"]);
+  assert.deepEqual([0.0123, 1.5, 2500, 0.0002].map(timeText), ["12.3 µs", "1.50 ms", "2.50 s", "200 ns"]);
   assert.equal(grouped(-1234.5), "-1,234.5");
-  assert.deepEqual([168, 1536, 2.04e7].map(bytes_text), ["168 B", "1.54 kB", "20.4 MB"]);
+  assert.deepEqual([168, 1536, 2.04e7].map(bytesText), ["168 B", "1.54 kB", "20.4 MB"]);
 });
 
-const cases = cases_of(comparison.measurements);
+const cases = casesOf(comparison.measurements);
 
 test("measurements on the same boxes are one case", () => {
   assert.deepEqual(cases.map(({ name }) => name), [
@@ -110,13 +113,13 @@ test("measurements on the same boxes are one case", () => {
 });
 
 test("a lead is the fastest peer's time over that of the fastest of ours", () => {
-  const lead = lead_of(cases[0]!);
+  const lead = leadOf(cases[0]!);
   assert.deepEqual([lead?.own.algorithm, lead?.peer.algorithm, lead?.ratio.median], ["bvh", "box2d_tree", 4]);
   assert.equal(intervalText(lead!.ratio), "4.0 (3.8 to 4.2)");
 });
 
 test("ratios have two significant digits, and are level where their interval holds one", () => {
-  assert.deepEqual([0.0514, 0.996, 1.04, 1.26, 9.96, 19.4, 134, 1349].map(ratio_text),
+  assert.deepEqual([0.0514, 0.996, 1.04, 1.26, 9.96, 19.4, 134, 1349].map(ratioText),
     ["0.051", "1.0", "1.0", "1.3", "10", "19", "130", "1,300"]);
   const text = (low: number | null, high: number | null): string =>
     intervalText({ of: "grid", median: 1.02, low, high, rounds: 5 });
@@ -135,22 +138,31 @@ test("results of the schema before are read with ratios of their medians, which 
   assert.equal(bvh?.ratio_to_fastest_peer?.median, 0.25);
   assert.equal(read.measurements[7]?.ratio_to_fastest, null);
   assert.equal(inTodaysShape(comparison), comparison);
-  const [of] = cases_of(read.measurements);
-  assert.equal(series_of(draw_ratios(of!, place)).length, 1);
+  const [of] = casesOf(read.measurements);
+  assert.equal(seriesOf(drawRatios(of!, place)).length, 1);
+});
+
+test("results that earlier versions wrote are read, and show algorithms by the names that they had", () => {
+  for (const [name, algorithm] of [["results_v1_hierarchical_grid", "hierarchical_grid"], ["results_v2", "brute_force"]]) {
+    const results = inTodaysShape(JSON.parse(readFileSync(join(project, `tests/fixtures/${name}.json`), "utf8")));
+    const [only] = casesOf(results.measurements);
+    assert.equal(only?.dimension, 2);
+    assert.match(svgOf(drawRatios(only!, place), { width: 640 }), new RegExp(`>${algorithm}<`));
+  }
 });
 
 test("a ratio's interval is a whisker of its bar, and told in words", () => {
-  const drawn = draw_ratios(cases[0]!, place);
-  const [bars, whiskers] = series_of(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
+  const drawn = drawRatios(cases[0]!, place);
+  const [bars, whiskers] = seriesOf(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
   assert.deepEqual([bars?.type, whiskers?.type], ["bar", "custom"]);
   // Of the fastest, the ratio is to itself.
   assert.deepEqual(bars?.data.map(({ label }) => label === undefined), [true, false, false, false]);
   assert.match(drawn.description, / bvh: 1\.0\. grid: 2\.0 \(1\.9 to 2\.1\)\. /);
-  assert.match(draw_ratios(cases[2]!, place).description, / bvh: 1\.2 \(level\)\. /);
+  assert.match(drawRatios(cases[2]!, place).description, / bvh: 1\.2 \(0\.92 to 1\.6\)\. /);
 });
 
 test("an algorithm's threads are told once", () => {
-  const of = (algorithm: string, threads: number): string => label_of({ ...comparison.measurements[0]!, algorithm, threads });
+  const of = (algorithm: string, threads: number): string => labelOf({ ...comparison.measurements[0]!, algorithm, threads });
   assert.equal(of("grid", 1), "grid");
   assert.equal(of("auto:threads=2", 2), "auto:threads=2");
   assert.equal(of("grid:threads=0:cell=2", 4), "grid:threads=0:cell=2 (4 threads)");
@@ -158,28 +170,28 @@ test("an algorithm's threads are told once", () => {
 });
 
 test("what is counted has no ticks between whole numbers", () => {
-  const axis_of = (xs: number[], log: boolean): unknown => (draw_lines({
+  const axisOf = (xs: number[], log: boolean): unknown => (drawLines({
     title: "", x: { name: "threads", unit: "", log }, y: { name: "time", unit: "ms", log: false },
     lines: [{ name: "", points: xs.map((x) => [x, 1] as const) }],
   }, place).option.xAxis as { minInterval?: number }).minInterval;
-  assert.equal(axis_of([1, 2], false), 1);
-  assert.equal(axis_of([1, 1.5], false), undefined);
-  assert.equal(axis_of([1, 2], true), undefined);
+  assert.equal(axisOf([1, 2], false), 1);
+  assert.equal(axisOf([1, 1.5], false), undefined);
+  assert.equal(axisOf([1, 2], true), undefined);
 });
 
-test("who is skipped in a case does not stand in it", () => {
+test("a skipped algorithm does not stand in a case", () => {
   assert.deepEqual(standings(cases).map(({ algorithm, cases, fastest }) => [algorithm, cases, fastest]),
     [["bvh", 3, 1], ["grid", 3, 2], ["box2d_tree", 3, 0], ["brute_force", 1, 0]]);
 });
 
 test("the charts of a comparison hold what was measured", () => {
-  assert.deepEqual(scaled_scenes(cases).map(({ scene, dimension }) => [scene, dimension]), [["uniform", 2]]);
-  const lines = series_of(draw_scaling(cases, scaled_scenes(cases)[0]!, place));
+  assert.deepEqual(scaledScenes(cases).map(({ scene, dimension }) => [scene, dimension]), [["uniform", 2]]);
+  const lines = seriesOf(drawScaling(cases, scaledScenes(cases)[0]!, place));
   assert.deepEqual(lines.find(({ name }) => name === "grid")?.data, [[1000, 0.2], [10000, 1]]);
-  const frames = series_of(draw_frames(cases[2]!, place));
+  const frames = seriesOf(drawFrames(cases[2]!, place));
   assert.deepEqual(frames.map(({ name, data }) => [name, data.length]), [["grid", 4], ["bvh", 4], ["box2d_tree", 4]]);
-  assert.equal(series_of(draw_ratios(cases[0]!, place))[0]?.data.length, 4);
-  assert.deepEqual(series_of(draw_winners(cases, place)).map(({ name }) => name), ["bvh", "grid"]);
+  assert.equal(seriesOf(drawRatios(cases[0]!, place))[0]?.data.length, 4);
+  assert.deepEqual(seriesOf(drawWinners(cases, place)).map(({ name }) => name), ["bvh", "grid"]);
 });
 
 test("every chart is drawn in Node, in both themes, the same each time, whatever was drawn before", () => {
@@ -187,11 +199,11 @@ test("every chart is drawn in Node, in both themes, the same each time, whatever
     for (const width of [340, 720]) {
       const at = { theme, width };
       const all = (): string[] => [
-        draw_standings(cases, at), draw_leads(cases, at), draw_winners(cases, at), draw_frames(cases[2]!, at),
-        draw_ratios(cases[1]!, at), draw_scaling(cases, scaled_scenes(cases)[0]!, at),
+        drawStandings(cases, at), drawLeads(cases, at), drawWinners(cases, at), drawFrames(cases[2]!, at),
+        drawRatios(cases[1]!, at), drawScaling(cases, scaledScenes(cases)[0]!, at),
         ...(["lines", "bars", "map"] as const).map((kind) =>
-          draw_table_chart(table, spec(kind === "map" ? { kind, y: "scene", value: "best" } : { kind }), at)),
-      ].map((drawn) => svg_of(drawn, { width, title: "A < B" }));
+          drawTableChart(table, spec(kind === "map" ? { kind, y: "scene", value: "best" } : { kind }), at)),
+      ].map((drawn) => svgOf(drawn, { width, title: "A < B" }));
       const first = all();
       assert.deepEqual(all(), first);
       for (const svg of first) {

@@ -9,7 +9,7 @@ import { after, before, describe, test } from "node:test";
 import { Ajv2020 } from "ajv/dist/2020.js";
 
 import { comparison, doubtful, oldComparison } from "./fixture.ts";
-import { experiments, project } from "./paper_fixture.ts";
+import { experiments, project } from "../../paper/web/tests/fixture.ts";
 
 const program = process.env["BROADSIDE_PROGRAM"] ?? "";
 const missing = existsSync(program) ? false : "BROADSIDE_PROGRAM names no program";

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/csv/names.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
@@ -48,7 +47,7 @@ struct Choice {
 
 int of(const Found& found, Role role) { return found[static_cast<std::size_t>(role)]; }
 
-/// What is wrong if numbers count three points or more, whose first two are no bounds; nothing otherwise.
+/// The fault if there are numbers for three points or more, so that the first two are not bounds; else empty.
 std::string points_of(const Found& found, std::span<const std::string_view> names) {
   std::string list;
   int count = 0;
@@ -126,7 +125,7 @@ int first_of(std::span<const std::string_view> names, std::span<const std::strin
   return none;
 }
 
-/// What is wrong with an axis without bounds; empty for a z axis that need not have any.
+/// The fault of an axis without bounds; empty for a z axis that needs none.
 std::string problem_of(const Found& found, std::size_t axis, std::span<const std::string_view> names,
                        bool is_computed) {
   const int position = of(found, Role::position);
@@ -162,7 +161,7 @@ bool resolve_points(const std::array<Found, 3>& found, CsvColumns& columns) {
   return true;
 }
 
-/// Finds the columns that boxes are made of. Returns what is wrong with them.
+/// Finds the columns that boxes are made of. Returns the fault, if any.
 std::string resolve_bounds(std::span<const std::string_view> names, const std::array<Found, 3>& found,
                            CsvColumns& columns) {
   const CsvColumns before = columns;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,31 @@
 #include <vector>
 
 namespace broadside::lab::readers {
+
+/// What a column says of an axis. `position` leaves open of what; the numbered ones are minimum and maximum,
+/// counted from 0 or from 1.
+enum class Role : std::uint8_t {
+  min,
+  max,
+  centre,
+  size,
+  half_size,
+  position,
+  geographic,  ///< a position too, but other columns may have one in other units
+  zeroth,
+  first,
+  second,
+  third
+};
+constexpr std::size_t roles = 11;
+
+struct Meaning {
+  Role role;
+  int axis;
+};
+
+/// The meaning of a name, in any spelling; nothing if it has none.
+std::optional<Meaning> meaning_of(std::string_view name);
 
 /// Of what two columns the bounds on an axis are made.
 enum class BoundsForm : std::uint8_t {
@@ -96,7 +122,7 @@ bool is_column_name(std::string_view name);
 /// Whether a name is that of a column of geometries as text, or of bounds in one field.
 bool is_geometry_name(std::string_view name);
 
-/// What the columns of numbers without names are: 4 or 6, minima and then maxima. Returns what is wrong.
+/// Columns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
 std::string positional(std::size_t count, CsvColumns& columns);
 
 }  // namespace broadside::lab::readers

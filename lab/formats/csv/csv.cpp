@@ -1,4 +1,4 @@
-// Boxes as text: comma-separated values and their kin, whose columns are told by their names.
+// Boxes as text: comma-separated values and their kin. The columns' names tell what they are.
 #include "lab/formats/csv/csv.hpp"
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/map/geometry_text.hpp"
-#include "lab/formats/number_fault.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

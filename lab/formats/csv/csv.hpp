@@ -32,4 +32,10 @@ AnyFrameReader read_csv(CsvTable table, Precision precision);
 /// so the boxes are the same in whichever precision they are read.
 AnyFrameWriter write_csv(std::ostream& stream, int dimension, Precision precision);
 
+/// The frames of a table with columns frame and track, whose rows may come in any order. Frames are the
+/// numbers that occur, ascending; a box that a frame does not list is absent in it. Boxes are numbered as
+/// they first come, frame by frame. Memory: all rows.
+template <int D, typename Real>
+AnyFrameReader read_tracks(CsvTable table);
+
 }  // namespace broadside::lab::readers

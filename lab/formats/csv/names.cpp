@@ -1,5 +1,4 @@
 // Names that people give to a table's columns.
-#include "lab/formats/csv/names.hpp"
 
 #include <array>
 #include <cctype>
@@ -10,7 +9,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-/// Names of axes; the longer first of those that begin alike.
+/// Names of axes; of two that begin alike, the longer first.
 struct Axis {
   std::string_view text;
   int axis;

@@ -1,9 +1,9 @@
 // Reads the frames of a table.
 //
-// With columns frame and box, frame 0 lists every box in order, and a later frame those that change; a box
-// one beyond the last is new. Empty coordinates, or min = inf and max = -inf, stand for an absent box, and a
-// line with nothing but a frame for a frame in which nothing changes. With tracks instead of column box, see
-// csv_tracks.hpp.
+// With columns frame and box, frame 0 lists every box in order, and a later frame the boxes that change; a
+// box one beyond the last is new. Empty coordinates, or min = inf and max = -inf, stand for an absent box,
+// and a line with nothing but a frame for a frame in which nothing changes. With tracks instead of column
+// box, see csv_tracks.hpp.
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,7 +13,6 @@
 
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/csv/rows.hpp"
-#include "lab/formats/csv/tracks.hpp"
 
 namespace broadside::lab::readers {
 namespace {

@@ -18,7 +18,6 @@
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/map/geometry_text.hpp"
-#include "lab/formats/number_fault.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
@@ -32,7 +31,7 @@ class CsvRows {
         is_computed_(table_.columns.is_computed()),
         needed_(table_.columns.needed()) {}
 
-  /// Whether there was another row, of which read() then reads the rest. Blank lines are none.
+  /// Whether there was another row; read() then reads the rest of it. Blank lines are not rows.
   bool next() {
     do {
       if (!table_.lines.next()) return false;

@@ -1,6 +1,4 @@
 // Tables that list in each frame the boxes that are there.
-#include "lab/formats/csv/tracks.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -11,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/formats/csv/csv.hpp"
 #include "lab/formats/csv/rows.hpp"
 
 namespace broadside::lab::readers {
@@ -90,7 +89,7 @@ class TracksCsv final : public FrameReader<D, Real> {
     place_of_.assign(names_.size(), no_place);
   }
 
-  /// Adds a listed box to a frame's step, and its place to those that the frame has.
+  /// Adds a listed box to a frame's step, and its place to the frame's places.
   void take(const Listed& listed, Step<D, Real>& step, std::vector<std::size_t>& places) {
     if (listed.track == no_track) return;
     std::size_t& place = place_of_[listed.track];

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/map/geometry.hpp"
-#include "lab/formats/map/texts.hpp"
+#include "lab/formats/map/boxes.hpp"
+#include "lab/formats/map/text.hpp"
 
 namespace broadside::lab {
 namespace {

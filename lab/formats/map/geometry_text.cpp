@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "lab/formats/csv/text.hpp"
-#include "lab/formats/number_fault.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

@@ -8,7 +8,7 @@
 
 namespace broadside::lab::readers {
 
-/// What is wrong with a text; `found` is empty if nothing is.
+/// The fault of a text; `found` is empty if there is none.
 struct GeometryFault {
   std::string found{};  ///< continues "column wkt is '...'"
   std::string expected{};

@@ -7,9 +7,7 @@
 
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/map/boxes.hpp"
-#include "lab/formats/map/format.hpp"
 #include "lab/formats/map/text.hpp"
-#include "lab/formats/map/texts.hpp"
 
 namespace broadside::lab::readers {
 namespace {

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/json_check.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -155,7 +158,7 @@ void MapText::begin_feature() {
 
 std::size_t MapText::offset() {
   const char* place = nullptr;
-  // What is wrong with the text as a whole has no place in it.
+  // A fault of the text as a whole has no place in it.
   if (document_.current_location().get(place) != simdjson::SUCCESS) return end_;
   return static_cast<std::size_t>(place - bytes_.data());
 }
@@ -171,6 +174,31 @@ void MapText::refuse(simdjson::error_code error, std::string_view expected) {
                         error == simdjson::NUMBER_OUT_OF_RANGE;
   if (is_value) refuse(shown_json(std::string_view(bytes_).substr(offset())), expected);
   refuse(simdjson::error_message(error), expected);
+}
+
+std::string MapIds::of(MapText& text, json::object& feature) const {
+  if (!any()) return {};
+  if (name_ == "id") {
+    const std::optional<json::value> id = text.optional_field(feature, "id");
+    if (!id) text.refuse("a feature without a member 'id'", "one, or the name of a property with --ids");
+    return text.label(*id, "an id: a string or a number");
+  }
+  std::string_view property = name_;
+  constexpr std::string_view prefix = "properties.";
+  if (property.starts_with(prefix)) property.remove_prefix(prefix.size());
+  const std::optional<json::value> properties = text.optional_field(feature, "properties");
+  std::optional<json::value> id;
+  if (properties) {
+    json::object object = text.object(*properties, "an object of properties");
+    id = text.optional_field(object, property);
+  }
+  if (!id)
+    text.refuse(fmt::format("a feature without a property {}", shown(property)), "one, as --ids names it");
+  return text.label(*id, "an id: a string or a number");
+}
+
+void MapIds::refuse(MapText& text, std::string_view found) const {
+  if (any()) text.refuse(found, fmt::format("features, as --ids {} asks for their ids", name_));
 }
 
 }  // namespace broadside::lab

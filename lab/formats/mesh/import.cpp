@@ -1,6 +1,6 @@
 // Meshes through assimp: STL, glTF and what else it reads.
 //
-// Its parsers are not ours. What they throw is caught; that they survive every file nobody can promise.
+// Its parsers are not ours. What they throw is caught; whether they survive every file cannot be promised.
 #include <algorithm>
 #include <charconv>
 #include <cmath>

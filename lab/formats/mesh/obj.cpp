@@ -42,7 +42,7 @@ class ObjReader {
   }
 
  private:
-  /// The next line, with those that a backslash at its end joins to it.
+  /// The next line, with the lines that a backslash at its end joins to it.
   bool next_line() {
     if (at_ >= bytes_.size()) return false;
     joined_.clear();

@@ -86,7 +86,7 @@ class TraceWriter final : public FrameWriter<D, Real> {
   }
 
   void end_frame() {
-    // What is wrong with the stream, the caller says.
+    // The caller checks the stream.
     if ((!recorder_.end_frame() || !recorder_.error().empty()) && stream_) throw FileError(recorder_.error());
   }
 

@@ -17,7 +17,7 @@ namespace broadside::lab {
 /// Reads a trace frame by frame. Memory: that of one frame's changes, however long the trace, and never more
 /// than the bytes that are there justify, whatever they claim.
 ///
-/// What is wrong is refused with a FileError (lab/readers/format.hpp) that names the frame and the byte. One
+/// What is wrong is refused with a FileError (lab/formats/format.hpp) that names the frame and the byte. One
 /// thread at a time.
 class TraceReader {
  public:

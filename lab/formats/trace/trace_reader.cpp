@@ -134,7 +134,7 @@ void TraceReader::take_box(std::uint32_t slot, std::size_t at) {
   }
 }
 
-/// Reads the next `count` bytes, or those that are left; whether it was all.
+/// Reads the next `count` bytes, or what is left; returns whether it was all.
 bool TraceReader::read(std::uint64_t count) {
   begin_ += bytes_.size();
   bytes_.clear();

@@ -9,7 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/join.hpp"
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 
 namespace broadside::lab {
 namespace {

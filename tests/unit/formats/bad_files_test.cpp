@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 #include "tests/message.hpp"
 #include "tests/unit/boxes.hpp"
 #include "tests/unit/files.hpp"

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "lab/formats/decompressor.hpp"
+#include "lab/formats/byte_source.hpp"
 #include "lab/formats/format.hpp"
 #include "tests/message.hpp"
 #include "tests/unit/files.hpp"

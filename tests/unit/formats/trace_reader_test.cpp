@@ -19,7 +19,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/trace/trace.hpp"
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
 #include "tests/message.hpp"

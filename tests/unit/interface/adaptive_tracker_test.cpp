@@ -10,7 +10,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 
 namespace broadside {
 namespace {

@@ -10,7 +10,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 #include "lab/scenes/random.hpp"
 #include "tests/threads/executors.hpp"
 

@@ -9,6 +9,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/advise/snippet.hpp"
+#include "paper/listings/descriptions.hpp"
 
 // Each as a user pastes it, into a room of its own.
 namespace broadside::find_2d {
@@ -25,6 +26,9 @@ namespace broadside::track_2d {
 }
 namespace broadside::track_double_3d {
 #include "tests/unit/snippets/track_double_3d.inc"
+}
+namespace broadside::track_paper {
+#include "tests/unit/snippets/track_paper.inc"
 }
 
 namespace broadside::find_mine {
@@ -52,6 +56,7 @@ TEST(Snippet, IsWhatIsCompiledHere) {
   EXPECT_EQ(snippet("bvh", Mode::find, 2, twice), pasted("find_double_2d"));
   EXPECT_EQ(snippet("sweep_and_prune:update=follow", Mode::track, 2, single), pasted("track_2d"));
   EXPECT_EQ(snippet("auto", Mode::track, 3, twice), pasted("track_double_3d"));
+  EXPECT_EQ(snippet("paper_grid", Mode::track, 2, single), pasted("track_paper"));
   EXPECT_EQ(snippet("mine:axis=x", Mode::find, 2, single), pasted("find_mine"));
   EXPECT_EQ(snippet("mine", Mode::track, 3, twice), pasted("track_mine"));
 }
@@ -83,6 +88,10 @@ TEST(Snippet, FollowsBoxesInAWorld) {
   EXPECT_EQ(track_double_3d::update().ended.size(), 1u);
   track_double_3d::remove(box);
   EXPECT_EQ(track_double_3d::update().ended.size(), 0u);
+
+  track_paper::add({{0, 0}, {1, 1}});
+  track_paper::add({{1, 1}, {2, 2}});
+  EXPECT_EQ(track_paper::update().begun.size(), 1u);
 
   track_mine::add({{0, 0, 0}, {1, 1, 1}});
   track_mine::add({{1, 1, 1}, {2, 2, 2}});

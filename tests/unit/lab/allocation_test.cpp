@@ -1,6 +1,4 @@
 // Memory by counted allocation.
-#include "lab/measure/allocation.hpp"
-
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -9,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lab/measure/memory.hpp"
 #include "tests/unit/use.hpp"
 
 namespace broadside::lab {

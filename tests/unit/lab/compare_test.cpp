@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -186,6 +187,16 @@ TEST(Compare, TakesWhatAnAlgorithmThrowsForItsFailure) {
     const Measurement measurement = only(compare(catalogue, options_for("throws", {request})));
     EXPECT_EQ(measurement.outcome, Outcome::failed);
     EXPECT_EQ(measurement.reason, "throws threw: full");
+  }
+}
+
+TEST(Compare, SkipsAnAlgorithmThatRunsOutOfMemory) {
+  for (const CaseRequest& request : {small_still, small_moving}) {
+    Catalogue catalogue;
+    catalogue.add(spoilt("greedy", [](std::vector<Pair>&, std::size_t) { throw std::bad_alloc(); }));
+    const Measurement measurement = only(compare(catalogue, options_for("greedy", {request})));
+    EXPECT_EQ(measurement.outcome, Outcome::skipped);
+    EXPECT_EQ(measurement.reason, "out of memory; expected fewer boxes or pairs");
   }
 }
 

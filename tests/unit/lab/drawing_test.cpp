@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/report/drawing_paths.hpp"
-#include "lab/report/drawing_svg.hpp"
 #include "tests/unit/boxes.hpp"
 
 namespace broadside::lab {

@@ -1,10 +1,10 @@
 // Estimates of what would take too long.
-#include "lab/measure/estimate.hpp"
-
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "lab/measure/rounds.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -32,6 +32,7 @@ TEST(Whole, TakesWhatNoIntegerHolds) {
 
 TEST(Rounded, KeepsThreeDigits) {
   EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(7.1234e-9), "7.12e-09");
   EXPECT_EQ(rounded(0.071234), "0.0712");
   EXPECT_EQ(rounded(4.2149), "4.21");
   EXPECT_EQ(rounded(41.24), "41.2");

@@ -1,11 +1,11 @@
 // Whether a run had a processor to itself.
-#include "lab/measure/processor_share.hpp"
-
 #include <chrono>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "lab/measure/steadiness.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,7 +8,6 @@
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/report/json.hpp"
-#include "lab/report/phrases.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::lab {

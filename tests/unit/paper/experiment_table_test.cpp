@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/table.hpp"
 #include "tests/message.hpp"
 

@@ -42,7 +42,7 @@ Table race(const std::string& name, const std::string& brute_force, const std::v
 }
 
 std::vector<Table> races(const Curve& tests, const Curve& time) {
-  const std::vector<std::string> ours = {"grid", "sweep_and_prune", "quadtree", "hierarchical_grid", "bvh"};
+  const std::vector<std::string> ours = {"grid", "sweep_and_prune", "quadtree", "bvh"};
   return {race("paper", "paper_brute_force", {"paper_grid", "paper_sweep_and_prune", "paper_quadtree"}, tests,
                time),
           race("ours", "brute_force", ours, tests, time), race("ours_3d", "brute_force", ours, tests, time)};
@@ -91,8 +91,7 @@ std::vector<Table> worlds(double cell_bytes, const Curve& tests) {
     cells.add({world, "in a hash", 900.0});
     const double capped = std::min(world, 256.0);
     grids.add({world, "paper_grid:cell=2", 5000 + cell_bytes * capped * capped, tests(world), 1.0});
-    for (const char* grid : {"hierarchical_grid", "hierarchical_grid in 3D", "grid"})
-      grids.add({world, grid, 90e3, 10.0, 1.0});
+    for (const char* grid : {"grid", "grid in 3D"}) grids.add({world, grid, 90e3, 10.0, 1.0});
   }
   return {cells, grids};
 }
@@ -103,7 +102,7 @@ TEST(GridMemory, HoldsWhereMemoryGoesWithTheWorldAndTheCapWithTests) {
   EXPECT_NEAR(figure(finding, "bytes_a_cell"), 24, 1e-6);
   EXPECT_NEAR(figure(finding, "largest_matrix_bytes"), 24 * 4096.0 * 4096.0, 1);
   EXPECT_NEAR(figure(finding, "full_at_world"), std::sqrt(16e9 / 24), 1);
-  EXPECT_EQ(figure(finding, "hierarchical_grid_memory_growth"), 1);
+  EXPECT_EQ(figure(finding, "grid_memory_growth"), 1);
 }
 
 TEST(GridMemory, IsOfSmallCellsOnlyWhereLargeOnesCostNoTests) {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "paper/experiments/experiment.hpp"
-#include "paper/experiments/growth.hpp"
 #include "paper/experiments/mending.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -83,17 +83,6 @@ TEST(SweepAxisExperiment, RefusesTablesWithoutWhatItJudgesBy) {
   EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), axes(), short_growth}), std::invalid_argument);
 }
 
-/// Insertion takes 10 ns and what the places cost, a sort 40 ns.
-Table sorting(double nanoseconds_a_place) {
-  Table table{.name = "sorting", .title = {}, .columns = {{"sort"}, {"places moved a box"}, {"time a box"}}};
-  for (const double places : {0.1, 1.0, 10.0, 100.0}) {
-    table.add({"insertion", places, 10 + nanoseconds_a_place * places});
-    table.add({"sort anew", places, 40.0});
-    table.add({"heap", places, 60.0});
-  }
-  return table;
-}
-
 /// The places that boxes move grow with their number to the power of these exponents.
 Table order_growth(double in_corridor, double in_plane, double in_space) {
   Table table{.name = "growth",
@@ -111,19 +100,24 @@ Table order_growth(double in_corridor, double in_plane, double in_space) {
   return table;
 }
 
-Table motion_frames() {
-  Table table{.name = "frames", .title = {}, .columns = {{"motion"}, {"update"}, {"time"}}};
-  for (const std::string motion : {"0.1 sizes", "anywhere"}) {
-    table.add({motion, "insertion", 2.0});
-    table.add({motion, "heap", 1.0});
-    table.add({motion, "rebuild", 0.5});
+/// Mending takes 10 ms and this for each place by insertion, 40 ms by a sort, and the sweep another 100 ms.
+Table motion_frames(double milliseconds_a_place) {
+  Table table{.name = "frames",
+              .title = {},
+              .columns = {{"motion"}, {"update"}, {"places moved a box"}, {"mending"}, {"time"}}};
+  for (const double places : {0.1, 1.0, 10.0, 100.0}) {
+    const auto add = [&](const std::string& update, double mending) {
+      table.add({std::to_string(places), update, places, mending, mending + 100});
+    };
+    add("insertion", 10 + milliseconds_a_place * places);
+    add("rebuild", 40);
+    add("heap", 60);
   }
   return table;
 }
 
 TEST(SweepInsertionExperiment, HoldsWhenFewArePassedWhereMoreBoxesMeanMorePlaces) {
-  const Finding finding =
-      judged("sweep_insertion", {sorting(1), order_growth(1, 1.5, 1.67), motion_frames()});
+  const Finding finding = judged("sweep_insertion", {order_growth(1, 1.5, 1.67), motion_frames(1)});
   EXPECT_EQ(finding.verdict, Verdict::holds_when);
   // 10 + p crosses 40 at p = 30; between 10 and 100 places on straight lines of logarithms.
   EXPECT_EQ(finding.condition.find("a box passes fewer than about "), 0U) << finding.condition;
@@ -131,53 +125,41 @@ TEST(SweepInsertionExperiment, HoldsWhenFewArePassedWhereMoreBoxesMeanMorePlaces
 }
 
 TEST(SweepInsertionExperiment, HoldsWhereItIsLinearInEachWorldAndAlwaysAhead) {
-  EXPECT_EQ(judged("sweep_insertion", {sorting(0.1), order_growth(1, 1, 1.05), motion_frames()}).verdict,
+  EXPECT_EQ(judged("sweep_insertion", {order_growth(1, 1, 1.05), motion_frames(0.1)}).verdict,
             Verdict::holds);
 }
 
 TEST(SweepInsertionExperiment, DoesNotHoldWhereItIsNeverLinearOrNeverAhead) {
-  EXPECT_EQ(judged("sweep_insertion", {sorting(1), order_growth(1.5, 1.5, 1.6), motion_frames()}).verdict,
+  EXPECT_EQ(judged("sweep_insertion", {order_growth(1.5, 1.5, 1.6), motion_frames(1)}).verdict,
             Verdict::does_not_hold);
-  EXPECT_EQ(judged("sweep_insertion", {sorting(500), order_growth(1, 1.5, 1.6), motion_frames()}).verdict,
+  EXPECT_EQ(judged("sweep_insertion", {order_growth(1, 1.5, 1.6), motion_frames(500)}).verdict,
             Verdict::does_not_hold);
 }
 
 TEST(SweepInsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
   const Table growing = order_growth(1, 1.5, 1.67);
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing}), std::invalid_argument);
-  Table no_frames = motion_frames();
+  EXPECT_THROW(judged("sweep_insertion", {growing}), std::invalid_argument);
+  Table no_frames = motion_frames(1);
   no_frames.rows.clear();
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing, no_frames}), std::invalid_argument);
-  Table no_sorts = sorting(1);
-  no_sorts.rows.clear();
-  EXPECT_THROW(judged("sweep_insertion", {no_sorts, growing, motion_frames()}), std::invalid_argument);
+  EXPECT_THROW(judged("sweep_insertion", {growing, no_frames}), std::invalid_argument);
   Table one_number = growing;
   one_number.rows.resize(1);
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), one_number, motion_frames()}), std::invalid_argument);
+  EXPECT_THROW(judged("sweep_insertion", {one_number, motion_frames(1)}), std::invalid_argument);
 }
 
-/// A search takes 50 ns; what each place costs is moved beside it.
+/// A search takes 5 ns a comparison; what each place costs comes on top.
 Table reinsertion_growth(double nanoseconds_a_place) {
-  Table table{
-      .name = "growth",
-      .title = {},
-      .columns = {
-          {"boxes go"}, {"boxes"}, {"comparisons"}, {"places moved"}, {"searching"}, {"moving"}, {"time"}}};
+  Table table{.name = "growth",
+              .title = {},
+              .columns = {{"boxes go"}, {"boxes"}, {"comparisons"}, {"places moved"}, {"time"}}};
   for (const bool is_near : {true, false}) {
     for (const double boxes : {1'000.0, 16'000.0, 256'000.0}) {
-      const double places = is_near ? 1 : boxes / 3;
-      const double moving = nanoseconds_a_place * places;
-      table.add({is_near ? "a fifth of their size" : "anywhere", boxes, 2 * std::log2(boxes), places, 50.0,
-                 moving, 50 + moving});
+      const double comparisons = 2 * std::log2(boxes);
+      const double places = is_near ? std::sqrt(boxes) / 30 : boxes / 3;
+      table.add({is_near ? "a fifth of their size" : "anywhere", boxes, comparisons, places,
+                 5 * comparisons + nanoseconds_a_place * places});
     }
   }
-  return table;
-}
-
-Table heaps() {
-  Table table{.name = "heap", .title = {}, .columns = {{"sort"}, {"boxes"}, {"time a box"}}};
-  table.add({"heap", 1'000.0, 60.0});
-  table.add({"sort", 1'000.0, 40.0});
   return table;
 }
 
@@ -195,31 +177,26 @@ Table mover_frames() {
 }
 
 TEST(SweepReinsertionExperiment, HoldsWhereMovingNeverDominates) {
-  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(1e-6), heaps(), mover_frames()}).verdict,
-            Verdict::holds);
+  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(1e-6), mover_frames()}).verdict, Verdict::holds);
 }
 
 TEST(SweepReinsertionExperiment, HoldsWhenThereAreFewBoxesOrTheyStayNearWhereMovingDominatesOtherwise) {
-  const Finding finding = judged("sweep_reinsertion", {reinsertion_growth(0.02), heaps(), mover_frames()});
+  const Finding finding = judged("sweep_reinsertion", {reinsertion_growth(0.02), mover_frames()});
   EXPECT_EQ(finding.verdict_text(),
             "holds when there are fewer than about 7,500 boxes, or boxes stay near their places");
   EXPECT_NE(finding.reason.find("up to about 20.0 boxes"), std::string::npos) << finding.reason;
 }
 
 TEST(SweepReinsertionExperiment, DoesNotHoldWhereMovingAlwaysDominates) {
-  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(60), heaps(), mover_frames()}).verdict,
+  EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(60), mover_frames()}).verdict,
             Verdict::does_not_hold);
 }
 
 TEST(SweepReinsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), heaps()}), std::invalid_argument);
-  Table no_heaps = heaps();
-  no_heaps.rows.clear();
-  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), no_heaps, mover_frames()}),
-               std::invalid_argument);
+  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1)}), std::invalid_argument);
   Table near_only = reinsertion_growth(1);
   near_only.rows.resize(3);
-  EXPECT_THROW(judged("sweep_reinsertion", {near_only, heaps(), mover_frames()}), std::invalid_argument);
+  EXPECT_THROW(judged("sweep_reinsertion", {near_only, mover_frames()}), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // World: what it holds, what it gives back, and that a steady state takes no memory.
+#include "lab/measure/memory.hpp"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -13,7 +15,6 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
-#include "lab/measure/allocation.hpp"
 #include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {

@@ -6,7 +6,7 @@
 
 #include "broadside/world.hpp"
 
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 
 namespace broadside {
 namespace {

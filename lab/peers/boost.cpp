@@ -1,0 +1,123 @@
+// Boost.Geometry's R-tree as a finder, and its queries.
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
+#include <boost/version.hpp>
+
+#include "lab/peers/peers.hpp"
+#include "lab/peers/queries.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+namespace geometry = boost::geometry;
+
+template <int D>
+using BoostPoint = geometry::model::point<float, D, geometry::cs::cartesian>;
+template <int D>
+using BoostBox = geometry::model::box<BoostPoint<D>>;
+// Of its parameters a packed tree takes only how many values a node holds: as in Boost's own benchmark.
+template <int D>
+using BoostTree = geometry::index::rtree<std::pair<BoostBox<D>, std::uint32_t>, geometry::index::rstar<16>>;
+
+template <std::size_t D>
+BoostPoint<int{D}> boost_point(const std::array<float, D>& corner) {
+  if constexpr (D == 2)
+    return {corner[0], corner[1]};
+  else
+    return {corner[0], corner[1], corner[2]};
+}
+
+template <int D>
+BoostBox<D> boost_box(const Box<D>& box) {
+  return {boost_point(box.min), boost_point(box.max)};
+}
+
+template <int D>
+class BoostRtree final : public PairFinder<D> {
+ private:
+  using Value = typename BoostTree<D>::value_type;
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    values_.clear();
+    values_.reserve(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      values_.push_back({boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i)});
+    const BoostTree<D> tree(values_);  // made of a range, it is packed
+    // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
+    for (const Value& value : tree) {
+      const auto report = [&pairs, i = value.second](const Value& other) {
+        if (other.second > i) pairs.add(BoxId{i}, BoxId{other.second});
+      };
+      tree.query(geometry::index::intersects(value.first), boost::make_function_output_iterator(report));
+    }
+  }
+
+  std::vector<Value> values_;
+};
+
+namespace geometry = boost::geometry;
+
+template <int D>
+class BoostQueries final : public QueryPeer<D> {
+ public:
+  using Value = typename BoostTree<D>::value_type;
+
+  explicit BoostQueries(std::span<const Box<D>> boxes) {
+    std::vector<Value> values;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      values.emplace_back(boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i));
+    tree_ = BoostTree<D>(values);
+  }
+
+  std::string name() const override { return "boost_rtree"; }
+  bool has_boxes() const override { return true; }
+
+  Answers overlapping(std::span<const Box<D>> queries) override {
+    Answers answers;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const auto report = [&answers, i](const Value& value) { answers.add(i, BoxId{value.second}); };
+      tree_.query(geometry::index::intersects(boost_box<D>(queries[i])),
+                  boost::make_function_output_iterator(report));
+    }
+    return answers;
+  }
+
+ private:
+  BoostTree<D> tree_;
+};
+
+}  // namespace
+
+Algorithm boost_rtree() {
+  constexpr int version = BOOST_VERSION;
+  return {
+      .name = "boost_rtree",
+      .summary = "Boost.Geometry's R-tree, packed, and a query for each box",
+      .source = "Boost.Geometry.Index, after Leutenegger et al. 1997 and Garcia et al. 1998",
+      .version = "Boost " + std::to_string(version / 100'000) + "." + std::to_string(version / 100 % 1000),
+      .finder_2d = [](const Settings&) { return std::make_unique<BoostRtree<2>>(); },
+      .finder_3d = [](const Settings&) { return std::make_unique<BoostRtree<3>>(); },
+      .infinite_boxes = false,  // it compares their centres
+      .largest_coordinate = std::numeric_limits<float>::max(),
+  };
+}
+
+template <int D>
+std::unique_ptr<QueryPeer<D>> boost_queries(std::span<const Box<D>> boxes) {
+  return std::make_unique<BoostQueries<D>>(boxes);
+}
+
+template std::unique_ptr<QueryPeer<2>> boost_queries(std::span<const Box<2>>);
+template std::unique_ptr<QueryPeer<3>> boost_queries(std::span<const Box<3>>);
+
+}  // namespace broadside::lab::peers

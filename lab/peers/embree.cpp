@@ -1,0 +1,246 @@
+// Embree: rtcCollide joins a hierarchy of boxes with itself; rays go through it with the boxes as user
+// geometry.
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include "lab/peers/peers.hpp"
+#include "lab/peers/queries.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+/// Releases one of Embree's objects.
+struct EmbreeRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+
+/// A device, scene or geometry that is released with its owner.
+template <typename Handle>
+using EmbreeOwned = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
+
+RTCBounds bounds_of(const Box3& box) {
+  return {.lower_x = box.min[0],
+          .lower_y = box.min[1],
+          .lower_z = box.min[2],
+          .align0 = 0,
+          .upper_x = box.max[0],
+          .upper_y = box.max[1],
+          .upper_z = box.max[2],
+          .align1 = 0};
+}
+
+class EmbreeCollide final : public PairFinder<3> {
+ public:
+  EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
+    if (!device_) throw_error(nullptr);
+    scene_.reset(rtcNewScene(device_.get()));
+    geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+    rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_LOW);
+    rtcSetGeometryUserData(geometry_.get(), this);
+    rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
+    rtcAttachGeometry(scene_.get(), geometry_.get());
+    check();
+  }
+
+ private:
+  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+    if (boxes.size() < 2) return;
+    boxes_ = boxes;
+    pairs_ = &pairs;
+    thrown_ = nullptr;
+    // A device with one thread would hold all of the process to one; an arena with one holds what runs in it.
+    arena_.execute([this] {
+      // Searched once, a hierarchy built fast is worth more than a good one. But the fast builder ends the
+      // program where all boxes are one point.
+      const Box3& first = boxes_.front();
+      const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box3& box) {
+                                   return box.min == first.min && box.max == first.max;
+                                 });
+      rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
+      rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
+      rtcCommitGeometry(geometry_.get());
+      rtcCommitScene(scene_.get());
+      rtcCollide(scene_.get(), scene_.get(), report, this);
+    });
+    if (thrown_) std::rethrow_exception(thrown_);
+    check();
+  }
+
+  static void bound(const RTCBoundsFunctionArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeCollide*>(arguments->geometryUserPtr);
+    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
+  }
+
+  /// Takes pairs of leaves, both ways round; Embree does not promise that their boxes overlap.
+  static void report(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeCollide*>(user);
+    if (self.thrown_) return;
+    try {
+      for (const RTCCollision& collision : std::span(collisions, count)) {
+        const unsigned a = collision.primID0;
+        const unsigned b = collision.primID1;
+        if (a < b && overlap(self.boxes_[a], self.boxes_[b])) self.pairs_->add(BoxId{a}, BoxId{b});
+      }
+    } catch (...) {  // must not pass through Embree
+      self.thrown_ = std::current_exception();
+    }
+  }
+
+  void check() const {
+    if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw_error(device_.get());
+  }
+
+  [[noreturn]] static void throw_error(RTCDevice device) {
+    throw std::runtime_error("Embree reports error " + std::to_string(rtcGetDeviceError(device)) +
+                             "; expected none");
+  }
+
+  tbb::task_arena arena_{1};
+  EmbreeOwned<RTCDevice> device_;
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
+  std::span<const Box3> boxes_;  // of the search that is going on
+  PairSink* pairs_ = nullptr;
+  std::exception_ptr thrown_;
+};
+
+class EmbreeQueries final : public QueryPeer<3> {
+ public:
+  explicit EmbreeQueries(std::span<const Box3> boxes)
+      : boxes_(boxes), device_(rtcNewDevice("set_affinity=0")) {
+    if (!device_) throw std::runtime_error("Embree gave no device; expected one");
+    scene_.reset(rtcNewScene(device_.get()));
+    geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+    rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes.size()));
+    rtcSetGeometryUserData(geometry_.get(), this);
+    rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
+    rtcSetGeometryIntersectFunction(geometry_.get(), intersect);
+    rtcAttachGeometry(scene_.get(), geometry_.get());
+    tbb::task_arena(1).execute([this] {
+      rtcCommitGeometry(geometry_.get());
+      rtcCommitScene(scene_.get());
+    });
+    if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree reports an error; expected none");
+  }
+
+  std::string name() const override { return "embree"; }
+  bool has_rays() const override { return true; }
+
+  Answers first_hits(std::span<const Ray<3>> rays) override {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Search search(rays[i], nullptr, i);
+      RTCRayHit ray_hit = trace(search);
+      if (ray_hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) answers.add(i, BoxId{ray_hit.hit.primID});
+    }
+    return answers;
+  }
+
+  Answers all_hits(std::span<const Ray<3>> rays) override {
+    Answers answers;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Search search(rays[i], &answers, i);
+      trace(search);
+    }
+    return answers;
+  }
+
+ private:
+  /// What the callback gets to see: Embree hands its context on.
+  struct Search {
+    Search(const Ray<3>& searched, Answers* found, std::size_t number)
+        : ray(searched), answers(found), query(number) {
+      rtcInitIntersectContext(&context);
+      for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = 1 / ray.direction[axis];
+    }
+
+    RTCIntersectContext context;  // first, so that its address is the search's
+    const Ray<3>& ray;
+    Answers* answers;  // of all hits; null for the first one
+    std::size_t query;
+    std::array<float, 3> inverse;
+  };
+
+  RTCRayHit trace(Search& search) const {
+    const Ray<3>& ray = search.ray;
+    RTCRayHit ray_hit{};
+    ray_hit.ray.org_x = ray.origin[0];
+    ray_hit.ray.org_y = ray.origin[1];
+    ray_hit.ray.org_z = ray.origin[2];
+    ray_hit.ray.dir_x = ray.direction[0];
+    ray_hit.ray.dir_y = ray.direction[1];
+    ray_hit.ray.dir_z = ray.direction[2];
+    ray_hit.ray.tnear = 0;
+    ray_hit.ray.tfar = ray.t_max;
+    ray_hit.ray.mask = 0xffffffffU;
+    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &search.context, &ray_hit);
+    return ray_hit;
+  }
+
+  static void bound(const RTCBoundsFunctionArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
+    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
+  }
+
+  /// Slabs, with an inverse that was computed once a ray, as fast code does.
+  static void intersect(const RTCIntersectFunctionNArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
+    const auto& search = *reinterpret_cast<const Search*>(arguments->context);
+    const Box3& box = self.boxes_[arguments->primID];
+    auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);  // of one ray
+    float enter = 0;
+    float leave = ray_hit.ray.tfar;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float a = (box.min[axis] - search.ray.origin[axis]) * search.inverse[axis];
+      const float b = (box.max[axis] - search.ray.origin[axis]) * search.inverse[axis];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (!(enter <= leave)) return;
+    if (search.answers != nullptr) {
+      search.answers->add(search.query, BoxId{arguments->primID});
+      return;
+    }
+    ray_hit.ray.tfar = enter;
+    ray_hit.hit.geomID = arguments->geomID;
+    ray_hit.hit.primID = arguments->primID;
+  }
+
+  std::span<const Box3> boxes_;
+  EmbreeOwned<RTCDevice> device_;
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
+};
+
+}  // namespace
+
+Algorithm embree_collide() {
+  return {
+      .name = "embree_collide",
+      .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
+      .source = "Embree, rtcCollide",
+      .version = "Embree " RTC_VERSION_STRING,
+      .finder_3d = [](const Settings&) { return std::make_unique<EmbreeCollide>(); },
+      .infinite_boxes = false,
+      .largest_coordinate = 1.8e18,  // beyond 1.844e18 it drops boxes as invalid
+      .own_allocator = true,
+  };
+}
+
+std::unique_ptr<QueryPeer<3>> embree_queries(std::span<const Box3> boxes) {
+  return std::make_unique<EmbreeQueries>(boxes);
+}
+
+}  // namespace broadside::lab::peers

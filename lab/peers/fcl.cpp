@@ -1,0 +1,268 @@
+// FCL's broad-phase managers as finders: all objects are registered at once, then collide() runs once.
+// description.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <fcl/broadphase/broadphase_SSaP.h>
+#include <fcl/broadphase/broadphase_SaP.h>
+#include <fcl/broadphase/broadphase_collision_manager.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/broadphase/broadphase_spatialhash.h>
+#include <fcl/broadphase/detail/sparse_hash_table.h>
+#include <fcl/broadphase/detail/spatial_hash.h>
+#include <fcl/config.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include "broadside/algorithm.hpp"
+
+#include "lab/peers/callback_sink.hpp"
+#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peers.hpp"
+#include "lab/peers/typical_extent.hpp"
+
+namespace broadside::lab::peers {
+namespace {
+
+/// An object that is nothing but its bounds.
+class FclObject final : public fcl::CollisionObjectd {
+ public:
+  /// What has no geometry can be in a manager and must not be asked for by itself.
+  explicit FclObject(BoxId id, const std::shared_ptr<fcl::CollisionGeometryd>& geometry = nullptr)
+      : fcl::CollisionObject<double>(geometry), id_(id) {}
+
+  BoxId id() const { return id_; }
+  void set(const Box3& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      aabb.min_[axis] = box.min[axis];
+      aabb.max_[axis] = box.max[axis];
+    }
+  }
+
+  /// Makes the bounds larger by less than floats lie apart.
+  void widen() {
+    const auto gap = [](double at) { return std::abs(at) * 0x1p-45 + 0x1p-300; };
+    for (int axis = 0; axis < 3; ++axis) {
+      aabb.min_[axis] -= gap(aabb.min_[axis]);
+      aabb.max_[axis] += gap(aabb.max_[axis]);
+    }
+  }
+
+ private:
+  BoxId id_;
+};
+
+/// What a search hands through to its callback, which drops what a manager tells beyond the overlapping
+/// pairs.
+struct FclSearch {
+  std::span<const Box3> boxes;
+  CallbackSink pairs;
+
+  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data) {
+    auto& search = *static_cast<FclSearch*>(data);
+    const BoxId a = static_cast<FclObject*>(first)->id();
+    const BoxId b = static_cast<FclObject*>(second)->id();
+    constexpr bool stop = true;
+    if (overlap(search.boxes[index(a)], search.boxes[index(b)]) && !search.pairs.add(a, b)) return stop;
+    return !stop;
+  }
+};
+
+using FclManager = std::unique_ptr<fcl::BroadPhaseCollisionManagerd>;
+/// Makes an empty manager that suits `boxes`.
+using MakeManager = FclManager (*)(std::span<const Box3> boxes);
+
+class FclFinder final : public PairFinder<3> {
+ public:
+  FclFinder(MakeManager make, bool widened) : make_(make), widened_(widened) {}
+
+ private:
+  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+    objects_.reserve(boxes.size());
+    for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i));
+    pointers_.clear();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      objects_[i].set(boxes[i]);
+      if (widened_) objects_[i].widen();
+      pointers_.push_back(&objects_[i]);
+    }
+    const FclManager manager = make_(boxes);
+    manager->registerObjects(pointers_);
+    manager->setup();
+    FclSearch search{boxes, CallbackSink(pairs)};
+    manager->collide(&search, FclSearch::take);
+    search.pairs.finish();
+  }
+
+  MakeManager make_;
+  bool widened_;
+  std::vector<FclObject> objects_;  // by place; more than there are boxes, once there were more
+  std::vector<fcl::CollisionObjectd*> pointers_;
+};
+
+/// The description of a manager: a finder that fills a new one in each call. `widened` if it goes wrong where
+/// two bounds are equal.
+Algorithm fcl_manager(MakeManager make, bool widened = false) {
+  return {
+      .name = {},
+      .summary = {},
+      .source = {},
+      .kind = AlgorithmKind::peer,
+      .version = "FCL " FCL_VERSION,
+      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder>(make, widened); },
+      .infinite_boxes = false,
+  };
+}
+
+std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> make_tree() {
+  auto tree = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
+  tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
+  return tree;
+}
+
+class FclTreeTracker final : public PeerTracker<3> {
+ private:
+  void build(std::span<const Box3> boxes, std::span<const Box3>) override {
+    tree_ = make_tree();
+    objects_.clear();
+    pointers_.clear();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (is_present(boxes[i])) pointers_.push_back(&put(BoxId(i), boxes[i]));
+    }
+    tree_->registerObjects(pointers_);
+    tree_->setup();
+  }
+
+  void move(const Change<3>& change) override {
+    pointers_.clear();
+    std::vector<fcl::CollisionObjectd*> added;
+    for (const BoxId id : change.changed) {
+      const bool before = is_present(change.before[index(id)]);
+      const bool now = is_present(change.now[index(id)]);
+      if (before && !now) tree_->unregisterObject(&objects_[index(id)]);
+      if (now) (before ? pointers_ : added).push_back(&put(id, change.now[index(id)]));
+    }
+    tree_->registerObjects(added);
+    tree_->update(pointers_);
+  }
+
+  void collide(const Change<3>& change, PairSink& pairs) override {
+    FclSearch search{change.now, CallbackSink(pairs)};
+    // One by one where few changed: all against each other takes time for resting boxes as well.
+    constexpr std::size_t few = 4;
+    if (change.changed.size() < change.now.size() / few) {
+      Query query{&search, change.flags};
+      for (const BoxId id : change.changed) {
+        if (is_present(change.now[index(id)])) tree_->collide(&objects_[index(id)], &query, Query::take);
+      }
+    } else {
+      tree_->collide(&search, FclSearch::take);
+    }
+    search.pairs.finish();
+  }
+
+  /// The search for the pairs of one object that changed.
+  struct Query {
+    FclSearch* search;
+    std::span<const std::uint8_t> changed;
+
+    static bool take(fcl::CollisionObjectd* other, fcl::CollisionObjectd* asked, void* data) {
+      const auto& query = *static_cast<Query*>(data);
+      const BoxId a = static_cast<FclObject*>(other)->id();
+      const BoxId b = static_cast<FclObject*>(asked)->id();
+      // It finds itself, and another one that changed will find it in turn.
+      constexpr bool stop = true;
+      if (a == b || (query.changed[index(a)] != 0 && a < b)) return !stop;
+      return FclSearch::take(other, asked, query.search);
+    }
+  };
+
+  FclObject& put(BoxId id, const Box3& box) {
+    while (objects_.size() <= index(id)) objects_.emplace_back(BoxId(objects_.size()), geometry_);
+    objects_[index(id)].set(box);
+    return objects_[index(id)];
+  }
+
+  // What an object must have to be asked for by itself; its size is of no interest.
+  std::shared_ptr<fcl::CollisionGeometryd> geometry_ = std::make_shared<fcl::Sphered>(1);
+  std::deque<FclObject> objects_;  // by place
+  std::vector<fcl::CollisionObjectd*> pointers_;
+  std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> tree_;  // points into them
+};
+
+// As in FCL's own tests: a table that grows, over the bounds of all objects.
+using Table = fcl::detail::SparseHashTable<fcl::AABBd, fcl::CollisionObjectd*, fcl::detail::SpatialHashd>;
+using Manager = fcl::SpatialHashingCollisionManager<double, Table>;
+
+FclManager make_hash(std::span<const Box3> boxes) {
+  const double cell = std::exp2(std::ceil(std::log2(cell_size(boxes, 1))));
+  // A box that ends on a cell's border is not inserted into the next cell, where a box that touches it
+  // begins. With cells of a power of two that start at an odd multiple of 2^-30 cells, no float lies on a
+  // border.
+  constexpr double offset = 0.40625 + 0x1p-30;
+  fcl::Vector3d min = fcl::Vector3d::Zero();
+  fcl::Vector3d max = fcl::Vector3d::Zero();
+  for (int axis = 0; axis < 3 && !boxes.empty(); ++axis) {
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -least;
+    for (const Box3& box : boxes) {
+      least = std::min<double>(least, box.min[axis]);
+      greatest = std::max<double>(greatest, box.max[axis]);
+    }
+    min[axis] = (std::floor(least / cell) - 1 + offset) * cell;
+    max[axis] = (std::ceil(greatest / cell) + 1 + offset) * cell;
+  }
+  return std::make_unique<Manager>(cell, min, max);
+}
+
+}  // namespace
+
+Algorithm fcl_dynamic_aabb_tree() {
+  Algorithm algorithm = fcl_manager([](std::span<const Box3>) -> FclManager { return make_tree(); });
+  algorithm.name = "fcl_dynamic_aabb_tree";
+  algorithm.summary = "FCL's dynamic tree of boxes, built at once in the order of Morton codes";
+  algorithm.source = "FCL, DynamicAABBTreeCollisionManager";
+  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker>(); };
+  return algorithm;
+}
+
+// It finds pairs when objects are registered, and loses pairs that only touch, since equal end points are in
+// no order: therefore the widened bounds. Its update() looks for each pair through the list of all, and
+// taking an object out reads what was erased, so motion is followed by registering all again.
+Algorithm fcl_sap() {
+  constexpr bool widened = true;
+  Algorithm algorithm = fcl_manager(
+      [](std::span<const Box3>) -> FclManager { return std::make_unique<fcl::SaPCollisionManagerd>(); },
+      widened);
+  algorithm.name = "fcl_sap";
+  algorithm.summary = "FCL's sweep and prune: sorted lists of end points, from which the pairs are kept";
+  algorithm.source = "FCL, SaPCollisionManager, after I-COLLIDE";
+  return algorithm;
+}
+
+Algorithm fcl_ssap() {
+  Algorithm algorithm = fcl_manager(
+      [](std::span<const Box3>) -> FclManager { return std::make_unique<fcl::SSaPCollisionManagerd>(); });
+  algorithm.name = "fcl_ssap";
+  algorithm.summary =
+      "FCL's simple sweep and prune: lists of the boxes sorted on each axis, a sweep along one";
+  algorithm.source = "FCL, SSaPCollisionManager";
+  return algorithm;
+}
+
+Algorithm fcl_spatial_hash() {
+  Algorithm algorithm = fcl_manager(make_hash);
+  algorithm.name = "fcl_spatial_hash";
+  algorithm.summary =
+      "FCL's spatial hashing: boxes in every cell they touch, each box looked up in all its cells";
+  algorithm.source = "FCL, SpatialHashingCollisionManager";
+  return algorithm;
+}
+
+}  // namespace broadside::lab::peers

@@ -1,0 +1,148 @@
+// What templates may name of the comparison with other libraries.
+import { bestOwn, ranking, type Case } from "../../web/charts/comparison.ts";
+import {
+  drawLeads,
+  drawLibraries,
+  drawScaling,
+  drawStandings,
+  drawWinners,
+  scaledScenes,
+} from "../../web/charts/comparison_charts.ts";
+import type { Comparison, Ratio } from "../../web/charts/data.ts";
+import type { Drawn, Place } from "../../web/charts/frame.ts";
+import { geometricMean, ratioText, rounded } from "../../web/charts/numbers.ts";
+import { intervalOf, intervalText, isFaster } from "../../web/charts/ratios.ts";
+import { greatest, least, leadsOf, type Facts } from "./facts.ts";
+import { plain, tableText } from "./markdown.ts";
+import { listed, Problem } from "./problem.ts";
+import { shown } from "./words.ts";
+
+const mean = (all: readonly { ratio: Ratio }[]) => rounded(geometricMean(all.map(({ ratio }) => ratio.median)));
+
+export function comparisonData(facts: Facts, comparison: Comparison): Record<string, unknown> {
+  const { command, build, busy, measurements } = comparison;
+  const { cases, leads, choices } = facts;
+  const worst = greatest(choices);
+  const peers = facts.standings.filter((standing) => standing.kind === "peer");
+  return {
+    /** Whether ratios are of times taken in the same round, with an interval. */
+    paired: measurements.some(({ ratio_to_fastest: ratio }) => ratio !== null && intervalOf(ratio) !== undefined),
+    busy: busy === true,
+    cases: shown(cases.length),
+    still_cases: shown(facts.still.length),
+    moving_cases: shown(facts.moving.length),
+    measurements: shown(facts.timed),
+    skipped: shown(facts.skipped),
+    peers: shown(peers.length),
+    cases_with_a_peer: shown(leads.length),
+    mean_lead: mean(leads),
+    mean_lead_still: mean(leadsOf(facts.still)),
+    mean_lead_moving: mean(leadsOf(facts.moving)),
+    least_lead: ratioText(least(leads).ratio.median),
+    least_lead_interval: intervalText(least(leads).ratio),
+    least_lead_case: least(leads).of.name,
+    least_lead_peer: least(leads).peer.algorithm,
+    greatest_lead: ratioText(greatest(leads).ratio.median),
+    greatest_lead_interval: intervalText(greatest(leads).ratio),
+    greatest_lead_case: greatest(leads).of.name,
+    lost: shown(facts.lost.length),
+    level: shown(facts.level.length),
+    auto_mean: mean(choices),
+    auto_worst: ratioText(worst.ratio.median),
+    auto_worst_case: worst.of.name,
+    command: command.join(" "),
+    revision: build.revision,
+  };
+}
+
+function casesNamed(facts: Facts, which: string): Case[] {
+  const groups: Record<string, Case[]> = { still: facts.still, moving: facts.moving };
+  const found = groups[which];
+  if (!found) throw new Problem(`no cases '${which}'; there are ${listed(Object.keys(groups))}`);
+  return found;
+}
+
+/** Which of ours other than auto, of the peers and of the draft's is fastest in each case. */
+export function leadsTable(facts: Facts, which: string): string {
+  return tableText(
+    ["boxes", "ours", " ms", "fastest peer", " ms", " lead", "fastest of the draft's", " ms"],
+    casesNamed(facts, which).map((of) => {
+      const fastest = (kind: string) => {
+        const found = kind === "own" ? bestOwn(of) : ranking(of).find((measurement) => measurement.kind === kind);
+        return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
+      };
+      const ratio = leadsOf([of])[0]?.ratio;
+      const lead = ratio === undefined ? "-" : intervalText(ratio);
+      return [
+        plain(of.name),
+        ...fastest("own"),
+        ...fastest("peer"),
+        ratio !== undefined && isFaster(ratio) ? `**${lead}**` : lead,
+        ...fastest("paper"),
+      ];
+    }),
+  );
+}
+
+/** The cases in which a peer is faster than our best, as a list; a sentence where there is none. */
+export function lostList({ lost }: Facts): string {
+  if (lost.length === 0) return "In no case was a peer faster than our best.";
+  return lost
+    .map(
+      ({ of, own, peer, ratio }) =>
+        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, our best, \`${own.algorithm}\`, ` +
+        `${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
+    )
+    .join("\n");
+}
+
+const kinds: Record<string, string> = { own: "ours", paper: "the draft's", peer: "peer", user: "user's" };
+
+export function standingsTable(facts: Facts): string {
+  return tableText(
+    ["algorithm", "whose", " cases", " fastest in", " ratio to the fastest"],
+    facts.standings.map(({ algorithm, kind, cases, fastest, ratio }) => [
+      `\`${algorithm}\``,
+      kinds[kind] ?? kind,
+      shown(cases),
+      shown(fastest),
+      rounded(ratio),
+    ]),
+  );
+}
+
+export interface NamedChart {
+  caption: string;
+  draw: (place: Place) => Drawn;
+}
+
+/** The charts of the comparison, by name. */
+export function comparisonCharts(facts: Facts): Record<string, NamedChart> {
+  const charts: Record<string, NamedChart> = {
+    standings: {
+      caption: "Times as multiples of the fastest's, geometric mean of the cases that an algorithm does",
+      draw: (place) => drawStandings(facts.cases, place),
+    },
+    libraries: {
+      caption: "`auto` and the best algorithm of each other library: times as multiples of the fastest algorithm's, " +
+        "geometric mean of the cases that an algorithm does",
+      draw: (place) => drawLibraries(facts.cases, place),
+    },
+    leads_still: {
+      caption: "Boxes that rest: time of the fastest peer over that of our best, in the colour of the latter",
+      draw: (place) => drawLeads(facts.still, place),
+    },
+    leads_moving: {
+      caption: "Boxes that move: time of the fastest peer over that of our best, in the colour of the latter",
+      draw: (place) => drawLeads(facts.moving, place),
+    },
+    winners: { caption: "The fastest in each case", draw: (place) => drawWinners(facts.cases, place) },
+  };
+  for (const scene of scaledScenes(facts.still)) {
+    charts[`scaling_${scene.scene}_${scene.dimension}d`] = {
+      caption: `Time over the number of boxes: ${scene.scene}, ${scene.dimension}D; ours, the draft's and the peers'`,
+      draw: (place) => drawScaling(facts.still, scene, place, ["own", "paper", "peer"], 12),
+    };
+  }
+  return charts;
+}

@@ -1,0 +1,176 @@
+// What templates may name: the machine, the experiments and what they came to, the comparison, figures and sources.
+import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../../web/charts/data.ts";
+import type { Drawn, Place } from "../../web/charts/frame.ts";
+import { drawTableChart } from "../../web/charts/table_chart.ts";
+import { comparisonCharts, comparisonData, leadsTable, lostList, standingsTable } from "./comparison_names.ts";
+import { figuresTable, machineData, resultsTable, sectionText, verdictText, verdictsTable } from "./experiment_names.ts";
+import { factsOf, type Facts } from "./facts.ts";
+import type { Names } from "./fill.ts";
+import { plain } from "./markdown.ts";
+import { Numbering } from "./numbering.ts";
+import { listed, Problem } from "./problem.ts";
+import { shown, withUnit } from "./words.ts";
+
+/** A figure of the paper. */
+export interface Drawing {
+  caption: string;
+  draw: (place: Place) => Drawn;
+}
+
+/** What `key` is among `all`. Throws Problem naming those there are. */
+function oneOf<Thing>(all: Record<string, Thing>, key: string, what: string): Thing {
+  const thing = Object.hasOwn(all, key) ? all[key] : undefined;
+  if (thing === undefined) throw new Problem(`no ${what} '${key}'; there are ${listed(Object.keys(all))}`);
+  return thing;
+}
+
+const by = <Thing>(all: readonly Thing[], key: (thing: Thing) => string): Record<string, Thing> =>
+  Object.fromEntries(all.map((thing) => [key(thing), thing]));
+
+/** A drawing's name, which is its file's: short, and unique where names of experiments and tables are. */
+function drawingName(experiment: Experiment, table: Table, chart: ChartSpec): string {
+  const name = `${experiment.name}_${table.name}`;
+  return table.charts.length === 1 ? name : `${name}_${table.charts.indexOf(chart) + 1}`;
+}
+
+/** The chart's title, and the table's where that says more. */
+function captionOf(table: Table, chart: ChartSpec): string {
+  const [begin = ""] = table.title.split(/[:;,]/, 1);
+  return chart.kind === "map" || chart.title.includes(begin) ? chart.title : `${chart.title}. ${table.title}`;
+}
+
+/** Results as templates name them. What is drawn, and how figures and sources are numbered, is kept here. */
+export class Paper {
+  /** Of the pass that is going on, by the name of its file. */
+  readonly drawings = new Map<string, Drawing>();
+  private readonly figures = new Numbering("figure");
+  private readonly sources = new Numbering("source");
+  private readonly cited = new Set<string>();
+  private readonly experiments: Record<string, Experiment>;
+  private readonly facts: Facts;
+
+  constructor(
+    private readonly results: Experiments,
+    private readonly comparison: Comparison,
+    comparison_file: string,
+    private readonly pictures: readonly string[],
+  ) {
+    this.experiments = by(results.experiments, (experiment) => experiment.name);
+    this.facts = factsOf(comparison, comparison_file);
+  }
+
+  /** Ends a pass over all templates: after the first, numbers of figures and sources are known. */
+  endPass(): void {
+    this.figures.endPass();
+    this.sources.endPass();
+  }
+
+  beginPass(): void {
+    this.drawings.clear();
+  }
+
+  /** Sources that no template cites. */
+  uncited(): string[] {
+    return this.sources.all().filter((source) => !this.cited.has(source));
+  }
+
+  private experiment(name: string): Experiment {
+    return oneOf(this.experiments, name, "experiment");
+  }
+
+  private table(experiment: string, name: string): Table {
+    const tables = by(this.experiment(experiment).tables, (table) => table.name);
+    return oneOf(tables, name, `table in the experiment '${experiment}':`);
+  }
+
+  private figure(experiment: string, name: string): { value: number; unit: string } {
+    return oneOf(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
+  }
+
+  private show(path: string, name: string, caption: string): string {
+    const alternative = caption.replace(/[[\]]/g, "");
+    return `![${alternative}](${path})\n\n*Figure ${this.figures.next(name)}. ${plain(caption)}*`;
+  }
+
+  private draw(name: string, drawing: Drawing): string {
+    this.drawings.set(name, drawing);
+    return this.show(`figures/${name}.svg`, name, drawing.caption);
+  }
+
+  private drawChart(experiment: Experiment, table: Table, chart: ChartSpec): string {
+    const draw = (place: Place) => drawTableChart(table, chart, place);
+    return this.draw(drawingName(experiment, table, chart), { caption: captionOf(table, chart), draw });
+  }
+
+  private see(names: readonly string[]): string {
+    const numbers = this.figures.numbersOf(names).map(String);
+    return `${numbers.length === 1 ? "Figure" : "Figures"} ${listed(numbers)}`;
+  }
+
+  names(): Names {
+    const of = (name: string) => this.experiment(name);
+    const value = (experiment: string, name: string) => this.figure(experiment, name).value;
+    const comparison = comparisonCharts(this.facts);
+    return {
+      data: { ...machineData(this.results), comparison: comparisonData(this.facts, this.comparison) },
+      helpers: {
+        heading: (experiment) =>
+          `<a id="${of(experiment).name}"></a>Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
+        number: (experiment) => `[${of(experiment).number}](#${of(experiment).name})`,
+        claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${sectionText(of(experiment).section)})`,
+        measured: (experiment) => plain(of(experiment).measured),
+        verdict: (experiment) => plain(verdictText(of(experiment))),
+        reason: (experiment) => plain(of(experiment).reason),
+        figure: (experiment, name) => {
+          const figure = this.figure(experiment, name);
+          return withUnit(figure.value, figure.unit);
+        },
+        value: (experiment, name) => shown(value(experiment, name)),
+        table: (experiment, name) => resultsTable(this.table(experiment, name)),
+        chart: (experiment, name, title) => {
+          const table = this.table(experiment, name);
+          const charts = by(table.charts, (chart) => chart.title);
+          return this.drawChart(of(experiment), table, oneOf(charts, title, `chart of the table '${name}':`));
+        },
+        charts: (experiment) =>
+          of(experiment)
+            .tables.flatMap((table) => table.charts.map((chart) => this.drawChart(of(experiment), table, chart)))
+            .join("\n\n"),
+        see: (experiment) =>
+          this.see(
+            of(experiment).tables.flatMap((table) =>
+              table.charts.map((chart) => drawingName(of(experiment), table, chart)),
+            ),
+          ),
+        verdicts: () => verdictsTable(this.results),
+        all_figures: () => figuresTable(this.results),
+        holds: (experiment) => of(experiment).verdict === "holds",
+        holds_when: (experiment) => of(experiment).verdict === "holds when",
+        fails: (experiment) => of(experiment).verdict === "does not hold",
+        given: (experiment, name) => Object.hasOwn(of(experiment).figures, name),
+        less: (experiment, first, second) => value(experiment, first) < value(experiment, second),
+        scene: (name) => {
+          const scenes = by(this.facts.cases, (one) => one.scene.split(":")[0]!);
+          oneOf(scenes, name, "scene in the comparison:");
+          return `\`${name}\``;
+        },
+        leads: (which) => leadsTable(this.facts, which),
+        lost: () => lostList(this.facts),
+        any_lost: () => this.facts.lost.length > 0,
+        any_level: () => this.facts.level.length > 0,
+        standings: () => standingsTable(this.facts),
+        picture: (name, caption) => {
+          const path = `../pictures/${oneOf(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
+          return this.show(path, `picture ${name}`, caption);
+        },
+        comparison_chart: (name) => this.draw(`comparison_${name}`, oneOf(comparison, name, "chart of the comparison")),
+        see_comparison: (name) => this.see([`comparison_${name}`]),
+        cite: (source) => {
+          this.cited.add(source);
+          return `[[${this.sources.numberOf(source)}]](#${source})`;
+        },
+        source: (source) => `${this.sources.next(source)}. <a id="${source}"></a>`,
+      },
+    };
+  }
+}

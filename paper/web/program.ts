@@ -1,0 +1,107 @@
+// The program that makes the paper: its arguments, files read and written.
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
+import { basename, dirname, join } from "node:path";
+
+import { documentOf, type Document } from "./document.ts";
+import { listed, Problem } from "./problem.ts";
+
+/** Where texts go. */
+export interface Print {
+  out: (text: string) => void;
+  error: (text: string) => void;
+}
+
+const usage = `usage: paper.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER
+Fills TEMPLATES/*.md from the results of broadside experiment and broadside compare (JSON), and writes
+FOLDER/paper.md and FOLDER/figures/*.svg. With --check nothing is written: the exit status says whether
+they are what would be.
+`;
+
+function read(file: string, what: string): string {
+  try {
+    return readFileSync(file, "utf8");
+  } catch (error) {
+    throw new Problem(`${file}: ${(error as Error).message}; expected ${what}`);
+  }
+}
+
+function namesIn(folder: string, ending: string): string[] {
+  try {
+    return readdirSync(folder)
+      .filter((name) => name.endsWith(ending))
+      .sort();
+  } catch (error) {
+    throw new Problem(`${folder}: ${(error as Error).message}; expected a folder`);
+  }
+}
+
+function figuresIn(folder: string): string[] {
+  const figures = join(folder, "figures");
+  return existsSync(figures) ? namesIn(figures, ".svg").map((name) => `figures/${name}`) : [];
+}
+
+/** Names what differs between the folder and the document. */
+function differences(document: Document, folder: string): string[] {
+  const stale = figuresIn(folder).filter((path) => !document.has(path));
+  const other = [...document].filter(([path, text]) => {
+    try {
+      return readFileSync(join(folder, path), "utf8") !== text;
+    } catch {
+      return true;
+    }
+  });
+  return [...other.map(([path]) => path), ...stale];
+}
+
+/** Each file is written beside the old one and renamed, the text last. */
+function write(document: Document, folder: string): void {
+  const stale = figuresIn(folder).filter((path) => !document.has(path));
+  mkdirSync(join(folder, "figures"), { recursive: true });
+  for (const [path, text] of document) {
+    const file = join(folder, path);
+    writeFileSync(join(dirname(file), `.${basename(file)}.new`), text);
+  }
+  for (const path of [...document.keys()].reverse()) {
+    const file = join(folder, path);
+    renameSync(join(dirname(file), `.${basename(file)}.new`), file);
+  }
+  for (const path of stale) rmSync(join(folder, path));
+}
+
+function documentFrom(experiments: string, comparison: string, templates: string, folder: string): Document {
+  const pictures = join(folder, "..", "pictures");
+  return documentOf({
+    templates: namesIn(templates, ".md").map((name) => {
+      const file = join(templates, name);
+      return { file, text: read(file, "a template") };
+    }),
+    experiments: { file: experiments, text: read(experiments, "results of broadside experiment --json") },
+    comparison: { file: comparison, text: read(comparison, "results of broadside compare --json") },
+    pictures: existsSync(pictures) ? namesIn(pictures, ".svg") : [],
+  });
+}
+
+/** Returns the exit status: 0 fine, 1 not what would be written, 2 unusable arguments or input. */
+export function run(words: readonly string[], print: Print): number {
+  const check = words[0] === "--check";
+  const [experiments, comparison, templates, folder, ...more] = check ? words.slice(1) : words;
+  if (!experiments || !comparison || !templates || !folder || more.length > 0) {
+    print.error(usage);
+    return 2;
+  }
+  try {
+    const document = documentFrom(experiments, comparison, templates, folder);
+    const different = differences(document, folder);
+    if (check && different.length > 0) {
+      print.error(`${folder} is not what make paper writes: ${listed(different)}; expected no difference\n`);
+      return 1;
+    }
+    if (!check) write(document, folder);
+    print.out(`${join(folder, "paper.md")}: ${document.size - 1} figures, ${different.length} files new or changed\n`);
+    return 0;
+  } catch (error) {
+    if (!(error instanceof Problem)) throw error;
+    print.error(`make paper: ${error.message}\n`);
+    return 2;
+  }
+}

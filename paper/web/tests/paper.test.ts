@@ -1,0 +1,232 @@
+// The paper is made of its templates and results, and of nothing that is wrong in either.
+import assert from "node:assert/strict";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+
+import { documentOf } from "../document.ts";
+import { Problem } from "../problem.ts";
+import { run } from "../program.ts";
+import { comparison, experiments, oldComparison } from "./fixture.ts";
+
+interface Given {
+  experiments?: string;
+  comparison?: string;
+}
+
+function paper(template: string, given: Given = {}): Map<string, string> {
+  return documentOf({
+    templates: [{ file: "07_testing.md", text: template }],
+    experiments: { file: "e.json", text: given.experiments ?? JSON.stringify(experiments()) },
+    comparison: { file: "c.json", text: given.comparison ?? JSON.stringify(comparison()) },
+    pictures: ["grid.svg"],
+  });
+}
+
+/** The text without its first line, which says what it is made from. */
+const textOf = (template: string, given: Given = {}) =>
+  paper(template, given).get("paper.md")!.split("\n").slice(2).join("\n").trim();
+
+/** A test's name, a template and what the message has to hold. */
+function refuses(name: string, template: string, message: RegExp, given: Given = {}): void {
+  test(name, () => {
+    assert.throws(
+      () => paper(template, given),
+      (error) => {
+        assert.ok(error instanceof Problem, String(error));
+        assert.match(error.message, message);
+        return true;
+      },
+    );
+  });
+}
+
+test("figures are quoted with their unit", () => {
+  assert.equal(textOf('{{figure "tests" "crossover"}}, {{figure "tests" "memory"}}'), "12 boxes, 2.76 MB");
+  assert.equal(textOf('{{value "tests" "crossover"}}'), "12");
+});
+
+test("a verdict is quoted with its condition", () => {
+  assert.equal(textOf('{{verdict "tests"}}'), "holds when there are more than 12 boxes");
+});
+
+test("text follows the verdict", () => {
+  const template = '{{#if (holds_when "tests")}}sometimes{{else}}{{#if (fails "tests")}}never{{/if}}{{/if}}';
+  assert.equal(textOf(template), "sometimes");
+  const other = experiments();
+  other.experiments[0]!.verdict = "does not hold";
+  assert.equal(textOf(template, { experiments: JSON.stringify(other) }), "never");
+});
+
+test("the machine is named", () => {
+  assert.equal(textOf("{{machine.cpu}}, {{machine.cores}} cores, {{machine.memory}}"), "A CPU, 2 cores, 4 GB");
+});
+
+test("what would be Markdown in results is shown as it is", () => {
+  assert.match(textOf('{{claim "tests"}}'), /n\\\*n tests/);
+  assert.match(textOf("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
+});
+
+test("tables have a row a line and nothing where nothing is known", () => {
+  assert.equal(
+    textOf('{{table "tests" "times"}}'),
+    "| boxes | time (ms) |\n| ---: | ---: |\n| 10 | 1.23 |\n| 100 | - |\n| 1,000 | 123 |",
+  );
+});
+
+test("charts are numbered, drawn and referred to before they stand there", () => {
+  const made = paper('See {{see "tests"}}.\n\n{{charts "tests"}}');
+  assert.match(made.get("paper.md")!, /See Figure 1\./);
+  const [name] = [...made.keys()].filter((path) => path !== "paper.md");
+  assert.equal(name, "figures/tests_times.svg");
+  assert.match(made.get(name!)!, /^<svg[^>]*><title>Time over boxes\. Times<\/title>/);
+});
+
+test("pictures that the program drew are figures as well", () => {
+  assert.match(textOf('{{picture "grid" "Cells"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\*\n.*\n\n\*Figure 2/);
+});
+
+refuses("an unknown picture", '{{picture "x" "X"}}', /no picture 'x\.svg'; there are grid\.svg/);
+
+test("sources are numbered in their order, and cited by number", () => {
+  assert.match(textOf('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
+});
+
+test("leads are those of our best other than auto, with intervals, and lost cases are named", () => {
+  assert.equal(textOf("{{comparison.mean_lead_still}} {{comparison.least_lead}}"), "8.00 0.40");
+  assert.equal(textOf("{{comparison.least_lead_interval}}"), "0.40 (0.38 to 0.42)");
+  assert.match(textOf("{{lost}}"), /10 % moving: `bullet_dbvt` takes 1 ms.* 0\.40\s+\(0\.38 to 0\.42\)\./s);
+  assert.match(textOf('{{leads "moving"}}'), /\| \*\*0\.40 \(0\.38 to 0\.42\)\*\* \|/);
+  assert.equal(textOf("{{comparison.auto_worst}}"), "1.1");
+  assert.equal(textOf("{{#if comparison.paired}}paired{{/if}}{{#if (any_level)}}, some level{{/if}}"), "paired");
+});
+
+test("a comparison of the schema before is quoted without intervals", () => {
+  const given = { comparison: JSON.stringify(oldComparison()) };
+  assert.equal(textOf("{{comparison.least_lead_interval}}{{#if comparison.paired}} paired{{/if}}", given), "0.40");
+  assert.match(textOf('{{leads "moving"}}', given), /\| \*\*0\.40\*\* \|/);
+  assert.equal(textOf("{{comparison.lost}} {{comparison.level}}", given), "1 0");
+});
+
+test("the same sources give the same bytes", () => {
+  const template = '{{charts "tests"}}\n{{comparison_chart "leads_still"}}\n{{comparison_chart "standings"}}';
+  assert.deepEqual(paper(template), paper(template));
+});
+
+refuses("an unknown experiment", 'a\n{{verdict "test"}}', /^07_testing\.md:2: \{\{verdict "test"\}\}: .*there are tests$/);
+refuses("an unknown figure", '{{figure "tests" "x"}}', /no figure .* 'x'; there are crossover and memory$/);
+refuses("an unknown chart", '{{chart "tests" "times" "Tim"}}', /no chart .*'Tim'; there are Time over boxes$/);
+refuses("an unknown table", '{{table "tests" "x"}}', /no table .* 'x'; there are times$/);
+refuses("an unknown name", "a\n\n{{machine.cpus}}", /^07_testing\.md:3: \{\{machine\.cpus\}\}: no 'cpus' in machine; .*cpu/);
+refuses("an unknown helper", '{{figures "tests"}}', /no such helper; there are .*figure/);
+refuses("a group for a name", "{{machine}}", /a group of names; expected one of cpu/);
+refuses("an unknown name in a condition", '{{#if (holds "x")}}a{{/if}}', /no experiment 'x'/);
+refuses("a word too many", '{{verdict "tests" "now"}}', /2 words; expected 1/);
+refuses("a number in place of a name", "{{verdict 1}}", /expected a text in quotes/);
+refuses("loops", '{{#each machine}}a{{/each}}', /no such helper/);
+refuses("what is no template", "{{#if}}", /07_testing\.md: Parse error/);
+refuses("an unknown source", '{{cite "b"}} {{source "a"}}', /no source 'b'; there are a$/);
+refuses("a source that nothing cites", '{{source "a"}}', /nothing cites the source a/);
+refuses("a chart that stands there twice", '{{charts "tests"}}{{charts "tests"}}', /stands in the paper already/);
+
+const changed = (change: (results: ReturnType<typeof experiments>) => void) => {
+  const results = experiments();
+  change(results);
+  return { experiments: JSON.stringify(results) };
+};
+
+refuses("an empty file", "a", /^e\.json: .*expected JSON of the schema/, { experiments: "" });
+refuses("results cut off", "a", /^e\.json: .*expected JSON/, { experiments: '{"schema": "broadside.exp' });
+refuses("NaN in results", "a", /^e\.json: .*expected JSON/, {
+  experiments: JSON.stringify(experiments()).replace('"value":12', '"value":NaN'),
+});
+refuses("infinity in results", "a", /figures: crossover: value: Infinity; expected a finite number/, {
+  experiments: JSON.stringify(experiments()).replace('"value":12', '"value":1e999'),
+});
+refuses("null for a figure", "a", /figures: crossover: value: null; expected a finite number/, {
+  experiments: JSON.stringify(experiments()).replace('"value":12', '"value":null'),
+});
+refuses("no experiments", "a", /experiments: \[\]; expected at least one experiment/, changed((results) => {
+  results.experiments = [];
+}));
+refuses("a row that is too short", "a", /rows\[0\]: \[10\]; expected 2 cells/, changed((results) => {
+  results.experiments[0]!.tables[0]!.rows[0]!.pop();
+}));
+refuses("a run that was stopped", "a", /stopped: true; expected false/, changed((results) => {
+  results.stopped = true;
+}));
+refuses("another schema version", "a", /schema: "broadside\.experiments\/2"; expected 'broadside\.experiments\/1'/, {
+  experiments: JSON.stringify(experiments()).replace("experiments/1", "experiments/2"),
+});
+refuses("a comparison of another schema", "a", /^c\.json: schema: .*expected 'broadside\.results\/2' or 'broadside\.results\/1'/, {
+  comparison: JSON.stringify(experiments()),
+});
+refuses("a comparison with a wrong result", "a", /verified: false; expected true/, {
+  comparison: JSON.stringify(comparison()).replace('"verified":true', '"verified":false'),
+});
+refuses("a ratio that is none", "a", /ratio_to_fastest: median: "2"; expected a finite number/, {
+  comparison: JSON.stringify(comparison()).replace(/("ratio_to_fastest":\{"of":"[^"]*","median":)[\d.]+/, '$1"2"'),
+});
+refuses("a comparison without peers", "a", /no case of boxes that rest with times of ours and of a peer/, {
+  comparison: JSON.stringify(comparison()).replaceAll('"peer"', '"paper"'),
+});
+
+/** A folder with sources, and what the program prints. */
+function tryProgram(check: (folder: string, make: (...words: string[]) => number, printed: () => string) => void): void {
+  const folder = mkdtempSync(join(tmpdir(), "paper-"));
+  try {
+    mkdirSync(join(folder, "templates"));
+    writeFileSync(join(folder, "templates", "01.md"), '{{verdict "tests"}}\n\n{{charts "tests"}}\n');
+    writeFileSync(join(folder, "e.json"), JSON.stringify(experiments()));
+    writeFileSync(join(folder, "c.json"), JSON.stringify(comparison()));
+    let printed = "";
+    const print = (text: string) => {
+      printed = text;
+    };
+    const paths = ["e.json", "c.json", "templates", "."].map((path) => join(folder, path));
+    check(folder, (...words) => run([...words, ...paths], { out: print, error: print }), () => printed);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+test("the program writes the paper, drops figures that are gone, and then finds it up to date", () => {
+  tryProgram((folder, make, printed) => {
+    assert.equal(make("--check"), 1);
+    assert.match(printed(), /paper\.md/);
+    mkdirSync(join(folder, "figures"));
+    writeFileSync(join(folder, "figures", "old.svg"), "old");
+    assert.equal(make(), 0);
+    assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times.svg"]);
+    assert.equal(make("--check"), 0);
+    writeFileSync(join(folder, "figures", "tests_times.svg"), "other");
+    assert.equal(make("--check"), 1);
+    assert.match(printed(), /tests_times\.svg/);
+  });
+});
+
+for (const [what, file, text] of [
+  ["results that cannot be read", "e.json", "{"],
+  ["a template with an unknown experiment", "templates/01.md", '{{verdict "x"}}'],
+] as const) {
+  test(`${what} leave the old paper as it was`, () => {
+    tryProgram((folder, make, printed) => {
+      assert.equal(make(), 0);
+      const before = readFileSync(join(folder, "paper.md"), "utf8");
+      writeFileSync(join(folder, file), text);
+      assert.equal(make(), 2);
+      assert.match(printed(), /^make paper: /);
+      assert.equal(readFileSync(join(folder, "paper.md"), "utf8"), before);
+      assert.deepEqual(readdirSync(join(folder, "figures")), ["tests_times.svg"]);
+    });
+  });
+}
+
+test("files that are missing are named", () => {
+  tryProgram((folder, make, printed) => {
+    rmSync(join(folder, "c.json"));
+    assert.equal(make(), 2);
+    assert.match(printed(), /c\.json: .*expected results of broadside compare/);
+  });
+});

@@ -1,0 +1,14 @@
+// Numbers as the paper's sentences have them.
+import { bytesText, grouped, rounded } from "../../web/charts/numbers.ts";
+
+/** Whole numbers as they are, others with three significant digits. */
+export function shown(number: number): string {
+  return Number.isInteger(number) ? grouped(number) : rounded(number);
+}
+
+/** A number and its unit: "31 %", "4.21 ms", "2.76 MB", "12,000 boxes". */
+export function withUnit(number: number, unit: string): string {
+  if (unit === "bytes") return bytesText(number);
+  if (unit === "boxes" && number >= 10) return `${grouped(Math.round(number))} boxes`;
+  return unit === "" ? shown(number) : `${shown(number)} ${unit}`;
+}
