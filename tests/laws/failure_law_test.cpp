@@ -16,7 +16,7 @@
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 #include "law_sinks.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

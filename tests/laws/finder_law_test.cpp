@@ -7,9 +7,9 @@
 
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
 #include "smallest_failure.hpp"
 #include "strained_specs.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/scenes/motion.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/files.hpp"
 
 namespace broadside {
 namespace {

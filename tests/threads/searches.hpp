@@ -9,9 +9,9 @@
 #include "broadside/broad_phase.hpp"
 #include "broadside/sinks.hpp"
 
-#include "found.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/found.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 

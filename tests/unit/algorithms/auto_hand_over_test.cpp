@@ -16,7 +16,7 @@
 #include "broadside/sinks.hpp"
 
 #include "core/sample.hpp"
-#include "tests/laws/found.hpp"
+#include "tests/support/found.hpp"
 
 namespace broadside {
 namespace {

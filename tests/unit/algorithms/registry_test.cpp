@@ -13,7 +13,7 @@
 #include "broadside/find_pairs.hpp"
 #include "broadside/world.hpp"
 
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "broadside/error.hpp"
 
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

@@ -26,9 +26,9 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/measure/allocation.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

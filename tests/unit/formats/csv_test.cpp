@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
 
 namespace broadside::lab {
 namespace {

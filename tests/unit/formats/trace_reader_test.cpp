@@ -22,9 +22,9 @@
 #include "lab/measure/allocation.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -14,8 +14,8 @@
 #include "broadside/filter.hpp"
 #include "broadside/sinks.hpp"
 
-#include "tests/message.hpp"
-#include "tests/unit/trackers.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/trackers.hpp"
 
 namespace broadside {
 namespace {

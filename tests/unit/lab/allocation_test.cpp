@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/use.hpp"
+#include "tests/support/use.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "lab/report/drawing_paths.hpp"
 #include "lab/report/drawing_svg.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -13,7 +13,7 @@
 #include "broadside/error.hpp"
 
 #include "lab/catalogue.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "paper/experiments/growth.hpp"
 #include "paper/experiments/table.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -16,7 +16,7 @@
 #include "broadside/error.hpp"
 
 #include "paper/experiments/results.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -9,7 +9,7 @@
 #include "broadside/pair_tracker.hpp"
 #include "broadside/sinks.hpp"
 
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside {
 
