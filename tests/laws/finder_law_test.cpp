@@ -85,7 +85,7 @@ TEST_P(FinderLaw, FindsThePairsOfShiftedAndScaledBoxes) {
 
 TEST_P(FinderLaw, HoldsForEveryTunable) {
   in_dimension([&]<int D>() {
-    const std::vector<Input<D>> inputs = hard_inputs<D>(algorithm(), reduced(is_own(GetParam()) ? 300 : 100));
+    const std::vector<Input<D>> inputs = hard_inputs<D>(algorithm(), reduced(is_own(GetParam()) ? 300 : 40));
     for (const Spec& strained : strained_specs(GetParam())) {
       for (const Input<D>& input : inputs)
         EXPECT_TRUE(finds_the_pairs<D>(algorithm(), strained, input.boxes)) << input.name;

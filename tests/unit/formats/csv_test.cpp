@@ -37,14 +37,9 @@ class CsvTable : public Files {
   }
 
   std::string refusal_of(const std::string& text, const std::string& columns = {}) const {
-    try {
-      ReadOptions options;
-      options.columns = columns;
-      read_file(put("bad.csv", text), options);
-    } catch (const FileError& error) {
-      return error.what();
-    }
-    return "was read";
+    ReadOptions options;
+    options.columns = columns;
+    return refusal(put("bad.csv", text), options);
   }
 };
 

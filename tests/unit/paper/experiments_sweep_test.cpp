@@ -1,19 +1,14 @@
 // The verdicts of the experiments on sweep and prune follow from their tables.
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "paper/experiments/experiment.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
-
-Finding judged(const char* experiment, const std::vector<Table>& tables) {
-  return find_experiment(experiment).judge(tables);
-}
 
 /// What the sweeps cost in a world without bounds and with infinite boxes, over the bounded ones.
 Table worlds(double boundless, double infinite) {
@@ -68,19 +63,6 @@ TEST(SweepAxisExperiment, HoldsWhenNoBoxIsInfiniteWhereThoseCost) {
 
 TEST(SweepAxisExperiment, DoesNotHoldWhereABoxFarAwayCosts) {
   EXPECT_EQ(judged("sweep_axis", {worlds(30, 1), axes(), growth()}).verdict, Verdict::does_not_hold);
-}
-
-TEST(SweepAxisExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), axes()}), std::invalid_argument);
-  Table bounded = worlds(1, 1);
-  bounded.rows.resize(1);
-  EXPECT_THROW(judged("sweep_axis", {bounded, axes(), growth()}), std::invalid_argument);
-  Table no_scene = axes();
-  no_scene.rows.clear();
-  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), no_scene, growth()}), std::invalid_argument);
-  Table short_growth = growth();
-  short_growth.rows.resize(3);
-  EXPECT_THROW(judged("sweep_axis", {worlds(1, 1), axes(), short_growth}), std::invalid_argument);
 }
 
 /// Insertion takes 10 ns and what the places cost, a sort 40 ns.
@@ -142,20 +124,6 @@ TEST(SweepInsertionExperiment, DoesNotHoldWhereItIsNeverLinearOrNeverAhead) {
             Verdict::does_not_hold);
 }
 
-TEST(SweepInsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  const Table growing = order_growth(1, 1.5, 1.67);
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing}), std::invalid_argument);
-  Table no_frames = motion_frames();
-  no_frames.rows.clear();
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), growing, no_frames}), std::invalid_argument);
-  Table no_sorts = sorting(1);
-  no_sorts.rows.clear();
-  EXPECT_THROW(judged("sweep_insertion", {no_sorts, growing, motion_frames()}), std::invalid_argument);
-  Table one_number = growing;
-  one_number.rows.resize(1);
-  EXPECT_THROW(judged("sweep_insertion", {sorting(1), one_number, motion_frames()}), std::invalid_argument);
-}
-
 /// A search takes 50 ns; what each place costs is moved beside it.
 Table reinsertion_growth(double nanoseconds_a_place) {
   Table table{
@@ -209,17 +177,6 @@ TEST(SweepReinsertionExperiment, HoldsWhenThereAreFewBoxesOrTheyStayNearWhereMov
 TEST(SweepReinsertionExperiment, DoesNotHoldWhereMovingAlwaysDominates) {
   EXPECT_EQ(judged("sweep_reinsertion", {reinsertion_growth(60), heaps(), mover_frames()}).verdict,
             Verdict::does_not_hold);
-}
-
-TEST(SweepReinsertionExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), heaps()}), std::invalid_argument);
-  Table no_heaps = heaps();
-  no_heaps.rows.clear();
-  EXPECT_THROW(judged("sweep_reinsertion", {reinsertion_growth(1), no_heaps, mover_frames()}),
-               std::invalid_argument);
-  Table near_only = reinsertion_growth(1);
-  near_only.rows.resize(3);
-  EXPECT_THROW(judged("sweep_reinsertion", {near_only, heaps(), mover_frames()}), std::invalid_argument);
 }
 
 }  // namespace
