@@ -143,5 +143,34 @@ TEST(DynamicBvh, TellsWhatMovesToggle) {
   });
 }
 
+TEST(DynamicBvh, TellsWhetherAMoveLeftItsLeafAndMayHaveLeftABorder) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(9);
+    DynamicBvh<D> tree;
+    std::vector<Box<D>> boxes(500);
+    for (Box<D>& box : boxes) box = draw<D>(rng);
+    tree.build(boxes);
+    for (int move = 0; move < 300; ++move) {
+      const std::size_t id = rng.below(boxes.size());
+      core::MovedBox<D> moved = moved_box(id, boxes[id], draw<D>(rng));
+      if (rng.one_in(2)) moved = moved_box(id, boxes[id], boxes[id]);  // which stays in any bounds
+      moved.slot = tree.slot(BoxId(id));
+      const kernels::WritableBvh<D> writable = tree.writable();
+      const std::uint32_t parent = writable.info[moved.slot / kernels::fan_out].parent;
+      const Box<D> leaf = writable.nodes[parent / kernels::fan_out].box(parent % kernels::fan_out);
+      std::uint8_t expected = core::encloses(leaf, moved.now) ? 0 : kernels::left_leaf;
+      for (int axis = 0; axis < D; ++axis) {
+        if (moved.before.min[axis] == leaf.min[axis] || moved.before.max[axis] == leaf.max[axis])
+          expected |= kernels::may_shrink;
+      }
+      std::uint8_t calls_for = 0;
+      PairCounter pairs;
+      kernels::follow(writable, std::span<const core::MovedBox<D>>(&moved, 1), &calls_for, pairs, pairs);
+      ASSERT_EQ(calls_for, expected) << "move " << move;
+      boxes[id] = moved.now;
+    }
+  });
+}
+
 }  // namespace
 }  // namespace broadside::algorithm

@@ -74,7 +74,7 @@ class Frames {
 
 TEST(HierarchicalCells, TellWhatMovedBoxesChange) {
   on_each_instruction_set([]<int D>() {
-    for (const BoxKind& kind : {BoxKind{}, BoxKind{.places = 400, .most_extent = 3, .infinite_one_in = 400},
+    for (const BoxKind& kind : {BoxKind{}, BoxKind{.places = 400, .most_extent = 20, .infinite_one_in = 400},
                                 BoxKind{.places = 300, .most_extent = 90, .infinite_one_in = 0}}) {
       Frames<D> frames(300, kind);
       HierarchicalCells<D> cells(std::nullopt);
@@ -182,6 +182,7 @@ TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
     std::size_t most_nodes = 0;
     for (int round = 0; round < 30; ++round) {
       std::size_t references = 0;
+      std::size_t kept = 0;
       for (std::size_t id = 0; id < frames.boxes.size(); ++id) {
         if (!is_present(frames.boxes[id])) continue;
         nodes_of(tree, frames.boxes[id], QuadtreeNodes<D>::root, [&](std::uint32_t node) {
@@ -189,9 +190,11 @@ TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
           ASSERT_NE(slot, kernels::no_slot) << id;
           ASSERT_EQ(tree.pool().box(slot), frames.boxes[id]);
           ++references;
+          kept += tree[node].is_leaf() ? 0 : 1;
         });
       }
       ASSERT_EQ(tree.references(), references) << "round " << round;
+      ASSERT_EQ(tree.kept(), kept) << "round " << round;
       most_nodes = std::max(most_nodes, tree.node_count());
       frames.step(4);
       for (const core::MovedBox<D>& box : frames.moved) {
