@@ -1,7 +1,5 @@
 // The house stands: no file includes what its floor may not, and every algorithm's file is in the registry.
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -11,6 +9,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "includes.hpp"
+#include "tests/support/text_of.hpp"
 
 namespace broadside::architecture {
 namespace {
@@ -24,11 +23,6 @@ using testing::UnorderedElementsAreArray;
 const fs::path project = BROADSIDE_SOURCE_DIR;
 
 bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// The names under which the folders in `folder` should stand in the registry.
 std::vector<std::string> names_of_folders(const std::string& folder) {

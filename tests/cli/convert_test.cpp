@@ -125,13 +125,6 @@ TEST(ConvertVerb, AddsToWhatAnOpenDescriptorAppendsTo) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"boxes.csv", "log.csv"}));
 }
 
-TEST(ConvertVerb, RefusesToReplaceItsOwnInput) {
-  const TemporaryFolder folder;
-  const std::string file = folder.put("boxes.csv", tenths);
-  expect_refused("convert", {{{file, "-o", file}, {"-o is '" + file, "the input", "expected another file"}}});
-  EXPECT_EQ(text_of(file), tenths);
-}
-
 TEST(ConvertVerb, KeepsIdsAndNamesTheColumnsItLeavesOut) {
   const TemporaryFolder folder;
   const std::string file = folder.put("named.csv",
@@ -186,6 +179,7 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
   const std::string absent = folder.put("absent.csv", "min_x,min_y,max_x,max_y\n,,,\n");
   const std::vector<Refusal> refusals = {
       {{good}, {"--output"}},
+      {{good, "-o", good}, {"-o is '" + good, "the input", "expected another file"}},
       {{folder.file("missing.csv"), "-o", folder.file("out.csv")}, {"missing.csv", "No such file"}},
       {{late, "-o", folder.file("out.btrace")}, {"late.csv:3", "min <= max"}},
       {{absent, "-o", folder.file("out.aabbs")}, {"out.aabbs", "box 0 is absent"}},
@@ -208,21 +202,6 @@ TEST(ConvertVerb, ReadsWhatIsWholeOfATraceThatIsCutOff) {
   const Ended ended = run({"convert", file, "-o", folder.file("whole.btrace")});
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.errors, AllOf(HasSubstr("is cut off in frame 6"), HasSubstr("6 frames of ")));
-}
-
-TEST(SceneVerb, SaysHowManyCoordinatesAreRounded) {
-  const TemporaryFolder folder;
-  const Ended ended = run({"scene", folder.put("boxes.csv", tenths), "-o", folder.file("out.csv")});
-  EXPECT_EQ(ended.status, 0);
-  EXPECT_THAT(ended.errors,
-              HasSubstr("boxes.csv: 2 of 8 coordinates were rounded to float, in which scenes"));
-}
-
-TEST(SceneVerb, SaysWhatItWrote) {
-  const TemporaryFolder folder;
-  const Ended ended = run({"scene", "uniform", "-n", "50", "--frames", "2", "-o", folder.file("a.csv")});
-  EXPECT_EQ(ended.status, 0);
-  EXPECT_THAT(ended.errors, HasSubstr("a.csv: 3 frames of 50 boxes in 2D, as floats, in format csv\n"));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <sys/types.h>
 
+#include "tests/support/text_of.hpp"
+
 namespace broadside::cli {
 
 /// What a process came to.
@@ -69,8 +71,5 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
-
-/// A file's text; empty if there is none.
-std::string text_of(const std::filesystem::path& file);
 
 }  // namespace broadside::cli

@@ -17,11 +17,11 @@
 #include "broadside/world.hpp"
 
 #include "environment.hpp"
-#include "tests/instruction_sets.hpp"
-#include "tests/laws/found.hpp"
 #include "tests/laws/hard_inputs.hpp"
 #include "tests/laws/harder_histories.hpp"
 #include "tests/laws/law_case.hpp"
+#include "tests/support/found.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 namespace broadside::laws {
 namespace {

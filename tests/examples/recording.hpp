@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <sstream>
 #include <string>
@@ -12,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/trace/trace.hpp"
+#include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
 
@@ -25,9 +24,8 @@ struct Played {
 };
 
 inline std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  EXPECT_TRUE(file.is_open()) << path << " is missing; ctest has it made by the example";
-  return {std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(std::filesystem::exists(path)) << path << " is missing; ctest has it made by the example";
+  return text_of(path);
 }
 
 inline Played play(const std::string& bytes) {

@@ -47,15 +47,6 @@ struct Forgery {
   std::uint16_t reserved = 0;
   std::vector<ForgedFrame> frames{};
 
-  static Box<D, Real> any_box(Bytes& bytes) {
-    Box<D, Real> box;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(bytes.below(12));
-      box.max[axis] = box.min[axis] + static_cast<Real>(bytes.below(4));
-    }
-    return box;
-  }
-
   /// A frame of a trace with this many slots before.
   static ForgedFrame any_frame(Bytes& bytes, std::uint32_t before) {
     ForgedFrame frame{static_cast<std::uint32_t>(bytes.below(10)), {}, {}};
@@ -65,7 +56,7 @@ struct Forgery {
       if (what == 0)
         frame.removed.push_back(slot);
       else
-        frame.set.push_back({slot, any_box(bytes)});
+        frame.set.push_back({slot, any_box<D, Real>(bytes)});
     }
     return frame;
   }
@@ -80,7 +71,7 @@ struct Forgery {
     const auto slot = static_cast<std::uint32_t>(bytes.below(11));
     if (what == 0) frame.slots = bytes.next() < 200 ? slot : std::numeric_limits<std::uint32_t>::max() - slot;
     if (what == 1) frame.removed.push_back(slot);
-    if (what == 2) frame.set.push_back({slot, any_box(bytes)});
+    if (what == 2) frame.set.push_back({slot, any_box<D, Real>(bytes)});
     if (what == 3) frame.removed.insert(frame.removed.begin(), slot);
     if (what == 4) std::ranges::reverse(frame.removed);
     if (what == 5) std::ranges::reverse(frame.set);

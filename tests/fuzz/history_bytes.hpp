@@ -82,6 +82,17 @@ class Bytes {
   std::size_t left_;
 };
 
+/// A box on a small lattice.
+template <int D, typename Real>
+Box<D, Real> any_box(Bytes& bytes) {
+  Box<D, Real> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = static_cast<Real>(bytes.below(12));
+    box.max[axis] = box.min[axis] + static_cast<Real>(bytes.below(4));
+  }
+  return box;
+}
+
 /// Boxes that a few bytes stand for: many, spread, the same for the same seed.
 template <int D>
 class Spread {

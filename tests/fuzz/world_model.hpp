@@ -51,7 +51,7 @@ class WorldModel {
     const std::size_t what = bytes.below(12);
     if (what < 4 || members_.size() < 2) {
       const BoxOptions options{what == 0 ? bytes.filter() : Filter{}, what == 1 ? 7U : 0U};
-      const Box<D, Real> box = any_box(bytes);
+      const Box<D, Real> box = any_box<D, Real>(bytes);
       const Handle handle = world.add(box, options);
       expect(!members_.contains(handle.slot), "a slot was given to a second box");
       set({handle, box, options.filter});
@@ -60,7 +60,7 @@ class WorldModel {
     Member& member = any(bytes);
     Member& other = any(bytes);
     if (what < 8) {
-      member.box = any_box(bytes);
+      member.box = any_box<D, Real>(bytes);
       world.move(member.handle, member.box);
     } else if (what == 8) {
       member.filter = bytes.filter();
@@ -143,15 +143,6 @@ class WorldModel {
 
   Member& any(Bytes& bytes) {
     return std::next(members_.begin(), static_cast<std::ptrdiff_t>(bytes.below(members_.size())))->second;
-  }
-
-  static Box<D, Real> any_box(Bytes& bytes) {
-    Box<D, Real> box;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(bytes.below(12));
-      box.max[axis] = box.min[axis] + static_cast<Real>(bytes.below(4));
-    }
-    return box;
   }
 
   bool has_predicate_;

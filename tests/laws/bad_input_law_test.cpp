@@ -12,7 +12,7 @@
 
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -10,7 +10,7 @@
 #include "broadside/executor.hpp"
 
 #include "law_case.hpp"
-#include "tests/instruction_sets.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "core/sample.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -16,23 +16,10 @@
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
 #include "law_sinks.hpp"
-#include "rng.hpp"
+#include "tests/support/scattered.hpp"
 
 namespace broadside::laws {
 namespace {
-
-template <int D>
-std::vector<Box<D>> some_boxes(std::size_t count, float world = 10) {
-  Rng rng(4);
-  std::vector<Box<D>> boxes(count);
-  for (Box<D>& box : boxes) {
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = rng.between(0, world);
-      box.max[axis] = box.min[axis] + rng.between(0, 3);
-    }
-  }
-  return boxes;
-}
 
 /// Every way in which one coordinate makes a box invalid.
 template <int D>
@@ -41,7 +28,7 @@ std::vector<Box<D>> wrong_boxes() {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<Box<D>> wrong;
   for (int axis = 0; axis < D; ++axis) {
-    Box<D> box = some_boxes<D>(1)[0];
+    Box<D> box = scattered_boxes<D>(1)[0];
     for (const auto& [min, max] :
          {std::pair(nan, 1.0f), {0.0f, nan}, {nan, nan}, {1.0f, 0.0f}, {infinity, -infinity}}) {
       box.min[axis] = min;
@@ -86,7 +73,7 @@ class FailureLaw : public Law {};
 TEST_P(FailureLaw, AFinderRefusesAWrongBoxAndCanBeUsedAfter) {
   in_dimension([&]<int D>() {
     const auto finder = make_finder<D>(algorithm(), spec());
-    const std::vector<Box<D>> boxes = some_boxes<D>(50);
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(50);
     for (const Box<D>& wrong : wrong_boxes<D>()) {
       for (const std::size_t place : {0, 20, 49}) {
         std::vector<Box<D>> with_wrong = boxes;
@@ -106,12 +93,12 @@ TEST_P(FailureLaw, AFinderRefusesAWrongBoxAndCanBeUsedAfter) {
 TEST_P(FailureLaw, AFinderCanBeUsedAfterItsSinkThrew) {
   in_dimension([&]<int D>() {
     const auto finder = make_finder<D>(algorithm(), spec());
-    const std::vector<Box<D>> crowd(200, some_boxes<D>(1)[0]);  // 19,900 pairs: some twenty chunks
+    const std::vector<Box<D>> crowd(200, scattered_boxes<D>(1)[0]);  // 19,900 pairs: some twenty chunks
     for (const std::size_t chunks : {0, 1, 5, 15}) {
       ChunkCollector sink(chunks);
       EXPECT_THROW(finder->find(crowd, sink), SinkIsFull);
       for (const std::size_t count : {0, 30, 200}) {
-        const auto divergence = lab::check_finder<D>(*finder, some_boxes<D>(count), algorithm().name);
+        const auto divergence = lab::check_finder<D>(*finder, scattered_boxes<D>(count), algorithm().name);
         EXPECT_FALSE(divergence) << divergence->text;
       }
     }
@@ -155,7 +142,7 @@ class Tracked {
 TEST_P(FailureLaw, ATrackerIsUnchangedByAFrameThatItRefuses) {
   in_dimension([&]<int D>() {
     Tracked<D> tracked(algorithm());
-    std::vector<Box<D>> boxes = some_boxes<D>(50);
+    std::vector<Box<D>> boxes = scattered_boxes<D>(50);
     EXPECT_EQ(tracked.divergence(boxes, {}), "");
     for (const Box<D>& wrong : wrong_boxes<D>()) {
       std::vector<Box<D>> with_wrong = boxes;

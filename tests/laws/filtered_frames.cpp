@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "lab/verify/verify.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
 #include "smallest_failure.hpp"
 #include "strained_specs.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -86,9 +86,12 @@ TEST_P(FinderLaw, FindsThePairsOfShiftedAndScaledBoxes) {
 TEST_P(FinderLaw, HoldsForEveryTunable) {
   in_dimension([&]<int D>() {
     const std::vector<Input<D>> inputs = hard_inputs<D>(algorithm(), reduced(is_own(GetParam()) ? 300 : 100));
+    std::size_t turn = 0;
     for (const Spec& strained : strained_specs(GetParam())) {
-      for (const Input<D>& input : inputs)
+      for (const Input<D>& input : inputs) {
+        if (!is_own(GetParam()) && ++turn % 4 != 0) continue;  // others for the next value
         EXPECT_TRUE(finds_the_pairs<D>(algorithm(), strained, input.boxes)) << input.name;
+      }
     }
   });
 }

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -17,7 +17,7 @@
 #include "histories.hpp"
 #include "lab/scenes/scene.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside {
 

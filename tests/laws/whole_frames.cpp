@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 namespace {

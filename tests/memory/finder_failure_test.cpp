@@ -8,9 +8,9 @@
 
 #include "broadside/sinks.hpp"
 
-#include "executors.hpp"
 #include "injection.hpp"
 #include "memory_case.hpp"
+#include "tests/support/executors.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "failing_allocation.hpp"
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 

@@ -12,7 +12,7 @@
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
 
-#include "rng.hpp"
+#include "tests/support/rng.hpp"
 
 namespace broadside::laws {
 

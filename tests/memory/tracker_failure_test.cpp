@@ -12,9 +12,9 @@
 
 #include <gtest/gtest.h>
 
-#include "executors.hpp"
 #include "injection.hpp"
 #include "memory_case.hpp"
+#include "tests/support/executors.hpp"
 #include "whole_frames.hpp"
 
 namespace broadside::laws {

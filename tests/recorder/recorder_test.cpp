@@ -16,7 +16,8 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/scenes/motion.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/tape.hpp"
 
 namespace broadside {
 namespace {
@@ -58,34 +59,10 @@ std::string documented_example() {
   return example;
 }
 
-/// A recorder that keeps its trace in memory.
-template <int D, typename Real = float>
-struct Tape {
-  Tape() {
-    recorder.open_with([this](const void* more, std::size_t count) {
-      bytes.append(static_cast<const char*>(more), count);
-      return true;
-    });
-  }
-
-  /// Ends the frame and returns how many bytes it took.
-  std::size_t frame() {
-    const std::size_t before = bytes.size();
-    EXPECT_TRUE(recorder.end_frame());
-    return bytes.size() - before;
-  }
-
-  bool set(std::uint32_t slot, std::vector<Real> box) {
-    return recorder.set(slot, box.data(), box.data() + D);
-  }
-
-  bool set_boxes(const std::vector<Real>& boxes) {
-    return recorder.set_boxes(boxes.data(), boxes.size() / (2 * D));
-  }
-
-  std::string bytes;
-  Recorder<D, Real> recorder;
-};
+template <int D>
+bool set_boxes(Tape<D>& tape, const std::vector<float>& boxes) {
+  return tape.recorder.set_boxes(boxes.data(), boxes.size() / (2 * D));
+}
 
 class RecorderFiles : public lab::Files {
  protected:
@@ -126,21 +103,14 @@ TEST(TraceChecksum, DoesNotDependOnHowTheBytesArrive) {
 }
 
 TEST(Recorder, WritesTheBytesThatTheFormatShows) {
-  Tape<2> tape;
-  tape.set(0, {0, 0, 1, 1});
-  tape.set(2, {2, 0.5F, 4, 3});
-  tape.frame();
-  tape.set(0, {0.25F, 0, 1.25F, 1});
-  tape.recorder.remove(2);
-  tape.frame();
-  EXPECT_EQ(hexadecimal(tape.bytes), documented_example());
+  EXPECT_EQ(hexadecimal(small_trace()), documented_example());
 }
 
 TEST(Recorder, WritesDoublesAndThreeAxesAlike) {
   Tape<3, double> tape;
   EXPECT_EQ(tape.bytes.substr(12, 4), std::string("\x03\x08\0\0", 4));
   tape.set(0, {0, 0, 0, 1, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame + 4 + 6 * 8);
+  EXPECT_EQ(tape.end_frame(), empty_frame + 4 + 6 * 8);
   EXPECT_EQ(hexadecimal(tape.bytes.substr(tape.bytes.size() - 12, 8)), "00 00 00 00 00 00 f0 3f ");
 }
 
@@ -148,30 +118,30 @@ TEST(Recorder, StoresOnlyWhatChanged) {
   Tape<2> tape;
   tape.set(0, {0, 0, 1, 1});
   tape.set(1, {0, 0, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame + 2 * flat_box);
-  EXPECT_EQ(tape.frame(), empty_frame) << "nothing was said";
+  EXPECT_EQ(tape.end_frame(), empty_frame + 2 * flat_box);
+  EXPECT_EQ(tape.end_frame(), empty_frame) << "nothing was said";
   tape.set(0, {0, 0, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame) << "nothing moved";
+  EXPECT_EQ(tape.end_frame(), empty_frame) << "nothing moved";
   tape.set(0, {0, 0, 2, 2});
   tape.set(0, {0, 0, 1, 1});
   tape.recorder.remove(1);
   tape.set(1, {0, 0, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame) << "all came back to where it was";
+  EXPECT_EQ(tape.end_frame(), empty_frame) << "all came back to where it was";
   tape.set(1, {0, 0, 1, 2});
-  EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+  EXPECT_EQ(tape.end_frame(), empty_frame + flat_box);
   tape.recorder.remove(1);
-  EXPECT_EQ(tape.frame(), empty_frame + removal);
+  EXPECT_EQ(tape.end_frame(), empty_frame + removal);
   tape.recorder.remove(1);
   tape.recorder.remove(77);
-  EXPECT_EQ(tape.frame(), empty_frame) << "was gone already";
+  EXPECT_EQ(tape.end_frame(), empty_frame) << "was gone already";
 }
 
 TEST(Recorder, TellsMinusZeroFromZero) {
   Tape<2> tape;
   tape.set(0, {0, 0, 1, 1});
-  tape.frame();
+  tape.end_frame();
   tape.set(0, {-0.0F, 0, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+  EXPECT_EQ(tape.end_frame(), empty_frame + flat_box);
 }
 
 TEST(Recorder, TakesTheAbsentBoxForARemoval) {
@@ -179,11 +149,11 @@ TEST(Recorder, TakesTheAbsentBoxForARemoval) {
   Tape<2> absent;
   for (Tape<2>* tape : {&removed, &absent}) {
     tape->set(0, {0, 0, 1, 1});
-    tape->frame();
+    tape->end_frame();
   }
   removed.recorder.remove(0);
   absent.set(0, {infinity, infinity, -infinity, -infinity});
-  EXPECT_EQ(removed.frame(), absent.frame());
+  EXPECT_EQ(removed.end_frame(), absent.end_frame());
   EXPECT_EQ(removed.bytes, absent.bytes);
 }
 
@@ -192,31 +162,31 @@ TEST(Recorder, WritesTheSameWhetherBoxesComeOneByOneOrAllAtOnce) {
   Tape<2> at_once;
   one_by_one.set(1, {5, 5, 6, 6});
   one_by_one.set(0, {0, 0, 1, 1});
-  at_once.set_boxes({0, 0, 1, 1, 5, 5, 6, 6});
-  EXPECT_EQ(one_by_one.frame(), at_once.frame());
+  set_boxes(at_once, {0, 0, 1, 1, 5, 5, 6, 6});
+  EXPECT_EQ(one_by_one.end_frame(), at_once.end_frame());
 
   one_by_one.recorder.resize(1);
-  at_once.set_boxes({0, 0, 1, 1});
-  EXPECT_EQ(one_by_one.frame(), at_once.frame());
+  set_boxes(at_once, {0, 0, 1, 1});
+  EXPECT_EQ(one_by_one.end_frame(), at_once.end_frame());
 
   one_by_one.recorder.resize(2);
   one_by_one.recorder.resize(3);
   one_by_one.set(0, {0, 0, 1, 3});
-  at_once.set_boxes(
-      {0, 0, 1, 3, infinity, infinity, -infinity, -infinity, infinity, infinity, -infinity, -infinity});
-  EXPECT_EQ(one_by_one.frame(), empty_frame + 2 * removal + flat_box);
-  at_once.frame();
+  set_boxes(at_once,
+            {0, 0, 1, 3, infinity, infinity, -infinity, -infinity, infinity, infinity, -infinity, -infinity});
+  EXPECT_EQ(one_by_one.end_frame(), empty_frame + 2 * removal + flat_box);
+  at_once.end_frame();
   EXPECT_EQ(one_by_one.bytes, at_once.bytes);
 }
 
 TEST(Recorder, KnowsThatASlotCutOffAndBroughtBackInOneFrameIsEmpty) {
   Tape<2> tape;
-  tape.set_boxes({0, 0, 1, 1, 5, 5, 6, 6});
-  tape.frame();
+  set_boxes(tape, {0, 0, 1, 1, 5, 5, 6, 6});
+  tape.end_frame();
   tape.recorder.resize(0);
   tape.recorder.resize(2);
   tape.set(0, {0, 0, 1, 1});
-  EXPECT_EQ(tape.frame(), empty_frame + removal);
+  EXPECT_EQ(tape.end_frame(), empty_frame + removal);
 }
 
 TEST(Recorder, RefusesWhatIsNoBoxAndGoesOn) {
@@ -228,13 +198,13 @@ TEST(Recorder, RefusesWhatIsNoBoxAndGoesOn) {
   for (const auto& [box, found] : wrong) {
     Tape<2> tape;
     tape.set(3, {0, 0, 1, 1});
-    tape.frame();
+    tape.end_frame();
     EXPECT_FALSE(tape.set(3, box));
-    EXPECT_FALSE(tape.set_boxes(box));
+    EXPECT_FALSE(set_boxes(tape, box));
     EXPECT_FALSE(tape.set(9, box));
-    EXPECT_EQ(tape.frame(), empty_frame) << "a refused box changes nothing, not even the number of slots";
+    EXPECT_EQ(tape.end_frame(), empty_frame) << "a refused box changes nothing, not even the number of slots";
     EXPECT_TRUE(tape.set(3, {0, 0, 1, 2}));
-    EXPECT_EQ(tape.frame(), empty_frame + flat_box);
+    EXPECT_EQ(tape.end_frame(), empty_frame + flat_box);
     EXPECT_THAT(tape.recorder.error(), AllOf(HasSubstr("slot 3"), HasSubstr(found), HasSubstr("min <= max")));
     EXPECT_FALSE(tape.recorder.close());
   }
@@ -245,7 +215,7 @@ TEST(Recorder, TakesInfiniteAndDegenerateBoxes) {
   EXPECT_TRUE(tape.set(0, {-infinity, 0, infinity, 0}));
   EXPECT_TRUE(tape.set(1, {infinity, infinity, infinity, infinity}));
   EXPECT_TRUE(tape.set(2, {0.0F, 0, -0.0F, 0}));
-  EXPECT_EQ(tape.frame(), empty_frame + 3 * flat_box);
+  EXPECT_EQ(tape.end_frame(), empty_frame + 3 * flat_box);
   EXPECT_TRUE(tape.recorder.close());
 }
 

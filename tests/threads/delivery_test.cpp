@@ -13,7 +13,7 @@
 #include "broadside/sinks.hpp"
 
 #include "core/parallel.hpp"
-#include "executors.hpp"
+#include "tests/support/executors.hpp"
 
 namespace broadside::core {
 namespace {

@@ -9,9 +9,9 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
-#include "executors.hpp"
 #include "law_case.hpp"
 #include "searches.hpp"
+#include "tests/support/executors.hpp"
 
 namespace broadside::laws {
 namespace {

@@ -14,8 +14,8 @@
 #include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
-#include "executors.hpp"
-#include "tests/message.hpp"
+#include "tests/support/executors.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::core {
 namespace {

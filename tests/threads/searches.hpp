@@ -10,24 +10,11 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-#include "found.hpp"
 #include "law_case.hpp"
-#include "rng.hpp"
+#include "tests/support/found.hpp"
+#include "tests/support/scattered.hpp"
 
 namespace broadside::laws {
-
-template <int D>
-std::vector<Box<D>> scattered_boxes(std::size_t count, float world, std::uint32_t seed = 1) {
-  Rng rng(seed);
-  std::vector<Box<D>> boxes(count);
-  for (Box<D>& box : boxes) {
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = rng.between(0, world);
-      box.max[axis] = box.min[axis] + rng.between(0, 3);
-    }
-  }
-  return boxes;
-}
 
 /// Workers that share even a few boxes.
 inline Workers workers(std::size_t threads, Executor* executor = nullptr) {

@@ -12,12 +12,12 @@
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
-#include "executors.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
 #include "law_sinks.hpp"
-#include "rng.hpp"
 #include "searches.hpp"
+#include "tests/support/executors.hpp"
+#include "tests/support/rng.hpp"
 #include "whole_frames.hpp"
 
 namespace broadside::laws {

@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
-#include <random>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,23 +14,14 @@
 #include "interface/encloses.hpp"
 #include "kernels/bvh_follow.hpp"
 #include "kernels/bvh_query.hpp"
-#include "tests/instruction_sets.hpp"
+#include "tests/support/model.hpp"
 
 namespace broadside::algorithm {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 template <int D>
-Box<D> draw(std::mt19937& random) {
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = static_cast<float>(random() % 400) / 8;
-    box.max[axis] = box.min[axis] + static_cast<float>(random() % 24) / 8;
-    if (random() % 256 == 0) box.min[axis] = -infinity;
-    if (random() % 256 == 0) box.max[axis] = infinity;
-  }
-  return box;
+Box<D> draw(Rng& rng) {
+  return random_box<D>(rng, {.places = 400, .most_extent = 24, .infinite_one_in = 256});
 }
 
 /// Counts the boxes below a node, and expects bounds to contain them and slots to lead to them.
@@ -71,12 +59,12 @@ class Found final : public kernels::FoundBoxes {
 };
 
 template <int D>
-void expect_whole(const DynamicBvh<D>& tree, const std::vector<Box<D>>& boxes, std::mt19937& random) {
+void expect_whole(const DynamicBvh<D>& tree, const std::vector<Box<D>>& boxes, Rng& rng) {
   const auto present = static_cast<std::size_t>(std::ranges::count_if(boxes, is_present<D, float>));
   ASSERT_EQ(tree.size(), present);
   if (present == 0) return;
   ASSERT_EQ(boxes_below<D>(tree, boxes, tree.view().root, nullptr), present);
-  const Box<D> query = draw<D>(random);
+  const Box<D> query = draw<D>(rng);
   std::vector<std::uint32_t> expected;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (is_present(boxes[i]) && overlap(boxes[i], query)) expected.push_back(i);
@@ -88,116 +76,103 @@ void expect_whole(const DynamicBvh<D>& tree, const std::vector<Box<D>>& boxes, s
   EXPECT_EQ(found.all, expected);
 }
 
-template <int D>
-void expect_random_changes_to_hold() {
-  std::mt19937 random(D);
-  DynamicBvh<D> tree;
-  std::vector<Box<D>> boxes(600, absent_box<D>());
-  for (int round = 0; round < 200; ++round) {
-    if (round % 50 == 0) {
-      for (Box<D>& box : boxes) box = random() % 8 == 0 ? absent_box<D>() : draw<D>(random);
-      tree.build(boxes);
-    }
-    for (int change = 0; change < 30; ++change) {
-      const std::size_t i = random() % boxes.size();
-      // At first boxes go, then they come: leaves empty and nodes split.
-      const bool goes = round % 50 < 25 ? random() % 3 != 0 : random() % 6 == 0;
-      boxes[i] = goes ? absent_box<D>() : draw<D>(random);
-      tree.set(BoxId(i), boxes[i]);
-    }
-    expect_whole(tree, boxes, random);
-    if (testing::Test::HasFailure()) FAIL() << "round " << round;
-  }
-  for (std::size_t i = 0; i < boxes.size(); ++i) tree.set(BoxId(i), absent_box<D>());
-  EXPECT_EQ(tree.size(), 0U);
-  EXPECT_EQ(tree.nodes(), 0U);
-}
-
 TEST(DynamicBvh, HoldsEachBoxOnceAfterRandomChanges) {
-  for (const std::string& name : instruction_sets()) {
-    SCOPED_TRACE(name);
-    const OnInstructionSet on(name);
-    expect_random_changes_to_hold<2>();
-    expect_random_changes_to_hold<3>();
-  }
+  on_each_instruction_set([]<int D>() {
+    Rng rng(D);
+    DynamicBvh<D> tree;
+    std::vector<Box<D>> boxes(600, absent_box<D>());
+    for (int round = 0; round < 200; ++round) {
+      if (round % 50 == 0) {
+        for (Box<D>& box : boxes) box = rng.one_in(8) ? absent_box<D>() : draw<D>(rng);
+        tree.build(boxes);
+      }
+      for (int change = 0; change < 30; ++change) {
+        const std::size_t i = rng.below(boxes.size());
+        // At first boxes go, then they come: leaves empty and nodes split.
+        const bool goes = round % 50 < 25 ? !rng.one_in(3) : rng.one_in(6);
+        boxes[i] = goes ? absent_box<D>() : draw<D>(rng);
+        tree.set(BoxId(i), boxes[i]);
+      }
+      expect_whole(tree, boxes, rng);
+      if (testing::Test::HasFailure()) FAIL() << "round " << round;
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) tree.set(BoxId(i), absent_box<D>());
+    EXPECT_EQ(tree.size(), 0U);
+    EXPECT_EQ(tree.nodes(), 0U);
+  });
 }
 
 /// follow() and what a tracker does after it: the pairs of each box that toggle, against the boxes as they
 /// stand at its turn.
-template <int D>
-void expect_moves_to_toggle() {
-  std::mt19937 random(7);
-  DynamicBvh<D> tree;
-  std::vector<Box<D>> boxes(500);
-  for (Box<D>& box : boxes) box = draw<D>(random);
-  tree.build(boxes);
-  for (int round = 0; round < 20; ++round) {
-    std::vector<core::MovedBox<D>> moved;
-    std::vector<Pair> begun;
-    std::vector<Pair> ended;
-    for (std::uint32_t id = static_cast<std::uint32_t>(round % 3); id < boxes.size(); id += 7) {
-      const bool filter_changed = random() % 16 == 0;
-      const Box<D> before = boxes[id];
-      const Box<D> now = filter_changed ? before : draw<D>(random);
-      Box<D> bounds;
-      for (int axis = 0; axis < D; ++axis) {
-        bounds.min[axis] = std::min(before.min[axis], now.min[axis]);
-        bounds.max[axis] = std::max(before.max[axis], now.max[axis]);
+TEST(DynamicBvh, TellsWhatMovesToggle) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(7);
+    DynamicBvh<D> tree;
+    std::vector<Box<D>> boxes(500);
+    for (Box<D>& box : boxes) box = draw<D>(rng);
+    tree.build(boxes);
+    for (int round = 0; round < 20; ++round) {
+      std::vector<core::MovedBox<D>> moved;
+      Changes expected;
+      const std::vector<std::uint8_t> none_move(boxes.size(), 0);
+      for (std::uint32_t id = static_cast<std::uint32_t>(round % 3); id < boxes.size(); id += 7) {
+        const bool filter_changed = rng.one_in(16);
+        const Box<D> before = boxes[id];
+        const Box<D> now = filter_changed ? before : draw<D>(rng);
+        moved.push_back(moved_box(id, before, now, filter_changed));
+        moved.back().slot = tree.slot(BoxId{id});
+        expected.add<D>(moved.back(), boxes, none_move);
+        boxes[id] = now;
       }
-      moved.push_back({.before = before,
-                       .now = now,
-                       .bounds = bounds,
-                       .id = BoxId{id},
-                       .slot = tree.slot(BoxId{id}),
-                       .was_present = true,
-                       .is_present = true,
-                       .filter_changed = filter_changed});
-      for (std::uint32_t other = 0; other < boxes.size(); ++other) {
-        if (other == id) continue;
-        const bool did = overlap(before, boxes[other]);
-        const bool does = overlap(now, boxes[other]);
-        const Pair pair{BoxId{std::min(id, other)}, BoxId{std::max(id, other)}};
-        if (filter_changed ? did || does : does && !did) begun.push_back(pair);
-        if (!filter_changed && did && !does) ended.push_back(pair);
+      expected.begun.merge(expected.candidates);  // where the filter changed
+      std::vector<std::uint8_t> calls_for(moved.size());
+      const Changes found = written_changes(none_move, [&](const core::ChangeSinks& sinks) {
+        const std::uint64_t tests =
+            kernels::follow(tree.writable(), std::span<const core::MovedBox<D>>(moved), calls_for.data(),
+                            sinks.begun, sinks.ended);
+        EXPECT_GE(tests, kernels::fan_out * moved.size());
+      });
+      EXPECT_EQ(found.begun, expected.begun);
+      EXPECT_EQ(found.ended, expected.ended);
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        if ((calls_for[i] & kernels::left_leaf) != 0)
+          tree.reinsert(moved[i].id);
+        else if ((calls_for[i] & kernels::may_shrink) != 0)
+          tree.refit(moved[i].id);
       }
-      boxes[id] = now;
+      expect_whole(tree, boxes, rng);
+      if (testing::Test::HasFailure()) FAIL() << "round " << round;
     }
-    std::vector<Pair> found_begun;
-    std::vector<Pair> found_ended;
-    std::vector<std::uint8_t> calls_for(moved.size());
-    PairCollector begun_pairs(found_begun);
-    PairCollector ended_pairs(found_ended);
-    const std::uint64_t tests = kernels::follow(tree.writable(), std::span<const core::MovedBox<D>>(moved),
-                                                calls_for.data(), begun_pairs, ended_pairs);
-    begun_pairs.flush();
-    ended_pairs.flush();
-    EXPECT_GE(tests, kernels::fan_out * moved.size());
-    // Where a leaf touches both boxes of one that jumped, its pairs are found twice.
-    const auto sorted = [](std::vector<Pair>& pairs) {
-      std::ranges::sort(pairs);
-      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-      return pairs;
-    };
-    EXPECT_EQ(sorted(found_begun), sorted(begun));
-    EXPECT_EQ(sorted(found_ended), sorted(ended));
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      if ((calls_for[i] & kernels::left_leaf) != 0)
-        tree.reinsert(moved[i].id);
-      else if ((calls_for[i] & kernels::may_shrink) != 0)
-        tree.refit(moved[i].id);
-    }
-    expect_whole(tree, boxes, random);
-    if (testing::Test::HasFailure()) FAIL() << "round " << round;
-  }
+  });
 }
 
-TEST(DynamicBvh, TellsWhatMovesToggle) {
-  for (const std::string& name : instruction_sets()) {
-    SCOPED_TRACE(name);
-    const OnInstructionSet on(name);
-    expect_moves_to_toggle<2>();
-    expect_moves_to_toggle<3>();
-  }
+TEST(DynamicBvh, TellsWhetherAMoveLeftItsLeafAndMayHaveLeftABorder) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(9);
+    DynamicBvh<D> tree;
+    std::vector<Box<D>> boxes(500);
+    for (Box<D>& box : boxes) box = draw<D>(rng);
+    tree.build(boxes);
+    for (int move = 0; move < 300; ++move) {
+      const std::size_t id = rng.below(boxes.size());
+      core::MovedBox<D> moved = moved_box(id, boxes[id], draw<D>(rng));
+      if (rng.one_in(2)) moved = moved_box(id, boxes[id], boxes[id]);  // which stays in any bounds
+      moved.slot = tree.slot(BoxId(id));
+      const kernels::WritableBvh<D> writable = tree.writable();
+      const std::uint32_t parent = writable.info[moved.slot / kernels::fan_out].parent;
+      const Box<D> leaf = writable.nodes[parent / kernels::fan_out].box(parent % kernels::fan_out);
+      std::uint8_t expected = core::encloses(leaf, moved.now) ? 0 : kernels::left_leaf;
+      for (int axis = 0; axis < D; ++axis) {
+        if (moved.before.min[axis] == leaf.min[axis] || moved.before.max[axis] == leaf.max[axis])
+          expected |= kernels::may_shrink;
+      }
+      std::uint8_t calls_for = 0;
+      PairCounter pairs;
+      kernels::follow(writable, std::span<const core::MovedBox<D>>(&moved, 1), &calls_for, pairs, pairs);
+      ASSERT_EQ(calls_for, expected) << "move " << move;
+      boxes[id] = moved.now;
+    }
+  });
 }
 
 }  // namespace

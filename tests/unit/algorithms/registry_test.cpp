@@ -13,7 +13,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/world.hpp"
 
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

@@ -9,7 +9,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

@@ -16,9 +16,9 @@
 #include "broadside/world.hpp"
 
 #include "lab/scenes/motion.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/trackers.hpp"
-#include "tests/unit/wrong_algorithm.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/trackers.hpp"
+#include "tests/support/wrong_algorithm.hpp"
 
 namespace broadside {
 namespace {

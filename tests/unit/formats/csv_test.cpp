@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -37,14 +37,9 @@ class CsvTable : public Files {
   }
 
   std::string refusal_of(const std::string& text, const std::string& columns = {}) const {
-    try {
-      ReadOptions options;
-      options.columns = columns;
-      read_file(put("bad.csv", text), options);
-    } catch (const FileError& error) {
-      return error.what();
-    }
-    return "was read";
+    ReadOptions options;
+    options.columns = columns;
+    return refusal(put("bad.csv", text), options);
   }
 };
 

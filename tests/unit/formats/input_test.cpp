@@ -15,9 +15,9 @@
 
 #include "lab/formats/byte_source.hpp"
 #include "lab/formats/format.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/files.hpp"
-#include "tests/unit/pipe.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/pipe.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/formats/format.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -12,8 +12,8 @@
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/scenes/descriptions.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -200,7 +200,7 @@ TEST_F(MapTest, RefusesWhatIsWrongNamingByteAndFeature) {
 
 TEST_F(MapTest, RefusesWhatIsCutOffAnywhere) {
   for (const std::string& text : {collection, topology}) {
-    for (std::size_t length = 0; length < text.size(); length += 5)
+    for (std::size_t length = 0; length < text.size(); length += 23)
       EXPECT_THAT(refusal_of(text.substr(0, length)), HasSubstr("a.json")) << "cut off at " << length;
   }
 }

@@ -12,8 +12,8 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/swept_mesh.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

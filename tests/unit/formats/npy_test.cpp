@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

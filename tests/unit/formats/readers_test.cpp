@@ -21,9 +21,9 @@
 #include "lab/formats/write_file.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
-#include "tests/unit/pipe.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/pipe.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -22,9 +22,10 @@
 #include "lab/measure/memory.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/fuzz/sealed_trace.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
-#include "tests/unit/files.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/tape.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -63,43 +64,6 @@ std::optional<History<D>>& history_in(FileContent& content) {
     return content.in_2d;
   else
     return content.in_3d;
-}
-
-/// A trace in memory, made by a recorder.
-template <int D, typename Real = float>
-struct Tape {
-  Tape() {
-    recorder.open_with([this](const void* more, std::size_t count) {
-      bytes.append(static_cast<const char*>(more), count);
-      return true;
-    });
-  }
-
-  void set(std::uint32_t slot, const std::vector<Real>& box) {
-    recorder.set(slot, box.data(), box.data() + D);
-  }
-
-  void end_frame() {
-    recorder.end_frame();
-    ends.push_back(bytes.size());
-  }
-
-  std::string bytes;
-  std::vector<std::size_t> ends;  // of the header and of each frame
-  Recorder<D, Real> recorder;
-};
-
-/// Header at byte 0; frame 0 at byte 20, in which slots 0 and 2 get boxes and slot 1 is empty; frame 1 at
-/// byte 88, in which slot 0 moves and slot 2 becomes empty.
-std::string small_trace() {
-  Tape<2> tape;
-  tape.set(0, {0, 0, 1, 1});
-  tape.set(2, {2, 0.5F, 4, 3});
-  tape.end_frame();
-  tape.set(0, {0.25F, 0, 1.25F, 1});
-  tape.recorder.remove(2);
-  tape.end_frame();
-  return tape.bytes;
 }
 
 /// How many frames of a trace are read, and what the reader says of its end.

@@ -15,8 +15,8 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-#include "tests/message.hpp"
-#include "tests/unit/trackers.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/trackers.hpp"
 
 namespace broadside {
 namespace {

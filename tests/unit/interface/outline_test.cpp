@@ -15,7 +15,7 @@
 #include "broadside/error.hpp"
 #include "broadside/sinks.hpp"
 
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside {
 namespace {

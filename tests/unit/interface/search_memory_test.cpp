@@ -12,7 +12,7 @@
 
 #include "lab/measure/memory.hpp"
 #include "lab/scenes/random.hpp"
-#include "tests/threads/executors.hpp"
+#include "tests/support/executors.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -13,8 +13,8 @@
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
-#include "tests/message.hpp"
-#include "tests/unit/trackers.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/trackers.hpp"
 
 namespace broadside {
 namespace {

@@ -4,21 +4,21 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
 #include "kernels/sweep.hpp"
-#include "tests/instruction_sets.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/model.hpp"
 
 namespace broadside::kernels {
 namespace {
@@ -109,9 +109,7 @@ Result compared(const Entries<D>& a, const Entries<D>& b) {
 template <typename Search>
 Result found(Search search) {
   Result result;
-  PairCollector collector(result.pairs);
-  result.tests = search(static_cast<PairSink&>(collector));
-  collector.flush();
+  result.pairs = written_pairs([&](PairSink& pairs) { result.tests = search(pairs); });
   return result;
 }
 
@@ -144,24 +142,23 @@ const std::vector<Kind> kinds = {
 };
 
 template <int D>
-Entries<D> entries_of(const Kind& kind, std::size_t count, std::uint32_t first_id, std::mt19937& random) {
-  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+Entries<D> entries_of(const Kind& kind, std::size_t count, std::size_t first_id, Rng& rng) {
   Entries<D> entries(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (int axis = 0; axis < D; ++axis) {
       float& min = entries[i].box.min[axis];
       float& max = entries[i].box.max[axis];
-      min = static_cast<float>(below(kind.values));
-      max = min + static_cast<float>(below(kind.most_extent + 1));
-      if (!kind.infinite || below(4) != 0) continue;
-      const int sides = below(5);  // one of them: a box at an infinite point
+      min = static_cast<float>(rng.whole(0, kind.values - 1));
+      max = min + static_cast<float>(rng.whole(0, kind.most_extent));
+      if (!kind.infinite || !rng.one_in(4)) continue;
+      const int sides = rng.whole(0, 4);  // one of them: a box at an infinite point
       if (sides != 0) max = infinity;
       if (sides != 1) min = sides == 2 ? infinity : -infinity;
     }
     entries[i].id = BoxId(first_id + i);
-    entries[i].dedup_mask = static_cast<std::uint32_t>(random()) & kind.dedup_mask;
+    entries[i].dedup_mask = static_cast<std::uint32_t>(rng.bits()) & kind.dedup_mask;
   }
-  std::ranges::shuffle(entries, random);  // ids must not rise with the places
+  rng.shuffle(entries);  // ids must not rise with the places
   return entries;
 }
 
@@ -178,26 +175,19 @@ void sort_run(Entries<D>& entries, float slack = 0) {
   });
 }
 
-/// Runs `body.operator()<D>(kind, entries, others)` on every instruction set and sizes from 0 to 200.
+/// Runs `body(entries, others)` on every instruction set and sizes from 0 to 200.
 template <typename Body>
 void on_all(Body body) {
-  for (const std::string& name : instruction_sets()) {
-    const OnInstructionSet chosen(name);
-    ASSERT_EQ(instruction_set(), name);
+  on_each_instruction_set([&]<int D>() {
     for (const Kind& kind : kinds) {
-      SCOPED_TRACE(name + ", " + kind.name);
-      std::mt19937 random(17);
-      for (std::size_t size = 200; size != std::size_t(-1); size -= size > 70 ? 13 : 1) {
-        const std::size_t other = random() % 200;
-        const auto ids = static_cast<std::uint32_t>(size);
-        body.template operator()<2>(entries_of<2>(kind, size, 0, random),
-                                    entries_of<2>(kind, other, ids, random));
-        body.template operator()<3>(entries_of<3>(kind, size, 0, random),
-                                    entries_of<3>(kind, other, ids, random));
+      SCOPED_TRACE(kind.name);
+      Rng rng(17);
+      for (std::size_t size = 200; size != std::size_t(-1); size -= size > 70 ? 13 : size > 36 ? 3 : 1) {
+        body(entries_of<D>(kind, size, 0, rng), entries_of<D>(kind, rng.below(200), size, rng));
         if (testing::Test::HasFailure()) return;
       }
     }
-  }
+  });
 }
 
 TEST(Kernels, AreThereForPlainCppAtLeast) {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/advise/signals.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -102,17 +102,6 @@ TEST(Signals, AreThereForNoBoxesAndForOne) {
   EXPECT_THAT(none.axis_tests, ElementsAre(0, 0));
   EXPECT_THAT(text_of(none), HasSubstr("0 boxes in 2D, as floats."));
   EXPECT_EQ(signals_of(History<3, double>{{{{0, 0, 0}, {1, 1, 3}}}, {}}).largest, 3);
-}
-
-TEST(Signals, AreSentences) {
-  Signals signals = signals_of(History<2, double>{{{{0, 0}, {2, 2}}, {{2, 1}, {3, 3}}}, {}});
-  signals.overlaps = 1;
-  EXPECT_EQ(
-      text_of(signals),
-      "2 boxes in 2D, as doubles that floats hold exactly (--precision float). Their longest sides: 2.00 in "
-      "the median, half of them 2.00 to 2.00, 98 % 2.00 to 2.00, the longest 2.00. A box overlaps 1.00 "
-      "others. Tests a box that a sweep leaves: 0.500 along x, 0.500 along y; 1.00 times as many are near "
-      "each other as if they were spread evenly.");
 }
 
 }  // namespace

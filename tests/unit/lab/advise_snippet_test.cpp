@@ -1,6 +1,4 @@
 // The lines of C++ that advice prints: they compile, here, and do what they say.
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -10,6 +8,7 @@
 
 #include "lab/advise/snippet.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "tests/support/text_of.hpp"
 
 // Each as a user pastes it, into a room of its own.
 namespace broadside::find_2d {
@@ -43,10 +42,7 @@ Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
 namespace broadside::lab {
 namespace {
 
-std::string pasted(const std::string& name) {
-  std::ifstream file(BROADSIDE_SOURCE_DIR "/tests/unit/snippets/" + name + ".inc");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+std::string pasted(const std::string& name) { return project_text("tests/unit/snippets/" + name + ".inc"); }
 
 TEST(Snippet, IsWhatIsCompiledHere) {
   constexpr Precision single = Precision::float32;

@@ -1,13 +1,13 @@
 // docs/algorithms.md tells of every algorithm that the library has, with its tunables and a picture.
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
+
+#include "tests/support/text_of.hpp"
 
 namespace broadside {
 namespace {
@@ -18,8 +18,7 @@ const std::filesystem::path docs = BROADSIDE_SOURCE_DIR "/docs";
 
 /// What the page says under an algorithm's heading.
 std::string section_of(const std::string& name) {
-  std::ifstream file(docs / "algorithms.md");
-  const std::string page = {std::istreambuf_iterator<char>(file), {}};
+  const std::string page = project_text("docs/algorithms.md");
   const std::size_t begin = page.find("\n## " + name + "\n");
   if (begin == std::string::npos) return {};
   return page.substr(begin, page.find("\n## ", begin + 1) - begin);

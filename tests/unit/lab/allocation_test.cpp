@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/measure/memory.hpp"
-#include "tests/unit/use.hpp"
+#include "tests/support/use.hpp"
 
 namespace broadside::lab {
 namespace {

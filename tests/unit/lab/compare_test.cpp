@@ -16,9 +16,9 @@
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/scenes/scene.hpp"
 #include "lab/verify/verify.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/use.hpp"
-#include "tests/unit/wrong_algorithm.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/use.hpp"
+#include "tests/support/wrong_algorithm.hpp"
 
 namespace broadside::lab {
 namespace {

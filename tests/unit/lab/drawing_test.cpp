@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/report/drawing_paths.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {

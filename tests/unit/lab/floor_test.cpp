@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/measure/compare.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {

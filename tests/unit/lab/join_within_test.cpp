@@ -11,7 +11,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/join.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {

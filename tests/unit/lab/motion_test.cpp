@@ -12,7 +12,7 @@
 
 #include "broadside/error.hpp"
 
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,7 +1,6 @@
 // The list of other libraries: what is there, what is missing, and that nothing is forgotten.
 #include "lab/peers/peers.hpp"
 
-#include <fstream>
 #include <iterator>
 #include <regex>
 #include <string>
@@ -13,7 +12,8 @@
 #include "broadside/error.hpp"
 
 #include "lab/catalogue.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -22,14 +22,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::UnorderedElementsAreArray;
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(BROADSIDE_SOURCE_DIR + ("/" + path));
-  EXPECT_TRUE(file.is_open()) << path;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(Peers, AreEachThereOrMissing) {
-  const std::string header = text_of("lab/peers/peers.hpp");
+  const std::string header = project_text("lab/peers/peers.hpp");
   static const std::regex declaration(R"(\nAlgorithm ([a-z0-9_]+)\(\);)");
   std::vector<std::string> declared;
   for (std::sregex_iterator match(header.begin(), header.end(), declaration), end; match != end; ++match)
@@ -54,7 +48,7 @@ TEST(Peers, AreInTheCatalogueAsPeersWithTheirVersions) {
 }
 
 TEST(Peers, ThatAreMissingAreNamedWithAPackageThatSetupInstalls) {
-  const std::string packages = text_of("packages-peers.txt");
+  const std::string packages = project_text("packages-peers.txt");
   for (const peers::MissingPeer& peer : peers::missing_peers()) {
     const std::string package = peer.reason.substr(0, peer.reason.find(' '));
     EXPECT_THAT(packages, HasSubstr("\n" + package + "\n")) << peer.name;

@@ -87,19 +87,6 @@ TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
   EXPECT_THAT(lines[5], StartsWith("  slow "));
 }
 
-TEST(Table, ShowsMedianRatioAndTheRestOfALine) {
-  const auto lines =
-      lines_of(table_of(still_case({timed("first", {4, 4.5, 5}), timed("second", {8, 9, 10})})));
-  EXPECT_EQ(lines[1],
-            "  algorithm    ms  ratio  95 % interval  ns a box  tests a box   memory     peak  min..max");
-  EXPECT_EQ(lines[2],
-            "  first      4.50    1.0  -                   450         5.00  64.0 kB  65.0 kB  4.00..5.00  "
-            "verified");
-  EXPECT_EQ(lines[3],
-            "  second     9.00    2.0  -                   900         5.00  64.0 kB  65.0 kB  8.00..10.0  "
-            "verified");
-}
-
 TEST(Table, ShowsTheIntervalOfARatioOrThatTwoAreLevel) {
   const auto lines = lines_of(
       table_of(still_case({timed("first", {4, 4, 4, 4, 4, 4}), timed("close", {3.9, 4.1, 4.2, 3.8, 4.3, 4.1}),
@@ -175,22 +162,6 @@ TEST(Table, ShowsAFailureAndNoTimeForIt) {
   const std::string line = lines_of(table)[3];
   EXPECT_THAT(line, HasSubstr("FAILED"));
   EXPECT_THAT(line, Not(testing::ContainsRegex("[0-9]")));
-}
-
-TEST(Table, TellsHowAHistoryMoves) {
-  CaseResult result = still_case({timed("first", {4.5, 4.6})});
-  result.of.mode = Mode::track;
-  result.of.frames = 20;
-  result.of.moving = 0.1;
-  const auto lines = lines_of(table_of(result));
-  EXPECT_THAT(lines[0], HasSubstr("10,000 boxes, 10 % moving, 20 frames, 1,234 pairs at the end"));
-  EXPECT_EQ(lines[1],
-            "  algorithm  ms a frame   p99  worst  ratio  95 % interval  to a peer  ns a mover  first frame  "
-            "tests a box   memory     peak");
-  EXPECT_EQ(lines[2],
-            "  first            4.55  4.60   4.60    1.0  -                      -       4,550            -  "
-            "       "
-            "5.00  64.0 kB  65.0 kB  verified");
 }
 
 TEST(Table, TellsOfMotionWhatAMoverCostsAndWhatAPeerTakes) {

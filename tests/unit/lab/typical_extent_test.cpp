@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside::lab::peers {
 namespace {

@@ -12,8 +12,8 @@
 #include "broadside/error.hpp"
 
 #include "lab/verify/verify_history.hpp"
-#include "tests/unit/files.hpp"
-#include "tests/unit/wrong_algorithm.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/wrong_algorithm.hpp"
 
 namespace broadside::lab {
 namespace {

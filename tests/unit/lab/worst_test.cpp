@@ -9,7 +9,7 @@
 
 #include "lab/verify/verify.hpp"
 #include "lab/worst/input.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "lab/formats/format.hpp"
 #include "paper/experiments/results.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "paper/experiments/table.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {

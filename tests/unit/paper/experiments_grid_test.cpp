@@ -3,28 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "paper/experiments/experiment.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
-
-Finding judge(const char* experiment, const std::vector<Table>& tables) {
-  return find_experiment(experiment).judge(tables);
-}
-
-double figure(const Finding& finding, const std::string& name) {
-  for (const Figure& one : finding.figures) {
-    if (one.name == name) return one.value;
-  }
-  throw std::invalid_argument("no figure " + name);
-}
 
 // Experiment 2.
 
@@ -50,7 +38,7 @@ std::vector<Table> races(const Curve& tests, const Curve& time) {
 
 TEST(Overtaking, HoldsFromWhereTheOthersAreFaster) {
   const Finding finding =
-      judge("overtaking", races([](double) { return 8.0; }, [](double) { return 100.0; }));
+      judged("overtaking", races([](double) { return 8.0; }, [](double) { return 100.0; }));
   EXPECT_EQ(finding.verdict_text(), "holds when there are more than about 100 boxes");
   EXPECT_NEAR(figure(finding, "paper_grid_from"), 100, 1e-6);
   EXPECT_NEAR(figure(finding, "bvh_3d_from"), 100, 1e-6);
@@ -58,23 +46,17 @@ TEST(Overtaking, HoldsFromWhereTheOthersAreFaster) {
 }
 
 TEST(Overtaking, HoldsWhereTheOthersAreFasterFromTheFewestOn) {
-  EXPECT_EQ(judge("overtaking", races([](double) { return 8.0; }, [](double) { return 1.0; })).verdict,
+  EXPECT_EQ(judged("overtaking", races([](double) { return 8.0; }, [](double) { return 1.0; })).verdict,
             Verdict::holds);
 }
 
 TEST(Overtaking, DoesNotHoldWhereOneIsNeverFasterOrTestsGrowAsInBruteForce) {
-  const Finding slow = judge("overtaking", races([](double) { return 8.0; }, [](double n) { return 2 * n; }));
+  const Finding slow =
+      judged("overtaking", races([](double) { return 8.0; }, [](double n) { return 2 * n; }));
   EXPECT_EQ(slow.verdict, Verdict::does_not_hold);
   EXPECT_NE(slow.reason.find("paper_grid never"), std::string::npos) << slow.reason;
-  EXPECT_EQ(judge("overtaking", races([](double n) { return n / 4; }, [](double) { return 1.0; })).verdict,
+  EXPECT_EQ(judged("overtaking", races([](double n) { return n / 4; }, [](double) { return 1.0; })).verdict,
             Verdict::does_not_hold);
-}
-
-TEST(Overtaking, AsksForItsTablesAndForThreeRowsOfEachAlgorithm) {
-  std::vector<Table> tables = races([](double) { return 8.0; }, [](double) { return 100.0; });
-  EXPECT_THROW(judge("overtaking", {tables[0], tables[1]}), std::invalid_argument);
-  tables[0].rows.resize(8);
-  EXPECT_THROW(judge("overtaking", tables), std::invalid_argument);
 }
 
 // Experiment 3.
@@ -97,7 +79,7 @@ std::vector<Table> worlds(double cell_bytes, const Curve& tests) {
 }
 
 TEST(GridMemory, HoldsWhereMemoryGoesWithTheWorldAndTheCapWithTests) {
-  const Finding finding = judge("grid_memory", worlds(24, [](double world) { return world; }));
+  const Finding finding = judged("grid_memory", worlds(24, [](double world) { return world; }));
   EXPECT_EQ(finding.verdict, Verdict::holds);
   EXPECT_NEAR(figure(finding, "bytes_a_cell"), 24, 1e-6);
   EXPECT_NEAR(figure(finding, "largest_matrix_bytes"), 24 * 4096.0 * 4096.0, 1);
@@ -106,24 +88,13 @@ TEST(GridMemory, HoldsWhereMemoryGoesWithTheWorldAndTheCapWithTests) {
 }
 
 TEST(GridMemory, IsOfSmallCellsOnlyWhereLargeOnesCostNoTests) {
-  EXPECT_EQ(judge("grid_memory", worlds(24, [](double) { return 8.0; })).verdict_text(),
+  EXPECT_EQ(judged("grid_memory", worlds(24, [](double) { return 8.0; })).verdict_text(),
             "holds when cells do not grow with the world");
 }
 
 TEST(GridMemory, DoesNotHoldWhereMemoryIsThatOfTheBoxes) {
-  EXPECT_EQ(judge("grid_memory", worlds(0, [](double world) { return world; })).verdict,
+  EXPECT_EQ(judged("grid_memory", worlds(0, [](double world) { return world; })).verdict,
             Verdict::does_not_hold);
-}
-
-TEST(GridMemory, AsksForThreeWorldsBelowTheCapAndForEachGrid) {
-  std::vector<Table> tables = worlds(24, [](double) { return 8.0; });
-  std::vector<Table> few = tables;
-  few[0].rows.erase(few[0].rows.begin(), few[0].rows.begin() + 4);
-  few[1].rows.erase(few[1].rows.begin(), few[1].rows.begin() + 8);
-  EXPECT_THROW(judge("grid_memory", few), std::invalid_argument);
-  std::erase_if(tables[1].rows, [](const std::vector<Cell>& row) { return row[1] == Cell("grid"); });
-  EXPECT_THROW(judge("grid_memory", tables), std::invalid_argument);
-  EXPECT_THROW(judge("grid_memory", {tables[0]}), std::invalid_argument);
 }
 
 // Experiment 4.
@@ -160,7 +131,7 @@ const Curve none = [](double) { return 5.0; };
 const Curve half_at_eight = [](double neighbours) { return 50 * std::sqrt(8 / neighbours); };
 
 TEST(GridSpanning, HoldsWhereMostTimeGoesIntoAdding) {
-  const Finding finding = judge("grid_spanning", shares(all, all));
+  const Finding finding = judged("grid_spanning", shares(all, all));
   EXPECT_EQ(finding.verdict, Verdict::holds);
   EXPECT_NEAR(figure(finding, "references_growth"), 2, 1e-6);
   EXPECT_NEAR(figure(finding, "tests_growth"), 1, 1e-6);
@@ -168,28 +139,19 @@ TEST(GridSpanning, HoldsWhereMostTimeGoesIntoAdding) {
 }
 
 TEST(GridSpanning, HoldsUpToSomeDensity) {
-  EXPECT_EQ(judge("grid_spanning", shares(half_at_eight, all)).verdict_text(),
+  EXPECT_EQ(judged("grid_spanning", shares(half_at_eight, all)).verdict_text(),
             "holds when a box touches fewer than about 8.00 others");
 }
 
 TEST(GridSpanning, HoldsForNewCellsOnly) {
-  EXPECT_EQ(judge("grid_spanning", shares(none, all)).verdict_text(),
+  EXPECT_EQ(judged("grid_spanning", shares(none, all)).verdict_text(),
             "holds when each search makes its cells anew");
-  EXPECT_EQ(judge("grid_spanning", shares(none, half_at_eight)).verdict_text(),
+  EXPECT_EQ(judged("grid_spanning", shares(none, half_at_eight)).verdict_text(),
             "holds when each search makes its cells anew, and a box touches fewer than about 8.00 others");
 }
 
 TEST(GridSpanning, DoesNotHoldWhereTestsTakeMost) {
-  EXPECT_EQ(judge("grid_spanning", shares(none, none)).verdict, Verdict::does_not_hold);
-}
-
-TEST(GridSpanning, AsksForTwoDensitiesAndForBothGrids) {
-  std::vector<Table> tables = shares(all, all);
-  std::vector<Table> one = tables;
-  one[0].rows.resize(5);
-  EXPECT_THROW(judge("grid_spanning", one), std::invalid_argument);
-  tables[1].rows.pop_back();
-  EXPECT_THROW(judge("grid_spanning", tables), std::invalid_argument);
+  EXPECT_EQ(judged("grid_spanning", shares(none, none)).verdict, Verdict::does_not_hold);
 }
 
 // Experiment 5.
@@ -215,7 +177,7 @@ std::vector<Table> curves(const std::vector<std::string>& flat, double chosen) {
 }
 
 TEST(GridCellSize, HoldsWhereEachSceneHasAnOptimumThatNoRuleFinds) {
-  const Finding finding = judge("grid_cell_size", curves({}, 2));
+  const Finding finding = judged("grid_cell_size", curves({}, 2));
   EXPECT_EQ(finding.verdict, Verdict::holds);
   EXPECT_EQ(figure(finding, "best_cell_thin"), 4);
   EXPECT_EQ(figure(finding, "largest_over_best_thin"), 2.5);
@@ -224,29 +186,20 @@ TEST(GridCellSize, HoldsWhereEachSceneHasAnOptimumThatNoRuleFinds) {
 }
 
 TEST(GridCellSize, IsNoMatterOfHandsWhereARuleFindsTheOptimum) {
-  EXPECT_EQ(judge("grid_cell_size", curves({}, 1.1)).verdict_text(),
+  EXPECT_EQ(judged("grid_cell_size", curves({}, 1.1)).verdict_text(),
             "holds when the hand may be a rule: with the size that our grid chooses, it takes 1.10 times as "
             "long as with the best");
 }
 
 TEST(GridCellSize, NamesTheScenesInWhichOnlySomeHaveAnOptimum) {
-  EXPECT_EQ(judge("grid_cell_size", curves({"uniform", "mixed", "thin"}, 2)).verdict_text(),
+  EXPECT_EQ(judged("grid_cell_size", curves({"uniform", "mixed", "thin"}, 2)).verdict_text(),
             "holds when boxes are as in power_law, clustered");
 }
 
 TEST(GridCellSize, DoesNotHoldWhereNoSizeMatters) {
   EXPECT_EQ(
-      judge("grid_cell_size", curves({"uniform", "power_law", "mixed", "clustered", "thin"}, 1)).verdict,
+      judged("grid_cell_size", curves({"uniform", "power_law", "mixed", "clustered", "thin"}, 1)).verdict,
       Verdict::does_not_hold);
-}
-
-TEST(GridCellSize, AsksForEachSceneAndChoice) {
-  std::vector<Table> tables = curves({}, 2);
-  std::vector<Table> few = tables;
-  few[0].rows.resize(12);
-  EXPECT_THROW(judge("grid_cell_size", few), std::invalid_argument);
-  tables[3].rows.pop_back();
-  EXPECT_THROW(judge("grid_cell_size", tables), std::invalid_argument);
 }
 
 }  // namespace

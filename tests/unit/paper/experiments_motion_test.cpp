@@ -1,7 +1,6 @@
 // The verdicts of the experiments on boxes that move, in grids and quadtrees and in general, follow from
 // their tables.
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -10,22 +9,12 @@
 #include "paper/experiments/experiment.hpp"
 #include "paper/experiments/mending.hpp"
 #include "paper/experiments/table.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
 
 using Curve = std::function<double(double x)>;
-
-Finding judged(const char* experiment, const std::vector<Table>& tables) {
-  return find_experiment(experiment).judge(tables);
-}
-
-double figure(const Finding& finding, const std::string& name) {
-  for (const Figure& one : finding.figures) {
-    if (one.name == name) return one.value;
-  }
-  throw std::invalid_argument("no figure " + name);
-}
 
 bool says(const Finding& finding, const std::string& text) {
   return finding.reason.find(text) != std::string::npos;
@@ -99,15 +88,6 @@ TEST(UpdateFraction, DoesNotHoldWhereAStructureIsNeverUpdatedFaster) {
   EXPECT_TRUE(says(finding, "paper_sweep never")) << finding.reason;
 }
 
-TEST(UpdateFraction, AsksForTwoRowsOfEachStructure) {
-  const Curve some = [](double moving) { return moving / 10; };
-  Table table = fractions(some, some);
-  table.rows.resize(3);
-  EXPECT_THROW(judged("update_fraction", {table}), std::invalid_argument);
-  table.rows.clear();
-  EXPECT_THROW(judged("update_fraction", {table}), std::invalid_argument);
-}
-
 // Experiment 10: how many times as fast translating is, by the cells a box spans.
 
 Table ways(const Curve& gain) {
@@ -139,15 +119,6 @@ TEST(GridTranslation, HoldsWhenBoxesSpanManyCellsWhereReinsertingNeverWins) {
 
 TEST(GridTranslation, DoesNotHoldWhereTranslatingIsNotFasterInManyCells) {
   EXPECT_EQ(judged("grid_translation", {ways([](double) { return 1.05; })}).verdict, Verdict::does_not_hold);
-}
-
-TEST(GridTranslation, AsksForBothStepsAndReferencesThatAreMoved) {
-  Table table = ways([](double cells) { return cells; });
-  table.rows.resize(4);
-  EXPECT_THROW(judged("grid_translation", {table}), std::invalid_argument);
-  table = ways([](double cells) { return cells; });
-  table.rows[0][3] = 0.0;
-  EXPECT_THROW(judged("grid_translation", {table}), std::invalid_argument);
 }
 
 // Experiment 11: rebuilding takes 1 ms; reinserting as much as the curve says.
@@ -195,15 +166,6 @@ TEST(GridRebuilding, DoesNotHoldWhereReinsertingIsFasterEvenIfAllMove) {
                                                           [](double moving) { return moving / 20; }));
   EXPECT_EQ(finding.verdict, Verdict::does_not_hold);
   EXPECT_TRUE(says(finding, "never (few)")) << finding.reason;
-}
-
-TEST(GridRebuilding, AsksForTwoRowsACase) {
-  std::vector<Table> tables =
-      grids([](double moving) { return moving; }, [](double moving) { return moving; });
-  tables[0].rows.resize(4);
-  EXPECT_THROW(judged("grid_rebuilding", tables), std::invalid_argument);
-  tables[0].rows.clear();
-  EXPECT_THROW(judged("grid_rebuilding", tables), std::invalid_argument);
 }
 
 // Experiment 14: how many times as fast as from the root the other ways are, by the leaves a box is in.
@@ -264,21 +226,6 @@ TEST(QuadtreeSiblings, IsJudgedByReferencesCarriedAcrossAndNotByTheWayThroughThe
   EXPECT_EQ(finding.verdict, Verdict::does_not_hold);
   EXPECT_EQ(figure(finding, "relative_fewest_leaves_capacity_8"), 2);
   EXPECT_EQ(figure(finding, "pays_below"), 0);
-}
-
-TEST(QuadtreeSiblings, AsksForItsTablesAndTwoRowsATree) {
-  std::vector<Table> tables = siblings([](double) { return 1.5; });
-  EXPECT_THROW(judged("quadtree_siblings", {tables[0], tables[1]}), std::invalid_argument);
-  tables[2].rows.resize(5);
-  EXPECT_THROW(judged("quadtree_siblings", tables), std::invalid_argument);
-  tables[2].rows.clear();
-  EXPECT_THROW(judged("quadtree_siblings", tables), std::invalid_argument);
-}
-
-TEST(QuadtreeSiblings, RefusesTablesWithoutTheWayAcross) {
-  std::vector<Table> tables = siblings([](double) { return 1.5; });
-  tables[2].columns.back().name = "another";
-  EXPECT_THROW(judged("quadtree_siblings", tables), std::invalid_argument);
 }
 
 }  // namespace

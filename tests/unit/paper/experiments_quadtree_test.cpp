@@ -1,18 +1,13 @@
 // The verdicts of the experiments on quadtrees follow from their tables.
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "paper/experiments/experiment.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
-
-Finding judged(const char* experiment, const std::vector<Table>& tables) {
-  return find_experiment(experiment).judge(tables);
-}
 
 /// A box of 1 and one of 64 units in leaves of 2 and of 1; the larger one comes to `factor` times as many.
 Table levels(double factor) {
@@ -60,16 +55,6 @@ TEST(QuadtreeSizesExperiment, DoesNotHoldWhereALargeBoxPropagatesLessOrMore) {
 TEST(QuadtreeSizesExperiment, HoldsWhenThereAreMoreWhereOneInAHundredIsNoBurden) {
   EXPECT_EQ(judged("quadtree_sizes", {levels(3.88), sizes(1.1)}).verdict_text(),
             "holds when more than one box in a hundred is large");
-}
-
-TEST(QuadtreeSizesExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  EXPECT_THROW(judged("quadtree_sizes", {levels(3.88)}), std::invalid_argument);
-  Table few = sizes(10);
-  few.rows.resize(4);
-  EXPECT_THROW(judged("quadtree_sizes", {levels(3.88), few}), std::invalid_argument);
-  Table unnamed = levels(3.88);
-  unnamed.columns[1].name = "other";
-  EXPECT_THROW(judged("quadtree_sizes", {unnamed, sizes(10)}), std::invalid_argument);
 }
 
 /// A density: what leaves of 8 and the best ones take.
@@ -122,16 +107,6 @@ TEST(QuadtreeCapacityExperiment, DoesNotHoldWhereSmallLeavesAreTheBestOrDenseWor
   EXPECT_EQ(
       judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 3, 32}, {64, 1.6, 3, 32}}), own()}).verdict,
       Verdict::does_not_hold);
-}
-
-TEST(QuadtreeCapacityExperiment, RefusesTablesWithoutWhatItJudgesBy) {
-  const Table paper = capacities("paper", {{1, 1.5, 1.1, 32}, {64, 12, 3, 128}});
-  EXPECT_THROW(judged("quadtree_capacity", {paper}), std::invalid_argument);
-  EXPECT_THROW(judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 1.1, 32}}), own()}),
-               std::invalid_argument);
-  Table few = paper;
-  few.rows.resize(2);
-  EXPECT_THROW(judged("quadtree_capacity", {few, own()}), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,19 +1,14 @@
 // The verdicts of the experiments on sweep and prune follow from their tables.
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "paper/experiments/experiment.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
-
-Finding judged(const char* experiment, const std::vector<Table>& tables) {
-  return find_experiment(experiment).judge(tables);
-}
 
 /// What the sweeps cost in a world without bounds and with infinite boxes, over the bounded ones.
 Table worlds(double boundless, double infinite) {

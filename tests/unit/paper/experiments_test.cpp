@@ -2,7 +2,6 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <regex>
@@ -16,7 +15,8 @@
 #include "broadside/error.hpp"
 
 #include "paper/experiments/results.hpp"
-#include "tests/message.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -28,11 +28,6 @@ using testing::UnorderedElementsAreArray;
 
 const fs::path folder = fs::path(BROADSIDE_SOURCE_DIR) / "paper" / "experiments";
 const fs::path committed = fs::path(BROADSIDE_SOURCE_DIR) / "paper" / "results" / "experiments.json";
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Lower case, digits and underscores.
 bool is_name(const std::string& text) {
@@ -46,7 +41,7 @@ TEST(Experiments, AreThoseWhoseFilesEndInADescription) {
   std::vector<std::string> described;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".cpp") continue;
-    const std::string text = text_of(entry.path());
+    const std::string text = broadside::text_of(entry.path());
     for (std::sregex_iterator match(text.begin(), text.end(), description), end; match != end; ++match) {
       described.push_back((*match)[1]);
       EXPECT_EQ(entry.path().stem().string(), described.back());
@@ -101,7 +96,7 @@ class CommittedResults : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(fs::exists(committed)) << committed;
-    results_ = read_experiments(text_of(committed), committed.string());
+    results_ = read_experiments(broadside::text_of(committed), committed.string());
   }
 
   ExperimentResults results_;

@@ -1,13 +1,12 @@
 // Experiment 15: what it makes of tables made by hand.
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "paper/experiments/results.hpp"
 #include "paper/experiments/winners_measure.hpp"
+#include "tests/unit/paper/judged.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -48,16 +47,6 @@ std::vector<Table> tables_of(const std::vector<std::pair<bool, Times>>& some, do
            .columns = {{"dimension"}, {"boxes"}, {"algorithm"}, {"threads"}, {"time"}}}};
 }
 
-Finding found(const std::vector<Table>& tables) { return judged(find_experiment("winners"), tables); }
-
-double figure(const Finding& finding, const std::string& name) {
-  for (const Figure& figure : finding.figures) {
-    if (figure.name == name) return figure.value;
-  }
-  ADD_FAILURE() << "no figure " << name;
-  return 0;
-}
-
 bool has_figure(const Finding& finding, const std::string& name) {
   return std::ranges::find(finding.figures, name, &Figure::name) != finding.figures.end();
 }
@@ -67,8 +56,8 @@ const Times bvh_wins = {1, 0, 2, 4, 4, 1};
 const Times bvh_wins_and_auto_errs = {4, 9, 2, 4, 4, 1};
 
 TEST(Winners, HoldsWhereWinnersDifferAndAutoLosesLeast) {
-  const Finding finding =
-      found(tables_of({{false, grid_wins}, {false, bvh_wins}, {true, grid_wins}, {true, bvh_wins}}));
+  const Finding finding = judged(
+      "winners", tables_of({{false, grid_wins}, {false, bvh_wins}, {true, grid_wins}, {true, bvh_wins}}));
   EXPECT_EQ(finding.verdict, Verdict::holds) << finding.reason;
   EXPECT_THAT(finding.reason,
               AllOf(HasSubstr("Of 4 fields"), HasSubstr("grid in 2, bvh in 2"), Not(HasSubstr("quadtree"))));
@@ -81,24 +70,26 @@ TEST(Winners, HoldsWhereWinnersDifferAndAutoLosesLeast) {
 
 TEST(Winners, DoesNotHoldWhereOneAlgorithmIsBestEverywhereButForNoise) {
   const Finding finding =
-      found(tables_of({{false, grid_wins}, {true, {1, 9, 1.05, 4, 4, 1}}, {true, grid_wins}}));
+      judged("winners", tables_of({{false, grid_wins}, {true, {1, 9, 1.05, 4, 4, 1}}, {true, grid_wins}}));
   EXPECT_EQ(finding.verdict, Verdict::does_not_hold) << finding.reason;
 }
 
 TEST(Winners, DoesNotHoldWhereAutoChoosesBadly) {
-  const Finding finding = found(tables_of({{false, grid_wins},
-                                           {false, bvh_wins_and_auto_errs},
-                                           {true, grid_wins},
-                                           {true, bvh_wins_and_auto_errs}}));
+  const Finding finding = judged("winners", tables_of({{false, grid_wins},
+                                                       {false, bvh_wins_and_auto_errs},
+                                                       {true, grid_wins},
+                                                       {true, bvh_wins_and_auto_errs}}));
   EXPECT_EQ(finding.verdict, Verdict::does_not_hold) << finding.reason;
   EXPECT_DOUBLE_EQ(figure(finding, "auto_worst"), 4);
 }
 
 TEST(Winners, HoldsForStillOrForMovingBoxesWhereAutoChoosesWellForThese) {
-  const Finding still = found(
+  const Finding still = judged(
+      "winners",
       tables_of({{false, grid_wins}, {false, bvh_wins}, {true, grid_wins}, {true, bvh_wins_and_auto_errs}}));
   EXPECT_EQ(still.verdict_text(), "holds when the boxes stand still") << still.reason;
-  const Finding moving = found(
+  const Finding moving = judged(
+      "winners",
       tables_of({{true, grid_wins}, {true, bvh_wins}, {false, grid_wins}, {false, bvh_wins_and_auto_errs}}));
   EXPECT_EQ(moving.verdict_text(), "holds when boxes move") << moving.reason;
 }
@@ -106,35 +97,28 @@ TEST(Winners, HoldsForStillOrForMovingBoxesWhereAutoChoosesWellForThese) {
 TEST(Winners, TakesAnAlgorithmThatWasLeftOutOfAFieldForNoneThatIsBestEverywhere) {
   Times only_grid_elsewhere = bvh_wins;
   only_grid_elsewhere[2] = 0;
-  const Finding finding = found(tables_of(
-      {{false, grid_wins}, {false, only_grid_elsewhere}, {true, grid_wins}, {true, only_grid_elsewhere}}));
+  const Finding finding = judged("winners", tables_of({{false, grid_wins},
+                                                       {false, only_grid_elsewhere},
+                                                       {true, grid_wins},
+                                                       {true, only_grid_elsewhere}}));
   EXPECT_EQ(finding.verdict, Verdict::holds) << finding.reason;
 }
 
 TEST(Winners, TellsOfInstructionSetsThreadsAndPeersWhereThereAreAny) {
   std::vector<Table> tables = tables_of({{false, grid_wins}, {false, bvh_wins}}, 8);
-  EXPECT_DOUBLE_EQ(figure(found(tables), "peer_over_auto_mean"), 8);
+  EXPECT_DOUBLE_EQ(figure(judged("winners", tables), "peer_over_auto_mean"), 8);
   tables[1].add({"2D", 100.0, "grid", "AVX2", 1.0});
   tables[2].add({"2D", 100.0, "grid", 1.0, 3.0});
-  EXPECT_FALSE(has_figure(found(tables), "simd_gain_mean"));
-  EXPECT_FALSE(has_figure(found(tables), "thread_gain_mean"));
+  EXPECT_FALSE(has_figure(judged("winners", tables), "simd_gain_mean"));
+  EXPECT_FALSE(has_figure(judged("winners", tables), "thread_gain_mean"));
   tables[1].add({"2D", 100.0, "grid", "SSE4", 2.0});
   tables[1].add({"2D", 100.0, "grid", "SCALAR", 5.0});
   tables[2].add({"2D", 100.0, "grid", 2.0, 2.0});
-  const Finding finding = found(tables);
+  const Finding finding = judged("winners", tables);
   EXPECT_DOUBLE_EQ(figure(finding, "simd_gain_mean"), 5);
   EXPECT_DOUBLE_EQ(figure(finding, "thread_gain_mean"), 1.5);
   EXPECT_THAT(finding.reason,
               AllOf(HasSubstr("AVX2 is 5.0 to 5.0 times as fast as SCALAR"), HasSubstr("2 threads")));
-}
-
-TEST(Winners, RefusesTablesThatSayTooLittle) {
-  EXPECT_THROW(found({}), std::invalid_argument);
-  EXPECT_THROW(found(tables_of({{false, grid_wins}})), std::invalid_argument);
-  EXPECT_THROW(found(tables_of({{false, {0, 1, 1}}, {false, {0, 2, 1}}})), std::invalid_argument);
-  std::vector<Table> tables = tables_of({{false, grid_wins}, {false, bvh_wins}});
-  tables[0].columns[tables[0].column("bvh")].name = "other";
-  EXPECT_THROW(found(tables), std::invalid_argument);
 }
 
 }  // namespace

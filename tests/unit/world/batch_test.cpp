@@ -8,8 +8,8 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/message.hpp"
 #include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {

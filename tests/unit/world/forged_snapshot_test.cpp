@@ -12,8 +12,8 @@
 #include "broadside/world.hpp"
 
 #include "tests/fuzz/snapshot_fields.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

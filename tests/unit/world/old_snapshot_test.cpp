@@ -1,7 +1,5 @@
 // Snapshots that earlier versions wrote.
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -10,12 +8,13 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
+#include "tests/support/text_of.hpp"
+
 namespace broadside {
 namespace {
 
 std::vector<std::byte> fixture(const std::string& name) {
-  std::ifstream file(std::string(BROADSIDE_SOURCE_DIR) + "/tests/fixtures/" + name, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = project_text("tests/fixtures/" + name);
   const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
   return {bytes, bytes + text.size()};
 }

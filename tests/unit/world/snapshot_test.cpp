@@ -14,8 +14,8 @@
 #include "broadside/world.hpp"
 
 #include "lab/scenes/random.hpp"
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "broadside/error.hpp"
 
-#include "tests/message.hpp"
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
+#include "tests/support/message.hpp"
 #include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {

@@ -9,7 +9,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-#include "tests/unit/boxes.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside {
 

@@ -5,21 +5,20 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "lab/formats/format.hpp"
+#include "lab/measure/allocation.hpp"
+#include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
 
 /// A file of a fuzzer's corpus.
-inline std::string corpus(const std::string& name) {
-  std::ifstream file(BROADSIDE_SOURCE_DIR "/tests/fuzz/corpus/" + name, std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+inline std::string corpus(const std::string& name) { return project_text("tests/fuzz/corpus/" + name); }
 
 /// Names the case of an extension, such as ".csv".
 inline std::string without_dot(const testing::TestParamInfo<std::string>& info) {
@@ -46,20 +45,23 @@ class Files : public testing::Test {
     return path(name);
   }
 
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string text_of(const std::string& name) const { return broadside::text_of(path(name)); }
 
   std::size_t count_files() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
   }
 
-  /// What read_file says of a file that it refuses.
-  std::string refusal(const std::filesystem::path& file) const {
+  /// What read_file says of a file that it refuses: whatever is wrong, it names the file, and takes no memory
+  /// for what the file only claims to hold.
+  std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) const {
+    formats();  // which is made once and kept
+    const AllocationMeter meter;
     try {
-      read_file(file);
+      read_file(file, options);
     } catch (const FileError& error) {
+      const std::optional<Allocation> allocation = meter.read();
+      EXPECT_LE(allocation ? allocation->peak : 0, 2'000'000) << error.what();
+      EXPECT_NE(std::string(error.what()).find(file.filename().string()), std::string::npos) << error.what();
       return error.what();
     }
     return "was read";

@@ -1,27 +1,28 @@
-// Random numbers that are the same with every compiler and standard library.
+// Random numbers for tests: those of the scenes, which are the same with every compiler and standard library.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <random>
 #include <span>
 #include <utility>
 
-namespace broadside::laws {
+#include "lab/scenes/random.hpp"
 
-/// Seeded random numbers. Their slight bias does not matter here.
-class Rng {
+namespace broadside {
+
+/// Seeded random numbers.
+class Rng : private lab::Random {
  public:
-  explicit Rng(std::uint64_t seed) : engine_(seed) {}
+  using lab::Random::bits;
+  using lab::Random::Random;
 
   /// A number from 0 to `count` - 1.
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(lab::Random::below(count)); }
 
   /// A whole number, both ends included.
   int whole(int least, int most) { return least + static_cast<int>(below(std::size_t(most - least + 1))); }
 
-  /// A number of the unit interval with 24 random bits.
-  float unit() { return static_cast<float>(engine_() >> 40) * 0x1p-24f; }
+  /// A number of [0, 1) with 24 random bits.
+  float unit() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
 
   float between(float least, float most) { return least + (most - least) * unit(); }
 
@@ -36,9 +37,6 @@ class Rng {
   void shuffle(Sequence& sequence) {
     for (std::size_t i = sequence.size(); i > 1; --i) std::swap(sequence[i - 1], sequence[below(i)]);
   }
-
- private:
-  std::mt19937_64 engine_;
 };
 
-}  // namespace broadside::laws
+}  // namespace broadside

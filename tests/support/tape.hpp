@@ -1,0 +1,54 @@
+// A recorder that keeps its trace in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/recorder.hpp"
+
+namespace broadside {
+
+template <int D, typename Real = float>
+struct Tape {
+  Tape() {
+    recorder.open_with([this](const void* more, std::size_t count) {
+      bytes.append(static_cast<const char*>(more), count);
+      return true;
+    });
+  }
+
+  bool set(std::uint32_t slot, const std::vector<Real>& box) {
+    return recorder.set(slot, box.data(), box.data() + D);
+  }
+
+  /// Ends the frame and returns how many bytes it took.
+  std::size_t end_frame() {
+    const std::size_t before = bytes.size();
+    EXPECT_TRUE(recorder.end_frame());
+    ends.push_back(bytes.size());
+    return bytes.size() - before;
+  }
+
+  std::string bytes;
+  std::vector<std::size_t> ends;  // of each frame
+  Recorder<D, Real> recorder;
+};
+
+/// Header at byte 0; frame 0 at byte 20, in which slots 0 and 2 get boxes and slot 1 is empty; frame 1 at
+/// byte 88, in which slot 0 moves and slot 2 becomes empty. The example of docs/trace-format.md.
+inline std::string small_trace() {
+  Tape<2> tape;
+  tape.set(0, {0, 0, 1, 1});
+  tape.set(2, {2, 0.5F, 4, 3});
+  tape.end_frame();
+  tape.set(0, {0.25F, 0, 1.25F, 1});
+  tape.recorder.remove(2);
+  tape.end_frame();
+  return tape.bytes;
+}
+
+}  // namespace broadside

@@ -1,0 +1,129 @@
+// Sample and OverlapEstimate against what all pairs of the boxes say.
+#include "core/sample.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "algorithms/auto/overlap_estimate.hpp"
+#include "tests/support/model.hpp"
+
+namespace broadside::core {
+namespace {
+
+/// The part of the pairs that overlap on `axis`, or on all axes if it is D.
+template <int D>
+double overlapping_part(const std::vector<Box<D>>& boxes, int axis) {
+  std::size_t overlaps = 0;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j, ++pairs) {
+      const auto on = [&](int a) {
+        return boxes[i].min[a] <= boxes[j].max[a] && boxes[j].min[a] <= boxes[i].max[a];
+      };
+      overlaps += axis == D ? overlap(boxes[i], boxes[j]) : on(axis);
+    }
+  }
+  return static_cast<double>(overlaps) / static_cast<double>(pairs);
+}
+
+TEST(SampledPlace, LiesInTheArrayAndSpreadsOverIt) {
+  for (const std::size_t size : {1, 2, 64, 1000, 1 << 20}) {
+    std::set<std::size_t> sixteenths;
+    for (std::size_t i = 0; i < 64; ++i) {
+      ASSERT_LT(sampled_place(i, size), size);
+      sixteenths.insert(sampled_place(i, size) * 16 / size);
+    }
+    EXPECT_EQ(sixteenths.size(), std::min<std::size_t>(16, size));
+  }
+}
+
+TEST(Sample, SaysOfFewBoxesWhatIsTrueOfAll) {
+  in_each_dimension([]<int D>() {
+    Rng rng(1);
+    Sample<D> sample;
+    for (const std::size_t count : {2, 3, 31, 64}) {
+      std::vector<Box<D>> boxes = random_boxes<D>(rng, count, {.infinite_one_in = 0});
+      sample.take(boxes);
+      for (int axis = 0; axis < D; ++axis) {
+        std::vector<float> extents;
+        for (const Box<D>& box : boxes) extents.push_back(box.max[axis] - box.min[axis]);
+        std::ranges::sort(extents);
+        EXPECT_NEAR(sample[axis].overlap, overlapping_part(boxes, axis), 1e-12);
+        EXPECT_EQ(sample[axis].extent, extents[count / 2]);
+        EXPECT_TRUE(std::ranges::is_sorted(sample[axis].minima));
+        EXPECT_EQ(sample[axis].minima.size(), count);
+      }
+    }
+  });
+}
+
+TEST(Sample, SweepsAlongTheAxisOfTheLeastOverlapAndIgnoresOutliers) {
+  in_each_dimension([]<int D>() {
+    std::vector<Box<D>> boxes(1000);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      boxes[i].min[D - 1] = boxes[i].max[D - 1] = static_cast<float>(i % 100);
+    boxes[3].max.fill(std::numeric_limits<float>::infinity());
+    boxes[4].min.fill(-1e30F);
+    Sample<D> sample;
+    sample.take(boxes);
+    EXPECT_EQ(sample.axes_by_overlap()[0], D - 1);
+    EXPECT_GE(sample[D - 1].low, -100);
+    EXPECT_LE(sample[D - 1].high, 200);
+  });
+}
+
+TEST(OverlapEstimate, CountsThePairsOfTheBoxesThatItLookedAt) {
+  in_each_dimension([]<int D>() {
+    Rng rng(2);
+    OverlapEstimate<D> estimate;
+    for (const std::size_t count : {2, 60, 5000}) {
+      const std::vector<Box<D>> boxes = random_boxes<D>(rng, count);
+      std::vector<Box<D>> seen;
+      for (std::size_t i = 0; i < std::min<std::size_t>(count, 64); ++i)
+        seen.push_back(boxes[sampled_place(i, count)]);
+      estimate.take(boxes, 64);
+      estimate.compare();
+      for (int axis = 0; axis < D; ++axis)
+        EXPECT_DOUBLE_EQ(estimate.overlap()[axis], overlapping_part(seen, axis));
+      EXPECT_DOUBLE_EQ(estimate.overlap_on_all(), overlapping_part(seen, D));
+    }
+  });
+}
+
+TEST(OverlapEstimate, TellsClustersFromBoxesThatAreSpreadEvenly) {
+  in_each_dimension([]<int D>() {
+    Rng rng(3);
+    std::vector<Box<D>> even = random_boxes<D>(rng, 5000, {.places = 1000, .infinite_one_in = 0});
+    std::vector<Box<D>> clustered = even;
+    for (Box<D>& box : clustered) box.min.fill(static_cast<float>(rng.whole(0, 7) * 120 + rng.whole(0, 20)));
+    std::array<float, D> reach;
+    reach.fill(60);
+    OverlapEstimate<D> estimate;
+    estimate.take(even, 96);
+    EXPECT_LT(estimate.clustering(reach), 2);
+    estimate.take(clustered, 96);
+    EXPECT_GT(estimate.clustering(reach), 3);
+    EXPECT_NEAR(estimate.range()[0], 860, 100);
+  });
+}
+
+TEST(ExtentStats, TellHowUnevenAndHowLongSidesAre) {
+  in_each_dimension([]<int D>() {
+    std::vector<Box<D>> boxes(100);
+    for (Box<D>& box : boxes) {
+      box.max.fill(2);
+      box.max[0] = 6;
+    }
+    EXPECT_DOUBLE_EQ(extent_stats<D>(boxes).unevenness, 1);
+    EXPECT_DOUBLE_EQ(extent_stats<D>(boxes).longest_over_shortest, 3);
+    boxes[7].max[0] = 600;
+    EXPECT_GT(extent_stats<D>(boxes).unevenness, 10);
+  });
+}
+
+}  // namespace
+}  // namespace broadside::core

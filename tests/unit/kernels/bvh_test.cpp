@@ -1,0 +1,209 @@
+// The kernels of the bounding volume hierarchy on every instruction set, against loops over boxes.
+#include "kernels/bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/queries.hpp"
+
+#include "algorithms/bvh/dynamic_bvh.hpp"
+#include "algorithms/bvh/packed_levels.hpp"
+#include "interface/squared_distance.hpp"
+#include "kernels/bvh_join.hpp"
+#include "kernels/bvh_query.hpp"
+#include "tests/support/model.hpp"
+
+namespace broadside::kernels {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// A node of these children.
+template <int D>
+Block<D> node_of(const std::vector<Box<D>>& children) {
+  Block<D> node;
+  node.clear();
+  for (std::size_t lane = 0; lane < children.size(); ++lane) node.set(lane, children[lane]);
+  return node;
+}
+
+/// Calls `body(rng, children)` for nodes of one to sixteen children.
+template <typename Body>
+void on_nodes(Body body) {
+  on_each_instruction_set([&]<int D>() {
+    Rng rng(3);
+    for (std::size_t round = 0; round < 20 * fan_out; ++round)
+      body(rng, random_boxes<D>(rng, 1 + round % fan_out, {.places = 8}));
+  });
+}
+
+TEST(BvhNode, HasTheBoundsOfItsChildren) {
+  on_nodes([]<int D>(Rng&, const std::vector<Box<D>>& children) {
+    Box<D> expected = absent_box<D>();
+    for (const Box<D>& child : children) {
+      for (int axis = 0; axis < D; ++axis) {
+        expected.min[axis] = std::min(expected.min[axis], child.min[axis]);
+        expected.max[axis] = std::max(expected.max[axis], child.max[axis]);
+      }
+    }
+    EXPECT_EQ(bounds_of(node_of(children)), expected);
+    EXPECT_EQ(bounds_of(node_of<D>({})), absent_box<D>());
+  });
+}
+
+TEST(BvhNode, TakesABoxIntoTheChildThatGrowsLeastAndOfThoseTheSmallest) {
+  on_nodes([]<int D>(Rng& rng, const std::vector<Box<D>>& children) {
+    const Box<D> box = random_box<D>(rng, {.places = 8});
+    std::pair<float, float> least{infinity, infinity};
+    std::size_t expected = 0;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      std::pair<float, float> growth_and_size{0, 0};
+      for (int axis = 0; axis < D; ++axis) {
+        const auto bounded = [](float value) { return std::clamp(value, -0x1p120f, 0x1p120f); };
+        const float min = bounded(children[i].min[axis]);
+        const float max = bounded(children[i].max[axis]);
+        growth_and_size.first += std::max(max, bounded(box.max[axis])) - max;
+        growth_and_size.first += min - std::min(min, bounded(box.min[axis]));
+        growth_and_size.second += max - min;
+      }
+      if (growth_and_size < least) {
+        least = growth_and_size;
+        expected = i;
+      }
+    }
+    EXPECT_EQ(best_child(node_of(children), children.size(), box), expected);
+  });
+}
+
+TEST(BvhNode, TellsHowFarItsChildrenAre) {
+  on_nodes([]<int D>(Rng& rng, const std::vector<Box<D>>& children) {
+    const Box<D> point = random_box<D>(rng, {.places = 20, .most_extent = 0, .infinite_one_in = 0});
+    DistanceQuery<D> query{.point = point, .weight = {}, .most = infinity};
+    query.weight.fill(1);
+    std::array<float, fan_out> found;
+    distances(node_of(children), query, found);
+    for (std::size_t i = 0; i < children.size(); ++i)
+      EXPECT_EQ(found[i], core::squared_distance(point.min, children[i])) << i;
+  });
+}
+
+/// Collects a query's boxes, and lowers t_max to the least entry where the nearest one is looked for.
+struct Collector final : FoundBoxes {
+  bool take() override {
+    for (std::size_t i = 0; i < count; ++i) all.emplace_back(ids[i], t_enter[i]);
+    if (is_first) {
+      for (const auto& [id, enter] : all) t_max = std::min(t_max, enter);
+    }
+    count = 0;
+    return true;
+  }
+
+  bool is_first = false;
+  std::vector<std::pair<std::uint32_t, float>> all;
+};
+
+TEST(BvhCast, MeetsWhatTheDefinitionSaysAndTheFirstOfThem) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(5);
+    for (int round = 0; round < 200; ++round) {
+      const std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
+      algorithm::DynamicBvh<D> tree;
+      tree.build(boxes);
+      BoxCast<D> cast{.box = random_box<D>(rng, {.most_extent = 2, .infinite_one_in = 0}), .direction = {}};
+      cast.t_max = rng.one_in(4) ? infinity : static_cast<float>(rng.whole(0, 8));
+      CastQuery<D> query{.box = cast.box, .direction = {}, .inverse = {}, .course = {}, .exact = true};
+      for (int axis = 0; axis < D; ++axis) {
+        const auto direction = static_cast<float>(rng.whole(-5, 5));
+        query.direction[axis] = cast.direction[axis] = direction;
+        query.inverse[axis] = direction == 0 ? 1 : 1 / direction;
+        query.course[axis] = direction == 0  ? Course::still
+                             : rng.one_in(4) ? Course::unknown
+                             : direction > 0 ? Course::forward
+                                             : Course::backward;
+      }
+      std::vector<std::pair<std::uint32_t, float>> expected;
+      float first = infinity;
+      for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        const std::optional<float> enter = t_enter(cast, boxes[i]);
+        if (!enter) continue;
+        expected.emplace_back(i, *enter);
+        first = std::min(first, *enter);
+      }
+      Collector met;
+      met.t_max = cast.t_max;
+      EXPECT_TRUE(find_met(tree.view(), query, met));
+      met.take();
+      std::ranges::sort(met.all);
+      ASSERT_EQ(met.all, expected) << "round " << round;
+      Collector nearest;
+      nearest.is_first = true;
+      nearest.t_max = cast.t_max;
+      find_first_met(tree.view(), query, nearest);
+      ASSERT_EQ(nearest.all.empty(), expected.empty()) << "round " << round;
+      if (!expected.empty()) {
+        ASSERT_EQ(nearest.t_max, first) << "round " << round;
+      }
+    }
+  });
+}
+
+/// Calls `body(boxes, left_count, tree)` for packed trees of 1 to 900 boxes in any order, some places
+/// of which are left empty.
+template <typename Body>
+void on_packed_trees(Body body) {
+  on_each_instruction_set([&]<int D>() {
+    Rng rng(7);
+    algorithm::PackedLevels<D> levels;
+    for (std::size_t size = 1; size <= 900; size += 1 + size / 3) {
+      for (const bool is_between : {false, true}) {
+        SCOPED_TRACE(testing::Message() << size << (is_between ? " boxes of two sets" : " boxes"));
+        const std::vector<Box<D>> boxes = random_boxes<D>(rng, size, {.places = 40, .most_extent = 4});
+        const std::size_t left_count = is_between ? (size + 1) / 2 : 0;
+        const std::size_t left_places = algorithm::whole_leaves(left_count);
+        const std::size_t end = left_places + (size - left_count);
+        levels.start(algorithm::whole_leaves(end));
+        for (std::size_t i = 0; i < size; ++i)
+          levels.put(i < left_count ? i : left_places + (i - left_count), boxes[i], BoxId(i));
+        levels.leave(left_count, left_places);
+        levels.leave(end, algorithm::whole_leaves(end));
+        levels.set_left_size(left_places);
+        levels.build();
+        body(boxes, left_count, levels.tree());
+      }
+    }
+  });
+}
+
+TEST(BvhJoin, FindsThePairsOfTheDefinitionOnce) {
+  on_packed_trees(
+      []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {
+        EXPECT_EQ(sorted_pairs([&](PairSink& sink) { join(tree, {}, sink); }),
+                  overlapping_pairs(boxes, left_count));
+      });
+}
+
+TEST(BvhJoin, SaysWhichPlacesItHasJoinedWhenItGivesUp) {
+  on_packed_trees(
+      []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {
+        if (left_count != 0) return;
+        JoinWork work{};
+        const std::vector<Pair> found =
+            sorted_pairs([&](PairSink& sink) { work = join(tree, {.tests = boxes.size()}, sink); });
+        std::vector<Pair> expected = overlapping_pairs(boxes);
+        std::erase_if(expected, [&](Pair pair) { return index(pair.first) >= work.places; });
+        EXPECT_EQ(found, expected);
+        if (boxes.size() > 200) {
+          EXPECT_LT(work.places, boxes.size());
+        }
+      });
+}
+
+}  // namespace
+}  // namespace broadside::kernels
