@@ -92,9 +92,10 @@ TEST_P(OwnTrackerLaw, DoesNotGrowWhileHistoriesRepeatThemselves) {
         }
         return tracker->bytes();
       };
-      // What is kept for coming and going settles in a few plays, and by then `auto` has made up its mind.
+      // What is kept for coming and going settles in some ten plays, and by then trackers that choose have
+      // chosen.
       std::size_t settled = 0;
-      for (int time = 0; time < 8; ++time) settled = play();
+      for (int time = 0; time < 12; ++time) settled = play();
       std::size_t last = 0;
       for (int time = 0; time < 4; ++time) last = play();
       EXPECT_LE(last, settled) << named.name;
