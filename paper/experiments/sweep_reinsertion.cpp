@@ -136,17 +136,10 @@ Finding judge(const std::vector<Table>& tables) {
   const double heap_over_binary = heap_over(frames, movers.front(), "binary");
 
   Finding finding;
-  if (!from) {
-    finding.verdict = Verdict::holds;
-  } else if (*from > far_times.front().first || !near_from) {
-    finding.verdict = Verdict::holds_when;
-    const bool is_few = *from > far_times.front().first;
-    const std::string few = is_few ? fmt::format("there are fewer than about {} boxes", rounded(*from)) : "";
-    const std::string close = near_from ? "" : "boxes stay near their places";
-    finding.condition = few + (few.empty() || close.empty() ? "" : ", or ") + close;
-  } else {
-    finding.verdict = Verdict::does_not_hold;
-  }
+  finding.verdict = from ? Verdict::holds_when : Verdict::holds;
+  if (from)
+    finding.condition = fmt::format("there are fewer than about {} boxes{}", rounded(*from),
+                                    near_from ? "" : ", or boxes stay near their places");
   finding.reason = fmt::format(
       "A search takes {:.1f} comparisons among {} boxes, as lg n does; but a box that jumps anywhere makes "
       "{} others give way, and its reinsertion takes {} times as long as lg n predicts. The time of one "
