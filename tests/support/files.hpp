@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/measure/allocation.hpp"
+#include "lab/measure/memory.hpp"
 #include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
