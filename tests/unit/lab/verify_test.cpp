@@ -103,7 +103,7 @@ class FixedTracker final : public PairTracker<2> {
 };
 
 /// Box 1 leaves box 0 for box 3 (with which no one overlapped) and keeps box 2 behind.
-const History<2> leaving = {chain, {{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, {4, {}, {}}}};
+const History<2> leaving = {chain, {Step<2>{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, Step<2>{4, {}, {}}}};
 
 std::optional<Divergence> tracking_divergence(const std::vector<FixedTracker::Events>& frames) {
   FixedTracker tracker(frames);
