@@ -82,6 +82,7 @@ tests-%: build/%/build.ninja
 
 # What uses threads; the rest has none to sanitize.
 tests-tsan: build/tsan/build.ninja
+	@test -f $< || cmake --preset tsan
 	cmake --build --preset tsan --target thread_tests
 	ctest --test-dir build/tsan/tests/threads --output-on-failure --parallel $(jobs)
 

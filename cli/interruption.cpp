@@ -21,7 +21,7 @@ static_assert(std::atomic<OnSignal>::is_always_lock_free, "a signal's handler mu
 
 /// Nothing can be done about a message that is not taken.
 void write_message(std::string_view text) {
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
 /// Ends the program from a signal's handler.

@@ -13,7 +13,7 @@ enum class OnSignal {
 };
 
 /// From here on, signals do this. A file that is being written when a signal ends the program is removed, and
-/// an old one at its place stays (lab/readers/write_file.hpp).
+/// an old one at its place stays (lab/formats/write_file.hpp).
 void on_signal(OnSignal what);
 
 /// Has a write to a pipe that nothing reads any more end the program, as users of `| head` expect: without a

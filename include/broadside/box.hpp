@@ -105,6 +105,11 @@ class BoxView {
   constexpr const Box<D, Real>* array() const noexcept { return first_ == nullptr ? boxes_ : nullptr; }
   constexpr bool is_array() const noexcept { return first_ == nullptr; }
 
+  /// Where the first box begins.
+  const std::byte* first_byte() const noexcept {
+    return first_ != nullptr ? first_ : reinterpret_cast<const std::byte*>(boxes_);
+  }
+
  private:
   const Box<D, Real>* boxes_ = nullptr;
   const std::byte* first_ = nullptr;

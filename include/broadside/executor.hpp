@@ -54,8 +54,8 @@ struct Workers {
   /// Whose threads; null: the standard executor's. Must live as long as what uses it.
   Executor* executor = nullptr;
 
-  /// Every thread must have so many boxes to look at, or fewer threads are used: waking one takes some
-  /// microseconds.
+  /// Every thread must have at least this many boxes to look at, or fewer threads are used: waking one takes
+  /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 };
 

@@ -116,7 +116,7 @@ concept VisitFunction = std::invocable<Function&, Found> &&
     (std::convertible_to<std::invoke_result_t<Function&, Found>, bool> ||
      std::is_void_v<std::invoke_result_t<Function&, Found>>);
 
-/// Answers queries to the boxes of a frame, exactly as the definitions in ray.hpp and box.hpp say.
+/// Answers queries to the boxes of a frame, exactly as the definitions above and in box.hpp say.
 ///
 /// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
 /// With a `query_filter`, only boxes whose filter accepts it are. Results have an order that the boxes'

@@ -30,7 +30,7 @@ struct Frame {
 
   /// The places whose boxes or filters may differ from the frame before, in any order; one listed twice is
   /// harmless. A change that is not listed is not seen. In a tracker's first frame everything has changed.
-  std::span<const BoxId> changed;
+  std::span<const BoxId> changed{};
 
   /// A filter for each box, or none at all: then every box has the standard one.
   std::span<const Filter> filters{};
@@ -53,13 +53,13 @@ struct Change {
   std::span<const BoxId> changed;     ///< places where the two, or their filters, may differ, each once
   std::span<const std::uint8_t> flags;  ///< for each place, 1 if it is in `changed`
 
-  /// Nothing kept from earlier frames can be relied on: whoever keeps something starts over from `before`.
+  /// Nothing kept from earlier frames can be relied on: what a tracker keeps is built anew from `before`.
   bool rebuild = false;
 
   std::span<const Filter> filters_before{};  ///< likewise; both empty where there are no filters
   std::span<const Filter> filters_now{};     ///<
 
-  /// The frame as the caller gave it: for who checks callers, since what is not listed is not in `now`. Null
+  /// The frame as the caller gave it, for trackers that check it: what is not listed is not in `now`. Null
   /// where there is none.
   const Frame<D, Real>* frame = nullptr;
 
@@ -102,11 +102,11 @@ class PairTracker {
   /// Takes the next frame; writes to `begun` the pairs that hold now and did not before, to `ended` those
   /// that did and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
   ///
-  /// Throws InvalidInput before anything has changed if a changed box is invalid (unless bad_input() says
-  /// otherwise), if an id in `changed` lies beyond both this frame's array and the last one's, or if there
-  /// are filters and not one for each box.
-  /// If a sink throws or memory runs out, the frame counts as not taken: the next update rebuilds, takes
-  /// every box for changed and delivers the events since the last whole update.
+  /// Throws before anything has changed: InvalidInput if a changed box is invalid (unless bad_input() says
+  /// otherwise); InvalidFrame if an id in `changed` lies beyond both this frame's array and the last one's,
+  /// or if there are filters and not one for each box. If a sink throws or memory runs out, the frame counts
+  /// as not taken: the next update rebuilds, takes every box for changed and delivers the events since the
+  /// last whole update.
   void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
   /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says

@@ -139,8 +139,9 @@ struct WorldBytes {
   std::size_t filters = 0;  ///< filters and ignored pairs
   std::size_t pairs = 0;    ///< current pairs and events; those of enlarged boxes and a predicate's answers
   std::size_t tracker = 0;  ///< what the tracker says: its copies of boxes and filters, and its structure
+  std::size_t queries = 0;  ///< the index that queries are asked of, where it is not the tracker's
 
-  std::size_t total() const noexcept { return boxes + slots + filters + pairs + tracker; }
+  std::size_t total() const noexcept { return boxes + slots + filters + pairs + tracker + queries; }
 };
 
 /// What World::statistics() tells.
@@ -310,8 +311,8 @@ class World {
   bool contains(Handle handle) const noexcept;
 
   /// The box as it was last set. A removed one stays readable until the update after the one that reported
-  /// its removal, so that whoever handles its ended pairs can look at it; so do its filter and user data. The
-  /// reference holds until the next add(), remove() or update(). Throws InvalidHandle.
+  /// its removal, so that the code that handles its ended pairs can look at it; so do its filter and user
+  /// data. The reference holds until the next add(), remove() or update(). Throws InvalidHandle.
   const Box<D, Real>& box(Handle handle) const;
   Filter filter(Handle handle) const;
   std::uint64_t user_data(Handle handle) const;

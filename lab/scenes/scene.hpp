@@ -17,7 +17,7 @@
 
 namespace broadside::lab {
 
-struct ReadOptions;  // lab/readers/format.hpp
+struct ReadOptions;  // lab/formats/format.hpp
 
 // The library's, under the names that the lab has always called them by.
 using broadside::apply;

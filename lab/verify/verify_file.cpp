@@ -65,7 +65,7 @@ void verify(Verification& verification, FrameReader<D, Real>& frames, const Cata
   HistoryVerdicts checked = verify_history<D, Real>(history, entries, known, options);
   verification.verdicts = std::move(checked.verdicts);
   verification.pairs = checked.pairs;
-  const auto failed = std::ranges::find(verification.verdicts, Outcome::failed, &Verdict::outcome);
+  const auto failed = std::ranges::find(verification.verdicts, Outcome::failed, &EntryVerdict::outcome);
   if (failed == verification.verdicts.end()) return;
   const Entry entry = catalogue.select(failed->algorithm).front();
   const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, entry, known, options);
@@ -89,8 +89,8 @@ std::string text_of(const Counterexample& counterexample, std::string_view progr
 }  // namespace
 
 bool Verification::all_verified() const {
-  return std::ranges::count(verdicts, Outcome::verified, &Verdict::outcome) > 0 &&
-         std::ranges::count(verdicts, Outcome::failed, &Verdict::outcome) == 0;
+  return std::ranges::count(verdicts, Outcome::verified, &EntryVerdict::outcome) > 0 &&
+         std::ranges::count(verdicts, Outcome::failed, &EntryVerdict::outcome) == 0;
 }
 
 Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options) {
@@ -114,7 +114,7 @@ std::string text_of(const Verification& verification, std::string_view program) 
   text += '\n';
   Columns table("<<<");
   std::string faults;
-  for (const Verdict& verdict : verification.verdicts) {
+  for (const EntryVerdict& verdict : verification.verdicts) {
     switch (verdict.outcome) {
       case Outcome::verified:
         table.add({verdict.algorithm, "verified",
@@ -131,7 +131,7 @@ std::string text_of(const Verification& verification, std::string_view program) 
     }
   }
   text += table.text("  ");
-  const auto is_skipped = [](const Verdict& verdict) { return verdict.outcome == Outcome::skipped; };
+  const auto is_skipped = [](const EntryVerdict& verdict) { return verdict.outcome == Outcome::skipped; };
   if (std::ranges::all_of(verification.verdicts, is_skipped))
     text += "\nnothing was verified: every algorithm was skipped\n";
   if (!faults.empty()) text += '\n' + faults;

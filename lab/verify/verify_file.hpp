@@ -29,7 +29,7 @@ struct VerifyOptions {
 };
 
 /// The verdict on one algorithm.
-struct Verdict {
+struct EntryVerdict {
   std::string algorithm;  ///< its spec
   Outcome outcome = Outcome::verified;
   std::string verified_by{};  ///< what its pairs were compared with
@@ -56,7 +56,7 @@ struct Verification {
   std::size_t boxes = 0;  ///< the most places there are in a frame
   std::size_t frames = 0;
   std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
-  std::vector<Verdict> verdicts{};
+  std::vector<EntryVerdict> verdicts{};
   std::optional<Counterexample> counterexample{};
   std::string warning{};  ///< what had to be left out of a damaged file; empty otherwise
 

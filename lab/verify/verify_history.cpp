@@ -30,7 +30,7 @@ struct Expectation {
   Reference reference;
   std::vector<Pair> before{};  // sorted
   std::vector<Pair> now{};
-  Verdict fault{};  // of the reference itself; without an algorithm as long as there is none
+  EntryVerdict fault{};  // of the reference itself; without an algorithm as long as there is none
 };
 
 template <int D, typename Real>
@@ -83,7 +83,7 @@ class HistoryCheck {
   }
 
   void let_in(const Entry& entry) {
-    Verdict verdict{.algorithm = entry.spec.text()};
+    EntryVerdict verdict{.algorithm = entry.spec.text()};
     verdict.reason = unfit(entry, D, extremes_);
     if (verdict.reason.empty()) verdict.reason = too_slow(entry);
     if (!verdict.reason.empty()) {
@@ -142,7 +142,7 @@ class HistoryCheck {
     }
     for (Participant<D, Real>& participant : participants_) {
       if (participant.done) continue;
-      Verdict& verdict = result_.verdicts[participant.verdict];
+      EntryVerdict& verdict = result_.verdicts[participant.verdict];
       options_.watch.at(fmt::format("{}, frame {}", verdict.algorithm, frame));
       verdict.frames = frame + 1;
       const std::string fault = fault_of(verdict.algorithm, [&] { return check(participant, boxes, frame); });
@@ -184,8 +184,8 @@ class HistoryCheck {
   }
 
   /// Adds the fault of a reference, unless it has failed as an entry already.
-  void add_fault(const Verdict& fault) {
-    const auto same = [&](const Verdict& other) {
+  void add_fault(const EntryVerdict& fault) {
+    const auto same = [&](const EntryVerdict& other) {
       return other.algorithm == fault.algorithm && other.outcome == Outcome::failed;
     };
     if (!fault.algorithm.empty() && std::ranges::none_of(result_.verdicts, same))

@@ -30,7 +30,7 @@ std::optional<History<D, Real>> smallest_failure(const History<D, Real>& history
 
 /// The verdicts on a history.
 struct HistoryVerdicts {
-  std::vector<Verdict> verdicts;         ///< in the order of the entries; then the reference's, if it failed
+  std::vector<EntryVerdict> verdicts;    ///< in the order of the entries; then the reference's, if it failed
   std::optional<std::uint64_t> pairs{};  ///< in the last frame; empty where no algorithm got there
 };
 

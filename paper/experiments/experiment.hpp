@@ -40,7 +40,7 @@ struct Finding {
   std::string verdict_text() const;
 };
 
-/// An experiment, described. A file in lab/experiments/ ends in one.
+/// An experiment, described. A file in paper/experiments/ ends in one.
 struct Experiment {
   int number = 0;        ///< from 1, in the order of the paper
   std::string name;      ///< lower case, digits and underscores

@@ -1,4 +1,4 @@
-// Makes the paper: node paper.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER.
+// Makes the paper: node main.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER.
 import { argv, exit, stderr, stdout } from "node:process";
 
 import { run } from "./program.ts";

@@ -11,7 +11,7 @@ export interface Print {
   error: (text: string) => void;
 }
 
-const usage = `usage: paper.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER
+const usage = `usage: main.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER
 Fills TEMPLATES/*.md from the results of broadside experiment and broadside compare (JSON), and writes
 FOLDER/paper.md and FOLDER/figures/*.svg. With --check nothing is written: the exit status says whether
 they are what would be.

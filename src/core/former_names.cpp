@@ -17,6 +17,13 @@ constexpr std::array<std::string_view, 13> former_ways = {
     "relative", "siblings",  "changed",   "all",    "refit", "enlarge",
 };
 
+/// Whether earlier versions had the algorithm: one that a user registers may call its tunables what it likes.
+bool is_ours(std::string_view algorithm) {
+  constexpr std::array<std::string_view, 6> ours = {"auto",     "brute_force", "grid", "sweep_and_prune",
+                                                    "quadtree", "bvh"};
+  return std::ranges::find(ours, algorithm) != ours.end();
+}
+
 }  // namespace
 
 std::string_view current_algorithm(std::string_view name) noexcept {
@@ -25,28 +32,35 @@ std::string_view current_algorithm(std::string_view name) noexcept {
 
 std::string_view current_value(std::string_view algorithm, std::string_view tunable,
                                std::string_view value) noexcept {
-  return algorithm == "bvh" && tunable == "update" && value == "reinsert" ? "follow" : value;
+  if (tunable != "update") return value;
+  if (algorithm == "bvh" && value == "reinsert") return "follow";
+  if (algorithm == "brute_force" && value == "changed") return "follow";
+  if (algorithm == "brute_force" && value == "all") return "rebuild";
+  return value;
 }
 
 std::string current_spec(std::string_view spec) {
   Spec current = Spec::parse(spec);
   current.name = current_algorithm(current.name);
-  if (current.name.starts_with("paper_")) return current.text();
   for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
   std::erase_if(current.values, [](const std::pair<std::string, std::string>& given) {
     const auto& [tunable, value] = given;
-    return !former_tunable(tunable).empty() || !former_value(tunable, value).empty();
+    return !former_tunable(current.name, tunable).empty() ||
+           !former_value(current.name, tunable, value).empty();
   });
   return current.text();
 }
 
-std::string former_value(std::string_view tunable, std::string_view value) {
-  if (tunable != "update" || std::ranges::find(former_ways, value) == former_ways.end()) return {};
+std::string former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {
+  if (!is_ours(algorithm) || tunable != "update" ||
+      std::ranges::find(former_ways, value) == former_ways.end())
+    return {};
   return "; each tracker follows in its one fastest way, and the paper's ways are those of "
          "the paper_... algorithms";
 }
 
-std::string former_tunable(std::string_view tunable) {
+std::string former_tunable(std::string_view algorithm, std::string_view tunable) {
+  if (!is_ours(algorithm)) return {};
   if (tunable == "way") return "; way=rebuild is update=rebuild now, and way=incremental update=follow";
   if (tunable == "span") return "; cells have levels by the sizes of boxes now, and need no span";
   if (tunable == "margin" || tunable == "budget")

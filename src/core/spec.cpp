@@ -59,7 +59,7 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   const auto refuse = [&](const std::string& expected) {
     throw InvalidSpec(owner + ": " + tunable.name + " is '" + value + "'; expected " + expected +
                       (tunable.standard == "auto" ? ", or auto" : "") +
-                      core::former_value(tunable.name, value));
+                      core::former_value(owner, tunable.name, value));
   };
   if (tunable.type == Tunable::Type::choice) {
     if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
@@ -115,7 +115,7 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
       for (const Tunable& known : tunables) names.push_back(known.name);
       throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'" + did_you_mean(name, names) +
                         "; expected " + (names.empty() ? "none" : "one of: " + listed(names)) +
-                        core::former_tunable(name));
+                        core::former_tunable(spec.name, name));
     }
     check(spec.name, *tunable, value);
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;

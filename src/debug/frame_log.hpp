@@ -9,8 +9,8 @@
 
 namespace broadside::core {
 
-/// Keeps the frame so many frames ago whole, and what changed since. The oldest changes become a part of the
-/// whole frame when there are more than so many, or when they take more bytes than allowed.
+/// Keeps one earlier frame whole, and what changed since. The oldest changes become a part of the
+/// whole frame when there are more of them than allowed, or when they take more bytes than allowed.
 template <int D, typename Real>
 class FrameLog {
  public:

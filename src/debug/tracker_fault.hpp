@@ -44,7 +44,7 @@ template <int D, typename Real>
 std::optional<Fault> fault_at_the_end(PairTracker<D, Real>& tracker, const History<D, Real>& history);
 
 /// The smallest history found in whose last frame what `make` makes is at fault; empty if it is not on this
-/// one. Compares about so many pairs of boxes, and no clock is asked: another machine finds the same one.
+/// one. Compares about that many pairs of boxes, and no clock is asked: another machine finds the same one.
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(
     History<D, Real> history, const std::function<std::unique_ptr<PairTracker<D, Real>>()>& make,

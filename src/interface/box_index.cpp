@@ -33,7 +33,8 @@ void check(const BoxCast<D, Real>& cast) {
   const auto are_finite = [](const Point<D, Real>& values) {
     return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
   };
-  if (!is_present(cast.box)) throw InvalidQuery(core::fault_of(cast.box, "the box that is cast"));
+  if (!is_present(cast.box))
+    throw InvalidQuery(core::fault_of(cast.box, "a ray's origin or a cast box", false));
   for (const auto& corner : {cast.box.min, cast.box.max}) {
     if (!are_finite(corner)) refuse("a ray's origin or a cast box", corner.data(), D, "finite numbers");
   }

@@ -32,14 +32,14 @@ bool is_present_by_value(const Box<D, Real>& box) noexcept {
 }
 
 template <int D, typename Real>
-std::string fault_of(const Box<D, Real>& box, const std::string& name) {
-  return name + " has " + text_of(box) +
-         "; expected numbers with min <= max on every axis, or the absent box (min = +inf, max = -inf)";
+std::string fault_of(const Box<D, Real>& box, const std::string& name, bool may_be_absent) {
+  return name + " has " + text_of(box) + "; expected numbers with min <= max on every axis" +
+         (may_be_absent ? ", or the absent box (min = +inf, max = -inf)" : "");
 }
 
 template <int D, typename Real>
 void check_box(const Box<D, Real>& box, std::size_t index) {
-  if (is_invalid(box)) throw InvalidInput(index, fault_of(box, "box " + std::to_string(index)));
+  if (is_invalid(box)) throw InvalidInput(index, fault_of(box, "box " + std::to_string(index), true));
 }
 
 template <int D, typename Real>
@@ -63,10 +63,10 @@ template bool is_present_by_value(const Box<2>&) noexcept;
 template bool is_present_by_value(const Box<3>&) noexcept;
 template bool is_present_by_value(const DoubleBox2&) noexcept;
 template bool is_present_by_value(const DoubleBox3&) noexcept;
-template std::string fault_of(const Box<2>&, const std::string&);
-template std::string fault_of(const Box<3>&, const std::string&);
-template std::string fault_of(const DoubleBox2&, const std::string&);
-template std::string fault_of(const DoubleBox3&, const std::string&);
+template std::string fault_of(const Box<2>&, const std::string&, bool);
+template std::string fault_of(const Box<3>&, const std::string&, bool);
+template std::string fault_of(const DoubleBox2&, const std::string&, bool);
+template std::string fault_of(const DoubleBox3&, const std::string&, bool);
 template void check_box(const Box<2>&, std::size_t);
 template void check_box(const Box<3>&, std::size_t);
 template void check_box(const DoubleBox2&, std::size_t);

@@ -21,9 +21,10 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
 template <int D, typename Real>
 bool is_present_by_value(const Box<D, Real>& box) noexcept;
 
-/// The message of an exception for a box that is not present: `name`, then its values.
+/// The message of an exception for a box that is refused: `name`, its values, and what is expected, of which
+/// the absent box is one only if it `may_be_absent`.
 template <int D, typename Real>
-std::string fault_of(const Box<D, Real>& box, const std::string& name);
+std::string fault_of(const Box<D, Real>& box, const std::string& name, bool may_be_absent);
 
 /// Throws InvalidInput, naming `index` and the box's values, unless `box` is present or absent.
 template <int D, typename Real>

@@ -76,7 +76,7 @@ struct World<D, Real>::State {
   std::uint32_t live_slot(Handle handle, const char* action) const;
   std::uint32_t readable_slot(Handle handle) const;
   [[noreturn]] void refuse(Handle handle, const char* action) const;
-  void check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const;
+  void check_box(const Box<D, Real>& box, std::size_t index, const char* whose, std::size_t number) const;
   Box<D, Real> kept(const Box<D, Real>& box) const noexcept {
     return core::is_present_by_value(box) ? box : absent_box<D, Real>();
   }

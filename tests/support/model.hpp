@@ -19,6 +19,7 @@
 
 #include "core/moved_box.hpp"
 #include "core/nan_box.hpp"
+#include "tests/support/boxes.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/rng.hpp"
 
@@ -52,7 +53,6 @@ struct BoxKind {
 
 template <int D>
 Box<D> random_box(Rng& rng, const BoxKind& kind = {}) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto is_infinite = [&] { return kind.infinite_one_in != 0 && rng.one_in(kind.infinite_one_in); };
   Box<D> box;
   for (int axis = 0; axis < D; ++axis) {

@@ -63,7 +63,7 @@ class DivergenceOf final : public Divergence {
 
 /// What a ShadowTracker spends.
 struct ShadowOptions {
-  std::size_t frames = 256;                   ///< it can go back by so many, to show how a fault came about,
+  std::size_t frames = 256;                   ///< how far it can go back to show how a fault came about,
   std::size_t bytes = std::size_t{64} << 20;  ///< as long as their changes take no more than this, or by one
   std::uint64_t tests =
       2'000'000'000;  ///< about how many pairs of boxes are compared to make a history small

@@ -3,7 +3,7 @@
 // With columns frame and box, frame 0 lists every box in order, and a later frame the boxes that change; a
 // box one beyond the last is new. Empty coordinates, or min = inf and max = -inf, stand for an absent box,
 // and a line with nothing but a frame for a frame in which nothing changes. With tracks instead of column
-// box, see csv_tracks.hpp.
+// box, see tracks.hpp.
 #include <memory>
 #include <string>
 #include <utility>

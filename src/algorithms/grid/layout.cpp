@@ -11,8 +11,6 @@
 namespace broadside::algorithm {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 /// Up to here every cell's number is a float exactly.
 constexpr double most_cells_on_axis = 1 << 20;
 
@@ -134,6 +132,7 @@ void GridLayout<D>::set(const core::Sample<D>& sample, const std::array<double, 
 
 template <int D>
 void GridLayout<D>::set_borders(int axis) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
   std::vector<float>& borders = borders_[axis];
   borders.resize(cells_[axis]);
   for (std::uint32_t cell = 1; cell < cells_[axis]; ++cell) {

@@ -30,7 +30,7 @@ void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
   check_lengths(handles.size(), "handles", boxes.size());
   if (!options.empty()) check_lengths(options.size(), "options", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    state_->check_box(boxes[i], i, "to be added, number");
+    state_->check_box(boxes[i], i, "to be added, number", i);
   }
   bool has_filters = false;
   bool has_user_data = false;
@@ -40,11 +40,10 @@ void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
   }
   // Where the boxes given are the world's own, they move when its arrays grow.
   std::vector<Box<D, Real>> copies;
-  const std::less<const Box<D, Real>*> is_before;
-  const std::span<const Box<D, Real>> own = state_->boxes;
-  if (boxes.is_array() && !is_before(boxes.array(), own.data()) &&
-      is_before(boxes.array(), own.data() + own.size())) {
-    copies.assign(boxes.array(), boxes.array() + boxes.size());
+  const std::less<const std::byte*> is_before;
+  const std::span<const std::byte> own = std::as_bytes(std::span(state_->boxes));
+  if (!is_before(boxes.first_byte(), own.data()) && is_before(boxes.first_byte(), own.data() + own.size())) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) copies.push_back(boxes[i]);
     boxes = copies;
   }
   state_->reserve(boxes.size(), has_filters, has_user_data);
@@ -57,7 +56,7 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
   check_lengths(handles.size(), "handles", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!state_->is_live(handles[i])) state_->refuse(handles[i], "move");
-    state_->check_box(boxes[i], i, "to be moved to, number");
+    state_->check_box(boxes[i], i, "to be moved to, number", i);
   }
   make_room(state_->changed, boxes.size());
   make_room(state_->moved, boxes.size());

@@ -33,7 +33,7 @@ constexpr int most_margins = 4;
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
-  state_->check_box(added, state_->next_slot(), "for slot");
+  state_->check_box(added, 0, "for slot", state_->next_slot());
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
   return state_->add_valid(added, options);
 }
@@ -41,7 +41,7 @@ Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
 template <int D, typename Real>
 void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
   const std::uint32_t slot = state_->live_slot(handle, "move");
-  state_->check_box(box, slot, "for slot");
+  state_->check_box(box, 0, "for slot", slot);
   make_room(state_->changed, 1);
   make_room(state_->moved, 1);
   state_->set_box(slot, box);
@@ -127,14 +127,16 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
                       "; expected a box in the world");
 }
 
-/// Refuses what is no box for add() and move(): an absent one is what remove() is for.
+/// Refuses what is no box for add() and move(): an absent one is what remove() is for. `index` is the box's
+/// in the array that it was handed in with; `whose` and `number` name it.
 template <int D, typename Real>
-void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t place, const char* whose) const {
+void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t index, const char* whose,
+                                      std::size_t number) const {
   if (core::is_present_by_value(box)) return;
   if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
-  const std::string name = std::string("the box ") + whose + " " + std::to_string(place);
-  if (is_absent(box)) throw InvalidInput(place, name + " is absent; expected a box");
-  throw InvalidInput(place, core::fault_of(box, name));
+  const std::string name = std::string("the box ") + whose + " " + std::to_string(number);
+  if (is_absent(box)) throw InvalidInput(index, name + " is absent; expected a box");
+  throw InvalidInput(index, core::fault_of(box, name, false));
 }
 
 /// The slot that the next box gets: the lowest free one, so that the arrays stay dense.

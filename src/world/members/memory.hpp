@@ -120,6 +120,7 @@ WorldStatistics World<D, Real>::statistics() const {
                          state.refiltered) +
                 state.current.bytes() + state.graph.bytes();
   bytes.tracker = state.tracker->bytes();
+  bytes.queries = bytes_of(state.unindexed) + (state.queried ? state.queried->bytes() : 0);
   return statistics;
 }
 

@@ -1,4 +1,5 @@
-// Every public header under the flags that engines compile with: see CMakeLists.txt.
+// The umbrella, which is every public header but the recorder, under the flags that engines compile with: see
+// CMakeLists.txt.
 #include <vector>
 
 #include <broadside/broadside.hpp>

@@ -278,8 +278,8 @@ TEST(TraceReader, RefusesWrongFrames) {
             "expected numbers with min <= max");
   EXPECT_THAT(refusal_with(128, nan), HasSubstr("max (1.25, nan)"));
   EXPECT_THAT(refusal_with(116, infinite), HasSubstr("slot 0 gets min (inf, 0) and max (1.25, 1)"));
-  const std::string absent = infinite + infinite + "\0\0\x80\xff\0\0\x80\xff"s;
-  EXPECT_THAT(refusal_with(116, absent), HasSubstr("slot 0 gets min (inf, inf) and max (-inf, -inf)"))
+  const std::string empty_slot = infinite + infinite + "\0\0\x80\xff\0\0\x80\xff"s;
+  EXPECT_THAT(refusal_with(116, empty_slot), HasSubstr("slot 0 gets min (inf, inf) and max (-inf, -inf)"))
       << "an empty slot has a form of its own";
 }
 

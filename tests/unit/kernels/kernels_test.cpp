@@ -23,8 +23,6 @@
 namespace broadside::kernels {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 template <int D>
 struct Entry {
   Box<D> box;
