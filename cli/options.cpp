@@ -92,7 +92,7 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
       ->type_name("PART");
   verb.add_option("--layer,--array", options.layer,
                   "The layer of a map in TopoJSON, such as counties (default: all), or the array of an .npz "
-                  "file (default: the only one)")
+                  "file (default: the only one), which may be called --array as well")
       ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")

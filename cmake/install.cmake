@@ -27,6 +27,8 @@ if(BROADSIDE_BUILD_PROGRAM)
   install(TARGETS broadside_listings broadside_lab broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/paper/listings/descriptions.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings)
   install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
   # A shared library is found beside the program, wherever the two are.

@@ -1,5 +1,6 @@
 // Why an algorithm is advised and the others are not: sentences that come from the signals and the times.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -85,11 +86,15 @@ std::string hinders(const Ranked& slow, const Ranked& chosen, const Signals& sig
   const Measurement& of = slow.measurement;
   const Measurement& best = chosen.measurement;
   const std::string name = base_of(of.algorithm);
-  if (chosen.is_variant && !slow.is_variant && name == base_of(best.algorithm))
-    return fmt::format("what is set by hand in {} suits these boxes better than what it chooses itself",
-                       best.algorithm);
   const auto tests = tests_of(of, signals);
   const auto fewest = tests_of(best, signals);
+  if (chosen.is_variant && !slow.is_variant && name == base_of(best.algorithm)) {
+    if (tests && fewest && std::abs(*tests - *fewest) <= 0.01 * *fewest)
+      return fmt::format("it chooses by itself about what {} sets by hand, and that takes the time",
+                         best.algorithm);
+    return fmt::format("what is set by hand in {} suits these boxes better than what it chooses itself",
+                       best.algorithm);
+  }
   const bool has_more_tests = tests && fewest && *tests >= clearly * *fewest;
   if (has_more_tests && name == "brute_force" && !signals.motion)
     return fmt::format("it tests each box against all others, {} tests a box", rounded(*tests));

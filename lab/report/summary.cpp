@@ -53,7 +53,7 @@ std::string auto_text(const Comparison& comparison) {
   return fmt::format(
       "auto takes {} times as long as the best of our others, geometric mean of {}; at most {} times ({})\n",
       mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
-      ratio_text(ratios.pairs[worst].median()), ratios.names[worst]);
+      fmt::format("{:.3g}", ratios.pairs[worst].median()), ratios.names[worst]);
 }
 
 /// How many times as fast as the fastest peer `name` is, which `entry_of` picks in each case, as a line;
@@ -68,7 +68,7 @@ std::string lead_text(const Comparison& comparison, std::string_view name, const
   return fmt::format(
       "{} is {} times as fast as the fastest peer, geometric mean of {}; at least {} times ({})\n", name,
       mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
-      ratio_text(ratios.pairs[least].median()), ratios.names[least]);
+      fmt::format("{:.3g}", ratios.pairs[least].median()), ratios.names[least]);
 }
 
 struct Standing {

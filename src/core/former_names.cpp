@@ -43,7 +43,7 @@ std::string current_spec(std::string_view spec) {
   Spec current = Spec::parse(spec);
   current.name = current_algorithm(current.name);
   for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
-  std::erase_if(current.values, [](const std::pair<std::string, std::string>& given) {
+  std::erase_if(current.values, [&current](const std::pair<std::string, std::string>& given) {
     const auto& [tunable, value] = given;
     return !former_tunable(current.name, tunable).empty() ||
            !former_value(current.name, tunable, value).empty();

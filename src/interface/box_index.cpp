@@ -115,7 +115,7 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
   const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
-    throw InvalidQuery(core::fault_of(box, "the box or point asked about"));
+    throw InvalidQuery(core::fault_of(box, "the box or point asked about", true));
   }
   if (dirty_) return true;
   if (!environment.is_foreign()) return find_overlapping(box, visitor, {query_filter, except});

@@ -9,6 +9,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 
+#include "core/former_names.hpp"
 #include "tests/support/message.hpp"
 
 namespace broadside {
@@ -145,6 +146,14 @@ TEST(Settings, RefuseAnIntegerThatIsNotWholeOrThatADoubleCannotHold) {
 
 TEST(Settings, RefuseAChoiceThatIsNotOffered) {
   EXPECT_EQ(refusal_of("grid:axis=z"), "grid: axis is 'z'; expected one of: x, y, or auto");
+}
+
+TEST(CurrentSpec, LosesWhatIsGoneFromOursAndNothingFromOthers) {
+  EXPECT_EQ(core::current_spec("hierarchical_grid:span=2"), "grid");
+  EXPECT_EQ(core::current_spec("bvh:update=reinsert:budget=3"), "bvh:update=follow");
+  EXPECT_EQ(core::current_spec("brute_force:update=all"), "brute_force:update=rebuild");
+  EXPECT_EQ(core::current_spec("paper_quadtree:update=root"), "paper_quadtree:update=root");
+  EXPECT_EQ(core::current_spec("mine:margin=2:update=heap"), "mine:margin=2:update=heap");
 }
 
 TEST(Settings, RefuseToReadATunableThatDoesNotExist) {

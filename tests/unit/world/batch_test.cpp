@@ -104,6 +104,8 @@ TEST_F(WorldBatchTest, AddsABoxOfItsOwn) {
     Handle added;
     world_.add(std::span(&world_.box(first), 1), std::span(&added, 1));
     ASSERT_EQ(world_.box(added), at(7)) << i;
+    world_.add(BoxView<2>(&world_.box(first), 1, sizeof(Box2)), std::span(&added, 1));
+    ASSERT_EQ(world_.box(added), at(7)) << i;
   }
 }
 

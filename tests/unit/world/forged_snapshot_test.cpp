@@ -95,6 +95,11 @@ TEST(ForgedSnapshot, IsRefusedForWhatContradictsItself) {
        [](Fields& f) {
          f.last_count = 5, f.last_places.push_back(BoxId{4}), f.last_boxes.push_back(at(50));
        }},
+      {"a filter changed and is not in the list of boxes that did", 0,
+       [](Fields& f) {
+         f.last_flags |= snapshot::last_has_filters, f.last_filtered = {BoxId{1}},
+                                                     f.last_filters = {Filter{.category = 2}};
+       }},
       {"the pair (0, 1) is ignored now or was in the last frame", 0,
        [](Fields& f) { f.last_ignored = {first}; }},
       {"the pair (0, 1) has a slot without a box", 0,

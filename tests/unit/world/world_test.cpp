@@ -215,6 +215,22 @@ TEST_F(WorldTest, SaysWhyABoxIsRefusedAndForWhichSlot) {
             "the box for slot 0 is absent; expected a box");
 }
 
+TEST_F(WorldTest, NamesABoxAloneByIndex0AndOneOfAnArrayByItsPlace) {
+  const std::vector<Handle> handles = {world_.add(at(0)), world_.add(at(9))};
+  const Box2 wrong{{0, 2}, {1, 1}};
+  const auto index_of = [](const auto& call) -> std::size_t {
+    try {
+      call();
+    } catch (const InvalidInput& error) {
+      return error.index();
+    }
+    return 99;
+  };
+  EXPECT_EQ(index_of([&] { world_.add(wrong); }), 0u);
+  EXPECT_EQ(index_of([&] { world_.move(handles[1], wrong); }), 0u);
+  EXPECT_EQ(index_of([&] { world_.move(handles, std::vector<Box2>{at(1), wrong}); }), 1u);
+}
+
 TEST_F(WorldTest, TakesACopyOfItsOwnBox) {
   const Handle first = world_.add(at(42));
   for (int i = 0; i < 100; ++i) {
