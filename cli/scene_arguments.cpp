@@ -67,9 +67,8 @@ void add_boxes(CLI::App& verb, BoxArguments& arguments) {
   add_scenes(verb, "file", arguments.scenes, "The file, - for standard input; or the name or spec of a scene")
       ->required();
   add_input_options(verb, arguments.input);
-  verb.add_option(
-          "-n", arguments.boxes,
-          fmt::format("Number of boxes of a scene, such as 1000, 100k (default: {})", standard_boxes))
+  verb.add_option("-n", arguments.boxes,
+                  fmt::format("Number of boxes of a scene, such as 1000, 100k (default: {})", standard_boxes))
       ->type_name("NUMBER");
   verb.add_option("--seed", arguments.seed, "Seed of a scene (default: 1)")->check(is_seed);
 }

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
-#include "broadside/algorithm.hpp"
 
 namespace broadside::paper {
 
