@@ -2,7 +2,7 @@
 import { drawBars } from "./bars.ts";
 import type { BarsSpec } from "./bars.ts";
 import { isTimed, labelOf, leadOf, percent, ranking, standings } from "./comparison.ts";
-import type { Case } from "./comparison.ts";
+import type { Case, Standing } from "./comparison.ts";
 import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
 import { drawLines } from "./lines.ts";
@@ -43,18 +43,22 @@ export function drawRatios(of: Case, place: Place): Drawn {
   }, place);
 }
 
-/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
-export function drawStandings(cases: readonly Case[], place: Place): Drawn {
-  const all = standings(cases);
+/** Bars of standings: an algorithm each, and its time as a multiple of the fastest. */
+function drawMultiples(shown: readonly Standing[], scale: { log: boolean; from?: number }, place: Place): Drawn {
   return drawBars({
     title: "Times as multiples of the fastest, geometric mean of the cases that an algorithm does",
     x: { name: "algorithm", unit: "" },
-    y: { name: "times the fastest's time", unit: "", log: true },
-    labels: all.map((standing) => standing.algorithm),
-    series: [{ name: "", values: all.map((standing) => standing.ratio) }],
-    colours: all.map((standing) => colourOf(standing, place.theme)),
-    from: 1,
+    y: { name: "times the fastest's time", unit: "", log: scale.log },
+    labels: shown.map((standing) => standing.algorithm),
+    series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
+    colours: shown.map((standing) => colourOf(standing, place.theme)),
+    ...(scale.from === undefined ? {} : { from: scale.from }),
   }, place);
+}
+
+/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
+export function drawStandings(cases: readonly Case[], place: Place): Drawn {
+  return drawMultiples(standings(cases), { log: true, from: 1 }, place);
 }
 
 /** The same for auto and, of each other library, the algorithm that does best. */
@@ -65,14 +69,7 @@ export function drawLibraries(cases: readonly Case[], place: Place): Drawn {
     const library = algorithm.split("_", 1)[0] ?? algorithm;
     return !seen.has(library) && seen.add(library);
   });
-  return drawBars({
-    title: "Times as multiples of the fastest algorithm's, geometric mean of the cases that an algorithm does",
-    x: { name: "algorithm", unit: "" },
-    y: { name: "times the fastest's time", unit: "", log: false },
-    labels: shown.map((standing) => standing.algorithm),
-    series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
-    colours: shown.map((standing) => colourOf(standing, place.theme)),
-  }, place);
+  return drawMultiples(shown, { log: false }, place);
 }
 
 /** How many times as fast our best is as the fastest peer, case by case. */
