@@ -33,7 +33,7 @@ TEST(OverlapFlags, AreThoseOfTheDefinition) {
     Rng rng(7);
     std::vector<Box<D>> boxes = random_boxes<D>(rng, 60, {.places = 10, .most_extent = 4});
     boxes.push_back(absent_box<D>());
-    boxes.push_back(nan_box<D>());
+    boxes.push_back(core::nan_box<D>());
     Box<D> whole;
     whole.min.fill(-infinity);
     whole.max.fill(infinity);
