@@ -65,6 +65,8 @@ int run(int count, char** arguments) {
   program.add_option("--turn", wishes.in_a_row, "Frames in a row before it is the next one's turn")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  program.add_flag("--cold", wishes.is_cold,
+                   "Flush the caches before each frame, as the rest of an engine does");
   program.add_option("--budget", wishes.budget_seconds, "Seconds for all frames of an algorithm")
       ->capture_default_str();
   program.add_option("--seed", wishes.seed, "Of the boxes and their motion")->capture_default_str();

@@ -24,6 +24,7 @@ struct Wishes {
   std::size_t frames = 0;
   std::size_t rounds = 0;
   std::size_t in_a_row = Turns{}.in_a_row;
+  bool is_cold = false;
   double budget_seconds = Turns{}.budget_seconds;
 
   Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;

@@ -31,6 +31,7 @@ struct Turns {
   std::size_t frames = 20;     ///< after the first
   std::size_t rounds = 3;      ///< how often the motion is followed anew; the least time of a frame counts
   std::size_t in_a_row = 5;    ///< frames that a tracker takes before it is the next one's turn
+  bool is_cold = false;        ///< whether caches are flushed before each frame, as by the rest of an engine
   double budget_seconds = 20;  ///< for a tracker's frames; from then on it takes five frames in all
 };
 
