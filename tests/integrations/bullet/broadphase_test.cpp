@@ -50,12 +50,10 @@ class TwoBroadphases {
     EXPECT_EQ(updated(ours_), overlapping_of(updated(bullets_)));
     const btVector3 from(corner(), corner(), corner());
     const btVector3 to(corner(), corner(), corner());
-    EXPECT_EQ(ray(ours_, from, to), only_hit(ray(bullets_, from, to), from, to, {0, 0, 0}));
     const btVector3 half(1, 2, 1);
-    EXPECT_EQ(ray(ours_, from, to, -half, half),
-              only_hit(ray(bullets_, from, to, -half, half), from, to, half));
-    EXPECT_EQ(overlapping(ours_, from, from + half),
-              only_hit(overlapping(bullets_, from, from + half), from + half / 2, from + half / 2, half / 2));
+    EXPECT_EQ(ray(ours_, from, to), met(from, to, {0, 0, 0}));
+    EXPECT_EQ(ray(ours_, from, to, -half, half), met(from, to, half));
+    EXPECT_EQ(overlapping(ours_, from - half, from + half), met(from, from, half));
     for (const auto& [mine, theirs] : proxies_) {
       if (mine != nullptr) {
         EXPECT_EQ(mine->m_uniqueId, theirs->m_uniqueId);
@@ -77,16 +75,15 @@ class TwoBroadphases {
     return pairs;
   }
 
-  /// Likewise of what Bullet's ray, cast with half the extents `half`, met.
-  std::multiset<std::uintptr_t> only_hit(const std::multiset<std::uintptr_t>& found, const btVector3& from,
-                                         const btVector3& to, const btVector3& half) const {
+  /// What a box with half the extents `half` meets on its way.
+  std::multiset<std::uintptr_t> met(const btVector3& from, const btVector3& to, const btVector3& half) const {
     const btVector3 way = to - from;
+    const BoxCast<3, btScalar> cast = {
+        bullet_detail::box_of(from - half, from + half), {way.x(), way.y(), way.z()}, 1};
     std::multiset<std::uintptr_t> hit;
-    for (const std::uintptr_t number : found) {
-      const btBroadphaseProxy& proxy = *proxies_[number].first;
-      const BoxCast<3, btScalar> cast = {
-          bullet_detail::box_of(from - half, from + half), {way.x(), way.y(), way.z()}, 1};
-      if (t_enter(cast, bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax))) hit.insert(number);
+    for (const auto& [proxy, theirs] : proxies_) {
+      if (proxy != nullptr && t_enter(cast, bullet_detail::box_of(proxy->m_aabbMin, proxy->m_aabbMax)))
+        hit.insert(number_of(*proxy));
     }
     return hit;
   }
