@@ -89,13 +89,13 @@ class Replay {
   /// The microseconds that a step takes.
   double step(std::size_t number) {
     const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
-    const Clock::time_point start = Clock::now();
+    const Stopwatch watch;
     for (std::size_t i = first; i < recording_.ends[number]; ++i) {
       const Call& call = recording_.calls[i];
       broadphase_->setAabb(proxies_[static_cast<std::size_t>(call.proxy)], call.min, call.max, nullptr);
     }
     broadphase_->calculateOverlappingPairs(nullptr);
-    return microseconds_since(start);
+    return watch.microseconds();
   }
 
   int pairs() const { return broadphase_->getOverlappingPairCache()->getNumOverlappingPairs(); }
@@ -173,9 +173,9 @@ void step(const Wishes& wishes) {
       for (const std::size_t turn : {step % 2, 1 - step % 2}) {
         Simulation& simulation = turn == 0 ? one : other;
         simulation.world().stage_us = 0;
-        const Clock::time_point start = Clock::now();
+        const Stopwatch watch;
         simulation.step();
-        step_us[turn].push_back(microseconds_since(start));
+        step_us[turn].push_back(watch.microseconds());
         stage_us[turn].push_back(simulation.world().stage_us);
       }
     }

@@ -21,15 +21,15 @@ const std::vector<BulletScene>& bullet_scenes() {
 }
 
 void TimedWorld::updateAabbs() {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   btDiscreteDynamicsWorld::updateAabbs();
-  stage_us += microseconds_since(start);
+  stage_us += watch.microseconds();
 }
 
 void TimedWorld::computeOverlappingPairs() {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   btDiscreteDynamicsWorld::computeOverlappingPairs();
-  stage_us += microseconds_since(start);
+  stage_us += watch.microseconds();
 }
 
 Simulation::Simulation(const std::string& scene, std::size_t bodies,

@@ -1,10 +1,9 @@
 // Simulations of Bullet's over one broad phase or another, for bench/engines/bullet.cpp.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,13 +12,21 @@
 
 namespace broadside::bench {
 
-using Clock = std::chrono::steady_clock;
+/// The processor time of this thread, which other programs on the machine disturb less than they do the time
+/// of day.
+class Stopwatch {
+ public:
+  double microseconds() const { return now() - start_; }
 
-inline double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return double(time.tv_sec) * 1e6 + double(time.tv_nsec) / 1e3;
+  }
 
-using MakeBroadphase = std::function<std::unique_ptr<btBroadphaseInterface>()>;
+  double start_ = now();
+};
 
 /// How a simulation begins.
 struct BulletScene {

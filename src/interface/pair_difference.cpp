@@ -33,12 +33,19 @@ unsigned overlapping(const Box<D, Real>& a, const Box<D, Real>& b) {
   return all;
 }
 
-/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; if there are
-/// filters, for every one with a changed box.
+/// Whether a filter has changed: then a pair may differ whose boxes overlap in both frames.
+template <int D, typename Real>
+bool has_changed_filter(const Change<D, Real>& change) {
+  return !change.filters_now.empty() && std::ranges::any_of(change.changed, [&](BoxId id) {
+    return change.filters_before[index(id)] != change.filters_now[index(id)];
+  });
+}
+
+/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; unless
+/// `by_boxes`, for every one with a changed box.
 template <int D, typename Real, typename Report>
 void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
-                   std::span<const Box<D, Real>> boxes, Report report) {
-  const unsigned by_boxes = change.filters_now.empty() ? 1 : 0;
+                   std::span<const Box<D, Real>> boxes, bool by_boxes, Report report) {
   constexpr std::size_t at_once = 256;
   std::array<Pair, at_once> differing;
   for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
@@ -48,7 +55,7 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
       if (i + ahead < pairs.size()) prefetch_boxes(boxes, pairs[i + ahead]);
       const std::uint32_t a = index(pairs[i].first);
       const std::uint32_t b = index(pairs[i].second);
-      const unsigned goes_on = overlapping(boxes[a], boxes[b]) & by_boxes;
+      const unsigned goes_on = overlapping(boxes[a], boxes[b]) & static_cast<unsigned>(by_boxes);
       differing[count] = pairs[i];
       count += static_cast<std::size_t>((change.flags[a] | change.flags[b]) & (goes_on ^ 1U));
     }
@@ -61,11 +68,12 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
                         std::span<const Pair> kept, PairSink& begun, PairSink& ended) {
-  for_differing<D, Real>(change, found, change.before, [&](Pair pair) {
+  const bool by_boxes = !has_changed_filter(change);
+  for_differing<D, Real>(change, found, change.before, by_boxes, [&](Pair pair) {
     if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
       begun.add(pair.first, pair.second);
   });
-  for_differing<D, Real>(change, kept, change.now, [&](Pair pair) {
+  for_differing<D, Real>(change, kept, change.now, by_boxes, [&](Pair pair) {
     if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
       ended.add(pair.first, pair.second);
   });
