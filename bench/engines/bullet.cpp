@@ -1,6 +1,7 @@
 // Bullet over Broadside's broad phase and over its own: bullet [PART...] [options], each part a table.
 //
 // stage      the broad phase alone: the boxes of a simulation, recorded and set in both, in turns
+// rays       the same, and after each step a hundred rays through the scene
 // step       two simulations, in turns: the broad-phase stage as Bullet knows it, and the whole step
 // manifolds  the transforms of one simulation in two more: in how many frames do contacts differ?
 // drift      two simulations: energy and penetration over all steps
@@ -9,14 +10,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <numeric>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/engines/bullet_replay.hpp"
 #include "bench/engines/bullet_simulation.hpp"
 #include "bench/guarded.hpp"
+#include "lab/scenes/random.hpp"
 
 namespace broadside::bench {
 namespace {
@@ -33,78 +35,6 @@ std::unique_ptr<btBroadphaseInterface> bullets() { return std::make_unique<btDbv
 std::unique_ptr<btBroadphaseInterface> ours(const Wishes& wishes) {
   return std::make_unique<BulletBroadphase>(wishes.options);
 }
-
-/// A box that was set, by the proxy's place in the order of creation.
-struct Call {
-  int proxy;
-  btVector3 min;
-  btVector3 max;
-};
-
-/// Bullet's broad phase, which notes what it is told.
-class Recording final : public btDbvtBroadphase {
- public:
-  struct Created {
-    Call call;
-    int group;
-    int mask;
-  };
-
-  btBroadphaseProxy* createProxy(const btVector3& min, const btVector3& max, int type, void* client,
-                                 int group, int mask, btDispatcher* dispatcher) override {
-    btBroadphaseProxy* const proxy =
-        btDbvtBroadphase::createProxy(min, max, type, client, group, mask, dispatcher);
-    places_[proxy] = static_cast<int>(created.size());
-    created.push_back({{places_[proxy], min, max}, group, mask});
-    return proxy;
-  }
-  void setAabb(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max,
-               btDispatcher* dispatcher) override {
-    calls.push_back({places_.at(proxy), min, max});
-    btDbvtBroadphase::setAabb(proxy, min, max, dispatcher);
-  }
-  void calculateOverlappingPairs(btDispatcher* dispatcher) override {
-    ends.push_back(calls.size());
-    btDbvtBroadphase::calculateOverlappingPairs(dispatcher);
-  }
-
-  std::vector<Created> created;
-  std::vector<Call> calls;
-  std::vector<std::size_t> ends;  ///< where the calls of each step end
-
- private:
-  std::map<btBroadphaseProxy*, int> places_;
-};
-
-/// A recording played to a broad phase.
-class Replay {
- public:
-  Replay(const Recording& recording, std::unique_ptr<btBroadphaseInterface> broadphase)
-      : recording_(recording), broadphase_(std::move(broadphase)) {
-    for (const Recording::Created& made : recording.created)
-      proxies_.push_back(
-          broadphase_->createProxy(made.call.min, made.call.max, 0, nullptr, made.group, made.mask, nullptr));
-  }
-
-  /// The microseconds that a step takes.
-  double step(std::size_t number) {
-    const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
-    const Stopwatch watch;
-    for (std::size_t i = first; i < recording_.ends[number]; ++i) {
-      const Call& call = recording_.calls[i];
-      broadphase_->setAabb(proxies_[static_cast<std::size_t>(call.proxy)], call.min, call.max, nullptr);
-    }
-    broadphase_->calculateOverlappingPairs(nullptr);
-    return watch.microseconds();
-  }
-
-  int pairs() const { return broadphase_->getOverlappingPairCache()->getNumOverlappingPairs(); }
-
- private:
-  const Recording& recording_;
-  std::unique_ptr<btBroadphaseInterface> broadphase_;
-  std::vector<btBroadphaseProxy*> proxies_;
-};
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
@@ -159,6 +89,55 @@ void stage(const Wishes& wishes) {
     print_times(scene, "all steps", bullets_us, ours_us);
     for (const std::size_t third : {0, 1, 2})
       print_times(scene, fmt::format("third {}", third + 1), part(bullets_us, third), part(ours_us, third));
+  }
+}
+
+/// The microseconds that a hundred rays take, from wall to wall.
+double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::uint64_t seed,
+                 std::size_t& met) {
+  lab::Random random(seed);
+  std::vector<std::pair<btVector3, btVector3>> rays;
+  for (int i = 0; i < 100; ++i) {
+    const btScalar z = half_width * btScalar(random.between(-1, 1));
+    const btScalar low = half_width * btScalar(random.between(0, 1));
+    const btScalar high = half_width * btScalar(random.between(0, 1));
+    rays.push_back({{-half_width, low, z}, {half_width, high, -z}});
+  }
+  const Stopwatch watch;
+  for (const auto& [from, to] : rays) {
+    CountingRay ray(from, to);
+    broadphase.rayTest(from, to, ray);
+    met += ray.met;
+  }
+  return watch.microseconds();
+}
+
+void rays(const Wishes& wishes) {
+  print_times_heading();
+  for (const std::string& scene : wishes.scenes) {
+    auto broadphase = std::make_unique<Recording>();
+    const Recording& recording = *broadphase;
+    Simulation simulation(scene, wishes.bodies, std::move(broadphase));
+    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
+    Replay one(recording, bullets());
+    Replay other(recording, ours(wishes));
+    std::vector<double> rays_us[2];
+    std::vector<double> both_us[2];
+    std::size_t met[2] = {0, 0};
+    const btScalar half_width = recording.created[0].call.max.x();  // the floor's
+    for (std::size_t step = 0; step < wishes.steps; ++step) {
+      for (const int turn : {0, 1}) {
+        Replay& replay = turn == 0 ? one : other;
+        const double stage_us = replay.step(step);
+        rays_us[turn].push_back(cast_rays(replay.broadphase(), half_width, step + 1, met[turn]));
+        both_us[turn].push_back(stage_us + rays_us[turn].back());
+      }
+    }
+    fmt::print("{}: {} boxes; a ray meets {:.0f} boxes of Bullet's and {:.0f} of ours\n", scene,
+               simulation.size(), double(met[0]) / double(100 * wishes.steps),
+               double(met[1]) / double(100 * wishes.steps));
+    print_times(scene, "100 rays", rays_us[0], rays_us[1]);
+    print_times(scene, "with the stage", both_us[0], both_us[1]);
   }
 }
 
@@ -229,7 +208,7 @@ void drift(const Wishes& wishes) {
 
 int run(int count, char** arguments) {
   const std::vector<std::pair<std::string, void (*)(const Wishes&)>> parts = {
-      {"stage", stage}, {"step", step}, {"manifolds", manifolds}, {"drift", drift}};
+      {"stage", stage}, {"rays", rays}, {"step", step}, {"manifolds", manifolds}, {"drift", drift}};
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
   Wishes wishes;
@@ -237,7 +216,7 @@ int run(int count, char** arguments) {
   std::vector<std::string> wanted;
 
   CLI::App program("Bullet over Broadside's broad phase and over its own.");
-  program.add_option("parts", wanted, "stage, step, manifolds, drift; all unless some are named")
+  program.add_option("parts", wanted, "stage, rays, step, manifolds, drift; all unless some are named")
       ->check(CLI::IsMember(names));
   program.add_option("--scenes", wishes.scenes, "fall, sheet, statics")
       ->delimiter(',')
