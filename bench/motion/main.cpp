@@ -29,6 +29,7 @@ const std::vector<Part>& parts() {
       {"jumps", "frames in which every box jumps, over rebuilding", jumps},
       {"rest", "2,000 movers among 1,000,000 boxes that rest, over those among 10,000", rest},
       {"recorded", "recorded scenes of 5,000 bodies against the engine's own broad phase", recorded},
+      {"worlds", "World with its moves, exact and enlarged events, over its tracker alone", worlds},
   };
   return list;
 }
@@ -48,6 +49,9 @@ int run(int count, char** arguments) {
   program.add_option("--algorithms", wishes.algorithms,
                      "Instead of a part's own; all others are compared with the first");
   program.add_option("--scenes", wishes.scenes, "Scenes instead of uniform")->delimiter(',');
+  program.add_option("--traces", wishes.traces, "Files in motion, for the part worlds: instead of scenes")
+      ->delimiter(',')
+      ->check(CLI::ExistingFile);
   program.add_option("--dimension", wishes.dimensions, "2, 3 or 2,3")
       ->delimiter(',')
       ->check(CLI::Range(2, 3));
