@@ -11,12 +11,19 @@
 namespace broadside::core {
 namespace {
 
-/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; if there are
-/// filters, for every one with a changed box.
+/// Whether a filter has changed: then a pair may differ whose boxes overlap in both frames.
+template <int D, typename Real>
+bool has_changed_filter(const Change<D, Real>& change) {
+  return !change.filters_now.empty() && std::ranges::any_of(change.changed, [&](BoxId id) {
+    return change.filters_before[index(id)] != change.filters_now[index(id)];
+  });
+}
+
+/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; unless
+/// `by_boxes`, for every one with a changed box.
 template <int D, typename Real, typename Report>
 void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
-                   std::span<const Box<D, Real>> boxes, Report report) {
-  const unsigned by_boxes = change.filters_now.empty() ? 1 : 0;
+                   std::span<const Box<D, Real>> boxes, bool by_boxes, Report report) {
   constexpr std::size_t at_once = 256;
   std::array<Pair, at_once> differing;
   std::array<std::uint8_t, at_once> goes_on;
@@ -27,7 +34,7 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
     for (std::size_t i = 0; i < some.size(); ++i) {
       const unsigned is_changed = change.flags[index(some[i].first)] | change.flags[index(some[i].second)];
       differing[count] = some[i];
-      count += is_changed & ((goes_on[i] & by_boxes) ^ 1U);
+      count += is_changed & ((goes_on[i] & static_cast<unsigned>(by_boxes)) ^ 1U);
     }
     for (const Pair pair : std::span(differing).first(count)) report(pair);
   }
@@ -38,11 +45,12 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
                         std::span<const Pair> kept, PairSink& begun, PairSink& ended) {
-  for_differing<D, Real>(change, found, change.before, [&](Pair pair) {
+  const bool by_boxes = !has_changed_filter(change);
+  for_differing<D, Real>(change, found, change.before, by_boxes, [&](Pair pair) {
     if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
       begun.add(pair.first, pair.second);
   });
-  for_differing<D, Real>(change, kept, change.now, [&](Pair pair) {
+  for_differing<D, Real>(change, kept, change.now, by_boxes, [&](Pair pair) {
     if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
       ended.add(pair.first, pair.second);
   });
