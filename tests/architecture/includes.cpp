@@ -44,6 +44,7 @@ const std::vector<Rule>& rules() {
       {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
+      {"integrations/fcl/", library + "|<fcl/.*>"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/formats/", lab + "|<assimp/.*>"},
@@ -51,12 +52,15 @@ const std::vector<Rule>& rules() {
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},
       {"bench/",
        lab +
            R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
+      {"examples/fcl_", standard + R"(|<broadside/[a-z_]+\.hpp>|<fcl/.*>)"},
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
+      {"tests/integrations/fcl/", library + "|<fcl/.*>|<gtest/.*>|<gmock/.*>"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.
       {"tests/",
