@@ -16,6 +16,12 @@ if(BROADSIDE_HAS_BULLET)
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 endif()
 
+# The config file makes the target itself: FCL is wherever it is found there.
+if(BROADSIDE_HAS_FCL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/fcl/include/broadside
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+endif()
+
 # A static library needs Highway where it is linked, and oneTBB if it has threads.
 set(library_packages hwy)
 set(pkg_config_packages libhwy)

@@ -46,6 +46,7 @@ const std::vector<Rule>& rules() {
       {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
+      {"integrations/fcl/", library + "|<fcl/.*>"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/formats/", lab + "|<assimp/.*>"},
@@ -55,13 +56,16 @@ const std::vector<Rule>& rules() {
        lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},
       {"bench/",
        lab +
            R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
-      {"examples/bullet/", standard + R"(|<broadside/[a-z_]+\.hpp>)" + engines},
       // As a user writes it.
+      {"examples/bullet/", standard + R"(|<broadside/[a-z_]+\.hpp>)" + engines},
+      {"examples/fcl_", standard + R"(|<broadside/[a-z_]+\.hpp>|<fcl/.*>)"},
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
+      {"tests/integrations/fcl/", library + "|<fcl/.*>|<gtest/.*>|<gmock/.*>"},
       {"tests/integrations/", library + engines + R"(|<(gmock|gtest)/.*>|"[a-z_]+\.hpp"|"tests/support/.*")"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.

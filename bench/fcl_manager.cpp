@@ -1,0 +1,193 @@
+// Broadside as FCL's broad phase against FCL's dynamic tree: fcl_manager [FRAMES [SCENE]].
+//
+// Both managers hold the same objects, are told of the same moves and collide all objects, frame by frame, in
+// turns, in one thread. The callback adds up a hash of the pairs it gets, which must come to the same.
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <broadside/fcl.hpp>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fmt/format.h>
+
+#include "broadside/broadside.hpp"
+
+#include "bench/guarded.hpp"
+#include "lab/measure/benchmark.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/machine.hpp"
+#include "lab/scenes/motion.hpp"
+#include "lab/scenes/scene.hpp"
+
+// FCL's tree of doubles compiled with this program's flags: faster than Debian's library, which checks
+// Eigen's assertions.
+template class fcl::AABB<double>;
+template class fcl::DynamicAABBTreeCollisionManager<double>;
+
+namespace broadside::bench {
+namespace {
+
+/// An object that is nothing but its box.
+template <typename S>
+class BoxObject final : public fcl::CollisionObject<S> {
+ public:
+  BoxObject(const std::shared_ptr<fcl::CollisionGeometry<S>>& geometry, const Box<3, S>& box)
+      : fcl::CollisionObject<S>(geometry) {
+    set(box);
+  }
+
+  void set(const Box<3, S>& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      this->aabb.min_[axis] = box.min[axis];
+      this->aabb.max_[axis] = box.max[axis];
+    }
+  }
+};
+
+/// The pairs a callback got, as a set. An object is known by its place in memory, so that nothing is timed
+/// but the broad phases: a callback that reads objects waits for their memory.
+template <typename S>
+class PairSet {
+ public:
+  explicit PairSet(const std::vector<BoxObject<S>>& objects) : first_(objects.data()) {}
+
+  static bool take(fcl::CollisionObject<S>* first, fcl::CollisionObject<S>* second, void* data) {
+    auto& set = *static_cast<PairSet*>(data);
+    const BoxId a = set.id_of(first);
+    const BoxId b = set.id_of(second);
+    ++set.count_;
+    set.hash_ += hash(a < b ? Pair{a, b} : Pair{b, a});
+    return false;
+  }
+
+  std::uint64_t count() const { return count_; }
+  friend bool operator==(const PairSet&, const PairSet&) = default;
+
+ private:
+  BoxId id_of(const fcl::CollisionObject<S>* object) const {
+    return BoxId(static_cast<const BoxObject<S>*>(object) - first_);
+  }
+
+  const BoxObject<S>* first_;
+  std::uint64_t count_ = 0;
+  std::uint64_t hash_ = 0;
+};
+
+/// A manager and its times.
+template <typename S>
+struct Side {
+  std::unique_ptr<fcl::BroadPhaseCollisionManager<S>> manager;
+  std::vector<double> update_ms{};
+  std::vector<double> collide_ms{};
+  std::vector<double> frame_ms{};
+
+  PairSet<S> run(const std::vector<fcl::CollisionObject<S>*>& moved, PairSet<S> pairs) {
+    const lab::Stopwatch watch;
+    if (moved.size() == manager->size())
+      manager->update();
+    else
+      manager->update(moved);
+    const double updated = watch.milliseconds();
+    manager->collide(&pairs, PairSet<S>::take);
+    const double all = watch.milliseconds();
+    update_ms.push_back(updated);
+    collide_ms.push_back(all - updated);
+    frame_ms.push_back(all);
+    return pairs;
+  }
+};
+
+template <typename S>
+void compare(std::string_view scene, std::size_t count, double moving, std::size_t frames) {
+  const lab::NamedScene named = lab::find_scene(scene);
+  std::vector<Box<3, S>> boxes;
+  for (const Box3& box : lab::make_history<3>(named.scene, named.spec, {.boxes = count}).boxes) {
+    // In doubles, coordinates that no float holds.
+    constexpr S scale = static_cast<S>(3.14159265358979324);
+    Box<3, S>& scaled = boxes.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      scaled.min[axis] = scale * box.min[axis];
+      scaled.max[axis] = scale * box.max[axis];
+    }
+  }
+  lab::MovingBoxes<3, S> motion(boxes, {.boxes = count, .moving = moving}, false);
+
+  const auto geometry = std::make_shared<fcl::Sphere<S>>(S{1});
+  std::vector<BoxObject<S>> objects;
+  objects.reserve(count);
+  std::vector<fcl::CollisionObject<S>*> pointers;
+  for (const Box<3, S>& box : boxes) pointers.push_back(&objects.emplace_back(geometry, box));
+
+  auto tree = std::make_unique<fcl::DynamicAABBTreeCollisionManager<S>>();
+  tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
+  Side<S> fcl_side{std::move(tree)};
+  Side<S> own_side{std::make_unique<FclCollisionManager<S>>()};
+  for (Side<S>* side : {&fcl_side, &own_side}) {
+    side->manager->registerObjects(pointers);
+    side->manager->setup();
+  }
+
+  std::uint64_t pairs = 0;
+  std::vector<fcl::CollisionObject<S>*> moved;
+  constexpr std::size_t warm_up = 5;
+  for (std::size_t frame = 0; frame < warm_up + frames; ++frame) {
+    if (frame == warm_up) {
+      for (Side<S>* side : {&fcl_side, &own_side}) side->update_ms = side->collide_ms = side->frame_ms = {};
+      pairs = 0;
+    }
+    const Step<3, S> step = motion.next();
+    moved.clear();
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      objects[index(step.changed[i])].set(step.boxes[i]);
+      moved.push_back(pointers[index(step.changed[i])]);
+    }
+    const bool own_first = frame % 2 == 0;
+    const PairSet<S> first = (own_first ? own_side : fcl_side).run(moved, PairSet(objects));
+    const PairSet<S> second = (own_first ? fcl_side : own_side).run(moved, PairSet(objects));
+    if (first != second)
+      throw std::runtime_error(
+          fmt::format("frame {}: {} pairs, and {} that are not the same from the other manager", frame,
+                      first.count(), second.count()));
+    pairs += first.count();
+  }
+  const auto median = [](const std::vector<double>& times) { return lab::rounded(lab::median(times)); };
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < frames; ++i) ratios.push_back(fcl_side.frame_ms[i] / own_side.frame_ms[i]);
+  fmt::print("{:<8}{:>9}{:>9}{:>10}  {:>9}{:>9}{:>9}  {:>9}{:>9}{:>9}{:>8.1f}\n",
+             sizeof(S) == sizeof(float) ? "float" : "double", lab::grouped(count),
+             fmt::format("{:.3g} %", moving * 100), lab::grouped(pairs / frames), median(fcl_side.update_ms),
+             median(fcl_side.collide_ms), median(fcl_side.frame_ms), median(own_side.update_ms),
+             median(own_side.collide_ms), median(own_side.frame_ms), lab::median(ratios));
+  std::fflush(stdout);
+}
+
+void run(std::size_t frames, const std::string& scene) {
+  const lab::Machine machine = lab::this_machine();
+  fmt::print("{}, {} frames, FCL " FCL_VERSION "; {}, {} cores; {}\n", scene, frames, machine.cpu,
+             machine.cores, lab::this_build().compiler);
+  fmt::print("{:<36}  {:>27}  {:>27}\n", "", "FCL's dynamic tree, ms", "Broadside, ms");
+  fmt::print("{:<8}{:>9}{:>9}{:>10}  {:>9}{:>9}{:>9}  {:>9}{:>9}{:>9}{:>8}\n", "", "objects", "moving",
+             "pairs", "update", "collide", "both", "update", "collide", "both", "ratio");
+  for (const std::size_t count : {10'000U, 100'000U}) {
+    for (const double moving : {1.0, 0.1, 0.01}) compare<double>(scene, count, moving, frames);
+  }
+  for (const std::size_t count : {10'000U, 100'000U}) compare<float>(scene, count, 1.0, frames);
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("fcl_manager", 1, [&] {
+    run(number_at(count, arguments, 1, 40), text_at(count, arguments, 2, "uniform"));
+    return 0;
+  });
+}
