@@ -32,7 +32,7 @@ std::vector<Part> quick_parts() {
       {{"uniform"}, {10'000}, {0.01, 1}, 10},
       {{"uniform"}, {100'000}, {0.1}, 5},
       {{"churn"}, {1'000}, {0}, 20},
-      {{"pile"}, {5'000}, {0}, 10},
+      {{"pile"}, {2'000}, {0}, 10},
       {{"box2d_rain", "box2d_pyramid", "bullet_free_fall"}, {1'000}, {0}, 30},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
   };
