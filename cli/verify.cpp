@@ -78,7 +78,7 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
       ->type_name("FILE");
   add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the overlapping pairs?"},
                        {"verify recording.btrace --algorithms auto,grid:cell=2.5",
-                        "two of them, in every frame of a recording; and the engine's pairs, if there"}});
+                        "two of them, in every frame of a recording"}});
   return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 

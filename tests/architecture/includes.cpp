@@ -20,7 +20,7 @@ const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
-  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp")";
+  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp"|"kernels/overlap_flags\.hpp")";
   const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/descriptions\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
                           R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
