@@ -192,9 +192,10 @@ void recorded_in(const Wishes& wishes, const std::string& engine, const std::str
   const lab::Catalogue catalogue;
   for (const lab::Scene& scene : lab::scenes()) {
     const bool wanted = wishes.scenes.empty()
-                            ? scene.name.starts_with(scenes_of_engine)
+                            ? scene.name.starts_with(scenes_of_engine) || scene.name == "pile"
                             : std::ranges::find(wishes.scenes, scene.name) != wishes.scenes.end();
-    if (scene.kind != lab::SceneKind::recorded || !scene.has_dimension(D) || !wanted) continue;
+    const bool moves = D == 2 ? bool(scene.history_2d) : bool(scene.history_3d);
+    if (!moves || !wanted) continue;
     const StartMotion<D> motion =
         motion_of<D>(scene.name, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames});
     const Outcome outcome = race<D>(catalogue.select(wishes.algorithms_or("auto," + engine)), motion, turns);

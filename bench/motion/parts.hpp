@@ -56,7 +56,8 @@ void jumps(const Wishes& wishes);
 /// 2,000 movers among 1,000,000 boxes that rest, over the same movers among the 10,000 around them.
 void rest(const Wishes& wishes);
 
-/// Recorded scenes: `auto` against the broad phase of the engine that was recorded.
+/// Recorded scenes, and the pile at rest: `auto` against the broad phase of the engine that was recorded.
+/// Takes any scene that moves by itself.
 void recorded(const Wishes& wishes);
 
 /// Worlds, with enlarged boxes and without, over their tracker alone and an engine's broad phase; in scenes,
