@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/world.hpp"
+
 #include "lab/scenes/motion.hpp"
 #include "lab/scenes/random.hpp"
 #include "lab/verify/verify.hpp"
@@ -20,6 +22,7 @@
 #include "tests/support/files.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/recorded.hpp"
+#include "tests/support/tape.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -229,6 +232,53 @@ TEST(VerifyRecordedAtRandom, FindsOneFaultAndNoOther) {
     const Recording<2, float> stale = random_recording(seed, frame, added);
     if (is_spoilt) expect_the_one_fault(stale, RecordedFault::Kind::stale, frame);
   }
+}
+
+/// What a world reports of moving boxes, a fifth of them static.
+std::string trace_of_world(const WorldOptions& options, double margin) {
+  const NamedScene scene = find_scene("uniform");
+  const History<2> history =
+      make_history<2>(scene.scene, scene.spec, {.boxes = 200, .frames = 30, .moving = 0.6});
+  Tape<2> tape(margin);
+  World2 world(options);
+  std::vector<Handle> handles;
+  const auto set = [&](std::size_t slot, const Box2& box) {
+    tape.set(static_cast<std::uint32_t>(slot), {box.min[0], box.min[1], box.max[0], box.max[1]});
+  };
+  const auto end_frame = [&] {
+    world.update();
+    for (const HandlePair& pair : world.pairs()) tape.recorder.add_pair(pair.first.slot, pair.second.slot);
+    tape.end_frame();
+  };
+  for (std::size_t i = 0; i < history.boxes.size(); ++i) {
+    const bool is_static = i % 5 == 0;
+    handles.push_back(world.add(history.boxes[i], {.filter = {.is_static = is_static}}));
+    EXPECT_EQ(handles[i].slot, i);
+    set(i, history.boxes[i]);
+    tape.recorder.set_filter(handles[i].slot, 1, ~std::uint64_t{0}, 0, is_static);
+  }
+  end_frame();
+  for (const Step<2>& step : history.steps) {
+    for (std::size_t i = 0; i < step.changed.size(); ++i) {
+      world.move(handles[index(step.changed[i])], step.boxes[i]);
+      set(index(step.changed[i]), step.boxes[i]);
+    }
+    end_frame();
+  }
+  EXPECT_EQ(tape.recorder.error(), "");
+  return tape.bytes;
+}
+
+TEST_F(VerifyRecorded, PassesAWorldWithExactAndWithEnlargedPairs) {
+  put("exact.btrace", trace_of_world({}, 0));
+  EXPECT_TRUE(verified(path("exact.btrace")).all_verified());
+  constexpr double margin = 0.25;
+  const WorldOptions enlarged{.margin = margin, .events = WorldEvents::enlarged};
+  // A box is enlarged to all sides, and may then move as far to one of them.
+  put("enlarged.btrace", trace_of_world(enlarged, 2.0001 * margin));
+  EXPECT_TRUE(verified(path("enlarged.btrace")).all_verified());
+  put("promising.btrace", trace_of_world(enlarged, margin / 2));
+  EXPECT_THAT(verified(path("promising.btrace")).verdicts[0].reason, HasSubstr(" is stale: "));
 }
 
 TEST_F(VerifyRecorded, StopsWhereTheBudgetIsUsedUp) {
