@@ -103,7 +103,9 @@ void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& 
     }
     if (radius >= least) return;
     reached = radius;
-    radius = std::min(std::max(2 * radius, beyond(reached)), least);
+    radius *= 2;
+    if (radius < least) radius = std::max(radius, beyond(reached));
+    radius = std::min(radius, least);
   }
 }
 

@@ -104,7 +104,7 @@ class LazyPairs {
 
  private:
   /// Boxes are followed while at most one in so many changed: see docs/integrations/fcl.md.
-  static constexpr std::size_t max_followed = 8;
+  static constexpr std::size_t max_followed = 16;
 
   void find(std::span<const Box<3, S>> boxes) {
     pairs_.clear();
