@@ -43,7 +43,8 @@ Exit run(const ConvertArguments& arguments) {
   lab::BoxFile file = lab::open_file(arguments.file, options);
   const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);
   if (!converted.warning.empty()) say(converted.warning);
-  if (!converted.left_out.empty()) say(lab::text_of_left_out(converted, format));
+  const std::string left_out = lab::text_of_left_out(converted, format);
+  if (!left_out.empty()) say(left_out);
   say(lab::text_of(converted, arguments.output, format));
   return Exit::fine;
 }

@@ -1,4 +1,5 @@
-// broadside verify: the law on a file, and where an algorithm breaks it, a small file that shows how.
+// broadside verify: the law on a file, and where an algorithm or an engine breaks it, a small file that shows
+// how.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -62,9 +63,8 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
   CLI::App* const verb = program.add_subcommand(
       "verify",
       "Checks on a file or a scene that algorithms find exactly the overlapping pairs in every frame, and "
-      "that they "
-      "report exactly the changes between frames, in the precision of the input. If one fails, writes a "
-      "small "
+      "that they report exactly the changes between frames, in the precision of the input; and, in a trace "
+      "that holds them, the pairs that an engine's own broad phase reported. If one fails, writes a small "
       "file that shows it and ends with status 1, also if all are skipped.");
   add_boxes(*verb, arguments->boxes);
   add_algorithms(*verb, arguments->options.algorithms);
@@ -74,7 +74,7 @@ Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue) {
       ->capture_default_str();
   verb->add_option("--counterexample", arguments->counterexample,
                    "Where the small file is written (default: counterexample.csv, or .btrace where boxes "
-                   "move; numbered where there is one already)")
+                   "move or pairs are recorded; numbered where there is one already)")
       ->type_name("FILE");
   add_examples(*verb, {{"verify boxes.csv", "do all algorithms find exactly the overlapping pairs?"},
                        {"verify recording.btrace --algorithms auto,grid:cell=2.5",

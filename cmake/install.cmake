@@ -10,6 +10,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
+# The config file makes the target itself: Bullet is wherever it is found there.
+if(BROADSIDE_HAS_BULLET)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet/include/broadside
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+endif()
+
 # The config file makes the target itself: FCL is wherever it is found there.
 if(BROADSIDE_HAS_FCL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/fcl/include/broadside

@@ -39,6 +39,7 @@ class CountingFrames final : public FrameReader<D, Real> {
 
   std::string warning() const override { return frames_->warning(); }
   std::string_view importer() const override { return frames_->importer(); }
+  const RecordedPairs* recorded() const override { return frames_->recorded(); }
 
   std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
@@ -62,6 +63,12 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
   converted.importer = importer_of(from.frames);
   converted.precision =
       format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
+  if (has_recorded_pairs(from.frames)) {
+    if (!format.keeps_pairs)
+      converted.left_out_pairs = fmt::format("format {} holds boxes alone", format.name);
+    else if (converted.precision < precision_of_frames(from.frames))
+      converted.left_out_pairs = "they are those of the boxes in double";
+  }
   AnyFrameReader counted = std::visit(
       [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) -> AnyFrameReader {
         if (const auto labels = frames->labels()) converted.left_out = labels->unread;
@@ -83,6 +90,8 @@ std::string text_of(const Converted& converted, const std::filesystem::path& pat
 std::string text_of_left_out(const Converted& converted, const Format& format) {
   constexpr std::size_t most = 20;
   const std::vector<std::string>& names = converted.left_out;
+  if (!converted.left_out_pairs.empty())  // of a trace, which is no table
+    return "left out the recorded pairs: " + converted.left_out_pairs;
   if (names.empty()) return {};
   std::string list;
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i)

@@ -19,6 +19,7 @@ struct Converted {
   std::size_t boxes = 0;                ///< the most places there are in a frame
   Rounding rounding{};                  ///< of all boxes written as floats, in all frames
   std::vector<std::string> left_out{};  ///< the names of a table's columns that were not written
+  std::string left_out_pairs{};         ///< why the recorded pairs were not written; empty if they were
   std::string warning{};                ///< what had to be left out of a damaged input; empty otherwise
   std::string importer{};  ///< the library that may have rounded its numbers to float; empty if none did
 };
@@ -33,7 +34,8 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
 /// format csv; 3 of 4,000 coordinates were rounded to float".
 std::string text_of(const Converted& converted, const std::filesystem::path& path, const Format& format);
 
-/// Which columns of a table were not written, as a line of text; empty where all were.
+/// Which columns of a table were not written, or why recorded pairs were not, as a line of text; empty where
+/// nothing was left out.
 std::string text_of_left_out(const Converted& converted, const Format& format);
 
 }  // namespace broadside::lab

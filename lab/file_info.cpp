@@ -151,6 +151,36 @@ class InfoCollector {
   std::map<int, std::uint64_t> sizes_;
 };
 
+/// Counts the pairs that were recorded, frame by frame.
+class PairCounts {
+ public:
+  void add(const RecordedPairs& frame) {
+    if (!counts_.empty()) {
+      info_.begun += frame.begun.size();
+      info_.ended += frame.ended.size();
+    }
+    info_.margin = frame.margin;
+    info_.filters += frame.filters.size();
+    reported_ += frame.begun.size() - frame.ended.size();
+    ignored_ += frame.begun_ignored.size() - frame.ended_ignored.size();
+    info_.ignored = std::max(info_.ignored, ignored_);
+    counts_.push_back(reported_);
+  }
+
+  std::optional<RecordedPairsInfo> info() {
+    if (counts_.empty()) return std::nullopt;
+    std::ranges::sort(counts_);
+    info_.reported = {counts_.front(), counts_[counts_.size() / 2], counts_.back()};
+    return info_;
+  }
+
+ private:
+  RecordedPairsInfo info_;
+  std::uint64_t reported_ = 0;
+  std::uint64_t ignored_ = 0;
+  std::vector<std::uint64_t> counts_;  // of reported pairs, frame by frame
+};
+
 /// Milliseconds that `run` takes.
 template <typename Run>
 double timed(const Run& run) {
@@ -165,14 +195,23 @@ void collect(FrameReader<D, Real>& frames, FileInfo& info) {
   std::vector<Box<D, Real>> boxes;
   double milliseconds = timed([&] { boxes = frames.first(); });
   collector.first(std::move(boxes));
+  PairCounts pairs;
+  const auto count_pairs = [&] {
+    if (frames.recorded() != nullptr) pairs.add(*frames.recorded());
+  };
+  count_pairs();
   Step<D, Real> step;
   const auto next = [&] {
     bool has_next = false;
     milliseconds += timed([&] { has_next = frames.next(step); });
     return has_next;
   };
-  for (info.frames = 1; next(); ++info.frames) collector.next(step);
+  for (info.frames = 1; next(); ++info.frames) {
+    collector.next(step);
+    count_pairs();
+  }
   collector.finish();
+  info.pairs = pairs.info();
   info.seconds += milliseconds / 1e3;
   info.warning = frames.warning();
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,16 @@ struct AxisInfo {
 struct SizeBin {
   int exponent;
   std::uint64_t boxes;
+};
+
+/// The pairs that an engine's own broad phase reported.
+struct RecordedPairsInfo {
+  double margin = 0;
+  std::array<std::uint64_t, 3> reported{};  ///< least, median and most in a frame
+  std::uint64_t begun = 0;                  ///< in all frames after the first
+  std::uint64_t ended = 0;
+  std::uint64_t ignored = 0;  ///< most pairs of a frame that need not be reported
+  std::uint64_t filters = 0;  ///< how often a box is given a filter, in all frames
 };
 
 /// What a file holds. The fullest frame is the first with the most boxes.
@@ -50,6 +61,7 @@ struct FileInfo {
   std::uint64_t added = 0;           ///< boxes, in all frames after the first
   std::uint64_t removed = 0;
   std::array<double, 3> moving{};  ///< least, median and greatest fraction of a frame's boxes that move
+  std::optional<RecordedPairsInfo> pairs{};  ///< empty where none were recorded
 
   double seconds = 0;       ///< that reading took
   std::uint64_t bytes = 0;  ///< of the file; 0 where unknown

@@ -81,6 +81,19 @@ std::string motion_text(const FileInfo& info) {
       100 * info.moving[2], grouped(info.added), grouped(info.removed));
 }
 
+std::string pairs_text(const FileInfo& info) {
+  if (!info.pairs) return {};
+  const RecordedPairsInfo& pairs = *info.pairs;
+  std::string text =
+      fmt::format("  recorded pairs, margin {:g}: {} in a frame (median; {} to {})", pairs.margin,
+                  grouped(pairs.reported[1]), grouped(pairs.reported[0]), grouped(pairs.reported[2]));
+  if (info.frames > 1)
+    text += fmt::format("; in all, {} begun, {} ended", grouped(pairs.begun), grouped(pairs.ended));
+  if (pairs.filters > 0) text += fmt::format("; {}", counted(pairs.filters, "filter", "filters"));
+  if (pairs.ignored > 0) text += fmt::format("; up to {} ignored", grouped(pairs.ignored));
+  return text + '\n';
+}
+
 /// "all", "none" or "7".
 std::string share(std::uint64_t some, std::uint64_t all) {
   return some == all ? "all" : some == 0 ? "none" : grouped(some);
@@ -133,6 +146,7 @@ std::string text_of(const FileInfo& info) {
                   counted(info.present + info.absent, "box", "boxes"), absent, info.dimension,
                   precision_text(info.precision, info.importer), counted(info.frames, "frame", "frames"));
   text += motion_text(info);
+  text += pairs_text(info);
   text += coordinates_text(info);
   text += kinds_text(info);
   text += reading_text(info) + '\n' + axes_text(info);

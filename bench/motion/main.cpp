@@ -28,7 +28,9 @@ const std::vector<Part>& parts() {
       {"spikes", "1,000 frames, a tenth moving, five times: the worst over the median", spikes},
       {"jumps", "frames in which every box jumps, over rebuilding", jumps},
       {"rest", "2,000 movers among 1,000,000 boxes that rest, over those among 10,000", rest},
-      {"recorded", "recorded scenes of 5,000 bodies against the engine's own broad phase", recorded},
+      {"recorded", "recorded scenes and a pile at rest, 5,000 bodies, against the engine's own broad phase",
+       recorded},
+      {"worlds", "World with its moves, exact and enlarged events, over its tracker alone", worlds},
   };
   return list;
 }
@@ -48,6 +50,9 @@ int run(int count, char** arguments) {
   program.add_option("--algorithms", wishes.algorithms,
                      "Instead of a part's own; all others are compared with the first");
   program.add_option("--scenes", wishes.scenes, "Scenes instead of uniform")->delimiter(',');
+  program.add_option("--traces", wishes.traces, "Files in motion, for the part worlds: instead of scenes")
+      ->delimiter(',')
+      ->check(CLI::ExistingFile);
   program.add_option("--dimension", wishes.dimensions, "2, 3 or 2,3")
       ->delimiter(',')
       ->check(CLI::Range(2, 3));
@@ -61,6 +66,8 @@ int run(int count, char** arguments) {
   program.add_option("--turn", wishes.in_a_row, "Frames in a row before it is the next one's turn")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  program.add_flag("--cold", wishes.is_cold,
+                   "Flush the caches before each frame, as the rest of an engine does");
   program.add_option("--budget", wishes.budget_seconds, "Seconds for all frames of an algorithm")
       ->capture_default_str();
   program.add_option("--seed", wishes.seed, "Of the boxes and their motion")->capture_default_str();

@@ -21,6 +21,7 @@ Turns Wishes::turns(std::size_t standard_frames, std::size_t standard_rounds) co
   return {.frames = frames > 0 ? frames : standard_frames,
           .rounds = rounds > 0 ? rounds : standard_rounds,
           .in_a_row = in_a_row,
+          .is_cold = is_cold,
           .budget_seconds = budget_seconds};
 }
 
@@ -48,9 +49,10 @@ template StartMotion<3> motion_of(const std::string&, const lab::SceneRequest&);
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns) {
   const lab::Machine machine = lab::this_machine();
   const lab::Build build = lab::this_build();
-  fmt::print("{}, {}D, {} boxes, {} frames in turns of {}, the least of {} rounds; {}, {} cores; {}, {}\n",
-             what, dimension, lab::grouped(boxes), turns.frames, turns.in_a_row, turns.rounds, machine.cpu,
-             machine.cores, build.compiler, build.revision);
+  fmt::print("{}, {}D, {} boxes, {} frames in turns of {}{}, the least of {} rounds; {}, {} cores; {}, {}\n",
+             what, dimension, lab::grouped(boxes), turns.frames, turns.in_a_row,
+             turns.is_cold ? ", caches flushed" : "", turns.rounds, machine.cpu, machine.cores,
+             build.compiler, build.revision);
 }
 
 namespace {

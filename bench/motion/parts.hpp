@@ -15,6 +15,7 @@ namespace broadside::bench {
 struct Wishes {
   std::string algorithms{};  ///< as Catalogue::select reads it
   std::vector<std::string> scenes{};
+  std::vector<std::string> traces{};  ///< files
   std::vector<int> dimensions = {2, 3};
   std::size_t boxes = 0;
   std::vector<double> moving{};
@@ -23,6 +24,7 @@ struct Wishes {
   std::size_t frames = 0;
   std::size_t rounds = 0;
   std::size_t in_a_row = Turns{}.in_a_row;
+  bool is_cold = false;
   double budget_seconds = Turns{}.budget_seconds;
 
   Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;
@@ -54,8 +56,13 @@ void jumps(const Wishes& wishes);
 /// 2,000 movers among 1,000,000 boxes that rest, over the same movers among the 10,000 around them.
 void rest(const Wishes& wishes);
 
-/// Recorded scenes: `auto` against the broad phase of the engine that was recorded.
+/// Recorded scenes, and the pile at rest: `auto` against the broad phase of the engine that was recorded.
+/// Takes any scene that moves by itself.
 void recorded(const Wishes& wishes);
+
+/// Worlds, with enlarged boxes and without, over their tracker alone and an engine's broad phase; in scenes,
+/// or in files.
+void worlds(const Wishes& wishes);
 
 /// Prints what ran: the scene, its boxes, the machine.
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);

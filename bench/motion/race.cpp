@@ -1,8 +1,8 @@
-// Trackers over the same motion, in turns, their events compared.
+// Trackers and worlds over the same motion, in turns, their events compared.
 #include "bench/motion/race.hpp"
 
 #include <algorithm>
-#include <memory>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -13,7 +13,6 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/benchmark.hpp"
-#include "lab/measure/expected_events.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/numbers.hpp"
@@ -23,7 +22,43 @@ namespace {
 
 constexpr std::size_t fewest_frames = 5;
 
-/// What a frame's events were by the first tracker that told them.
+template <int D>
+class TrackerFollower final : public Follower<D> {
+ public:
+  explicit TrackerFollower(std::unique_ptr<PairTracker<D>> tracker) : tracker_(std::move(tracker)) {}
+
+  void take(const lab::Step<D>& step) override {
+    lab::apply(step, boxes_);
+    changed_ = step.changed;
+    events_.begun.clear();
+    events_.ended.clear();
+  }
+
+  void update() override {
+    PairCollector begun(events_.begun);
+    PairCollector ended(events_.ended);
+    tracker_->update({boxes_, changed_}, begun, ended);
+  }
+
+  const lab::Events& events() override { return events_; }
+  std::string explanation() const override { return tracker_->explanation(); }
+
+ private:
+  std::unique_ptr<PairTracker<D>> tracker_;
+  std::vector<Box<D>> boxes_;  // its own, as an engine's are
+  std::vector<BoxId> changed_;
+  lab::Events events_;
+};
+
+/// A step from nothing to these boxes.
+template <int D>
+lab::Step<D> first_step(std::span<const Box<D>> boxes) {
+  lab::Step<D> step{boxes.size(), {}, {boxes.begin(), boxes.end()}};
+  for (std::size_t i = 0; i < boxes.size(); ++i) step.changed.push_back(BoxId(i));
+  return step;
+}
+
+/// What a frame's events were by the first that told them.
 struct Told {
   std::uint64_t hash;
   std::string by;
@@ -31,10 +66,9 @@ struct Told {
 
 template <int D>
 struct Participant {
-  const lab::Entry* entry;
+  Competitor<D> competitor;
   Runner* runner;
-  std::unique_ptr<PairTracker<D>> tracker{};  // of this round
-  std::vector<Box<D>> boxes{};                // its own, as an engine's are
+  std::unique_ptr<Follower<D>> follower{};  // of this round
   double spent_ms = 0;
   bool done = false;
 };
@@ -42,10 +76,10 @@ struct Participant {
 template <int D>
 class Race {
  public:
-  Race(std::span<const lab::Entry> entries, const Turns& turns) : turns_(turns) {
-    for (const lab::Entry& entry : entries) outcome_.runners.push_back({entry.spec.text()});
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      participants_.push_back({&entries[i], &outcome_.runners[i]});
+  Race(std::vector<Competitor<D>> competitors, const Turns& turns) : turns_(turns) {
+    for (const Competitor<D>& competitor : competitors) outcome_.runners.push_back({competitor.name});
+    for (std::size_t i = 0; i < competitors.size(); ++i)
+      participants_.push_back({std::move(competitors[i]), &outcome_.runners[i]});
   }
 
   Outcome run(const StartMotion<D>& start) {
@@ -53,9 +87,11 @@ class Race {
       Motion<D> motion = start();
       if (round == 0) let_in(motion.boxes);
       follow(motion, round);
-    }
-    for (Participant<D>& participant : participants_) {
-      if (participant.tracker) participant.runner->explanation = participant.tracker->explanation();
+      // The first one is verified, and knows what that found.
+      if (round > 0) continue;
+      for (Participant<D>& participant : participants_) {
+        if (participant.follower) participant.runner->explanation = participant.follower->explanation();
+      }
     }
     return std::move(outcome_);
   }
@@ -66,13 +102,14 @@ class Race {
     extremes.take<D>(boxes);
     for (Participant<D>& participant : participants_) {
       std::string& why = participant.runner->left_out;
-      why = lab::unfit(*participant.entry, D, extremes);
+      if (participant.competitor.entry != nullptr)
+        why = lab::unfit(*participant.competitor.entry, D, extremes);
       // Some take quadratic time to put boxes in one by one.
       const auto seconds_for = [&](std::size_t count) {
         std::vector<Box<D>> some;
         for (const std::size_t i : lab::sample_of(boxes.size(), count)) some.push_back(boxes[i]);
         make(participant);
-        return update(participant, {some, {}}) / 1e3;
+        return update(participant, first_step<D>(some)) / 1e3;
       };
       if (why.empty()) {
         if (const auto estimate = lab::estimate_above(turns_.budget_seconds, boxes.size(), seconds_for))
@@ -83,13 +120,13 @@ class Race {
   }
 
   void follow(Motion<D>& motion, std::size_t round) {
+    const lab::Step<D> first = first_step<D>(motion.boxes);
     for (const std::size_t place : lab::turns(participants_.size(), round)) {
       Participant<D>& participant = participants_[place];
       if (participant.done) continue;
       make(participant);
-      participant.boxes = motion.boxes;
-      const double milliseconds = update(participant, {participant.boxes, {}});
-      compare(participant, 0);
+      const double milliseconds = update(participant, first);
+      check(participant, 0, round);
       double& least = participant.runner->build_ms;
       least = least > 0 ? std::min(least, milliseconds) : milliseconds;
     }
@@ -101,16 +138,15 @@ class Race {
         for (const lab::Step<D>& step : steps) outcome_.movers.push_back(step.changed.size());
       }
       for (const std::size_t place : lab::turns(participants_.size(), round * turns_.frames + frame)) {
-        for (std::size_t i = 0; i < steps.size(); ++i) take(participants_[place], steps[i], frame + i);
+        for (std::size_t i = 0; i < steps.size(); ++i) take(participants_[place], steps[i], frame + i, round);
       }
     }
   }
 
-  void take(Participant<D>& participant, const lab::Step<D>& step, std::size_t frame) {
+  void take(Participant<D>& participant, const lab::Step<D>& step, std::size_t frame, std::size_t round) {
     if (participant.done) return;
-    lab::apply(step, participant.boxes);
-    const double milliseconds = update(participant, {participant.boxes, step.changed});
-    compare(participant, frame + 1);
+    const double milliseconds = update(participant, step);
+    check(participant, frame + 1, round);
     participant.spent_ms += milliseconds;
     std::vector<double>& frames = participant.runner->frames_ms;
     if (frame < frames.size())
@@ -122,39 +158,47 @@ class Race {
   }
 
   static void make(Participant<D>& participant) {
-    participant.tracker.reset();
-    participant.tracker = make_tracker<D>(*participant.entry->algorithm, participant.entry->spec);
+    participant.follower.reset();
+    participant.follower = participant.competitor.make();
   }
 
-  double update(Participant<D>& participant, const Frame<D>& frame) {
-    events_.begun.clear();
-    events_.ended.clear();
-    PairCollector begun(events_.begun);
-    PairCollector ended(events_.ended);
+  double update(Participant<D>& participant, const lab::Step<D>& step) {
+    participant.follower->take(step);
+    if (turns_.is_cold) flush_caches();
     const lab::Stopwatch watch;
-    participant.tracker->update(frame, begun, ended);
+    participant.follower->update();
     return watch.milliseconds();
   }
 
-  void compare(const Participant<D>& participant, std::size_t frame) {
+  /// Writes more bytes than caches hold.
+  void flush_caches() {
+    flushed_.resize(std::size_t{256} << 20);
+    for (std::size_t i = 0; i < flushed_.size(); i += 64) ++flushed_[i];
+  }
+
+  void check(const Participant<D>& participant, std::size_t frame, std::size_t round) {
+    const lab::Events& events = participant.follower->events();
     lab::EventHasher hasher;
-    hasher.add(events_);
-    if (frame == told_.size()) {
-      told_.push_back({hasher.hash(), participant.runner->algorithm});
-      if (frame > 0) outcome_.events += events_.begun.size() + events_.ended.size();
+    hasher.add(events);
+    std::vector<Told>& told = told_[participant.competitor.definition];
+    if (frame == told.size()) {
+      told.push_back({hasher.hash(), participant.runner->algorithm});
+      if (frame > 0 && told_.size() == 1) outcome_.events += events.begun.size() + events.ended.size();
     }
-    if (told_[frame].hash == hasher.hash()) return;
-    throw std::runtime_error(fmt::format(
-        "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
-        participant.runner->algorithm, lab::counted(events_.begun.size(), "pair as begun", "pairs as begun"),
-        events_.ended.size(), told_[frame].by));
+    if (told[frame].hash != hasher.hash()) {
+      throw std::runtime_error(fmt::format(
+          "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
+          participant.runner->algorithm, lab::counted(events.begun.size(), "pair as begun", "pairs as begun"),
+          events.ended.size(), told[frame].by));
+    }
+    if (round == 0) participant.follower->verify();
   }
 
   const Turns& turns_;
   Outcome outcome_;
   std::vector<Participant<D>> participants_;
-  std::vector<Told> told_;  // by frame, the first one too
-  lab::Events events_;      // of the last update; its memory serves all
+  std::vector<char> flushed_{};
+  std::map<std::string, std::vector<Told>> told_;  // by definition, and frame, the first one too
 };
 
 }  // namespace
@@ -166,8 +210,25 @@ double Outcome::mean_movers() const {
 }
 
 template <int D>
+std::vector<Competitor<D>> trackers(std::span<const lab::Entry> entries) {
+  std::vector<Competitor<D>> competitors;
+  for (const lab::Entry& entry : entries) {
+    const auto make = [&entry] {
+      return std::make_unique<TrackerFollower<D>>(make_tracker<D>(*entry.algorithm, entry.spec));
+    };
+    competitors.push_back({entry.spec.text(), "boxes", make, &entry});
+  }
+  return competitors;
+}
+
+template <int D>
+Outcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns) {
+  return Race<D>(std::move(competitors), turns).run(start);
+}
+
+template <int D>
 Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns) {
-  return Race<D>(entries, turns).run(start);
+  return race<D>(trackers<D>(entries), start, turns);
 }
 
 void merge(Outcome& outcome, Outcome round) {
@@ -184,6 +245,10 @@ void merge(Outcome& outcome, Outcome round) {
   }
 }
 
+template std::vector<Competitor<2>> trackers(std::span<const lab::Entry>);
+template std::vector<Competitor<3>> trackers(std::span<const lab::Entry>);
+template Outcome race(std::vector<Competitor<2>>, const StartMotion<2>&, const Turns&);
+template Outcome race(std::vector<Competitor<3>>, const StartMotion<3>&, const Turns&);
 template Outcome race(std::span<const lab::Entry>, const StartMotion<2>&, const Turns&);
 template Outcome race(std::span<const lab::Entry>, const StartMotion<3>&, const Turns&);
 

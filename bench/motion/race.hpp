@@ -1,14 +1,16 @@
-// Trackers over the same motion, in turns, their events compared.
+// Trackers and worlds over the same motion, in turns, their events compared.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "lab/catalogue.hpp"
+#include "lab/measure/expected_events.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::bench {
@@ -29,6 +31,7 @@ struct Turns {
   std::size_t frames = 20;     ///< after the first
   std::size_t rounds = 3;      ///< how often the motion is followed anew; the least time of a frame counts
   std::size_t in_a_row = 5;    ///< frames that a tracker takes before it is the next one's turn
+  bool is_cold = false;        ///< whether caches are flushed before each frame, as by the rest of an engine
   double budget_seconds = 20;  ///< for a tracker's frames; from then on it takes five frames in all
 };
 
@@ -52,8 +55,49 @@ struct Outcome {
   double mean_movers() const;
 };
 
-/// Lets the entries follow the motion. Between two frames nothing of theirs is timed: what is timed is an
+/// What follows boxes in a race.
+template <int D>
+class Follower {
+ public:
+  virtual ~Follower() = default;
+
+  /// Hands over what changes, as the engine that moved the boxes has it. Not timed.
+  virtual void take(const lab::Step<D>& step) = 0;
+
+  /// Brings the pairs up to date. Timed.
+  virtual void update() = 0;
+
+  /// The events of the last update, by the places of the motion. Not timed.
+  virtual const lab::Events& events() = 0;
+
+  /// Throws std::runtime_error if something is wrong that the events of others cannot tell. Not timed.
+  virtual void verify() {}
+
+  virtual std::string explanation() const { return {}; }
+};
+
+/// A participant in a race.
+template <int D>
+struct Competitor {
+  std::string name;
+
+  /// What its events are told of: all with the same text must tell the same events.
+  std::string definition;
+
+  std::function<std::unique_ptr<Follower<D>>()> make;
+  const lab::Entry* entry = nullptr;  ///< its limits, where it has some
+};
+
+/// The competitors that trackers are.
+template <int D>
+std::vector<Competitor<D>> trackers(std::span<const lab::Entry> entries);
+
+/// Lets the competitors follow the motion. Between two frames nothing of theirs is timed: what is timed is an
 /// update() with its events. Throws std::runtime_error if two disagree on the events of a frame.
+template <int D>
+Outcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns);
+
+/// The same with trackers.
 template <int D>
 Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns);
 

@@ -1,6 +1,6 @@
-// Recorder: writes an engine's boxes, frame after frame, to a trace that Broadside reads. One header that
-// needs C++11 and its standard library alone: copy it into the engine. The bytes are described in
-// docs/trace-format.md.
+// Recorder: writes an engine's boxes, frame after frame, to a trace that Broadside reads, and the pairs that
+// the engine's own broad phase reports, for Broadside to check. One header that needs C++11 and its standard
+// library alone: copy it into the engine. The bytes are described in docs/trace-format.md.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -23,9 +24,14 @@ namespace broadside {
 namespace trace {
 
 constexpr std::array<unsigned char, 8> magic = {{0x89, 'B', 'T', 'R', '\r', '\n', 0x1a, '\n'}};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 1;              // of a trace of boxes alone
+constexpr std::uint32_t pairs_version = 2;        // of one that holds an engine's pairs as well
 constexpr std::uint32_t frame_mark = 0x4d415246;  // "FRAM"
 constexpr std::size_t header_bytes = 20;          // of the file, and as many of a frame
+constexpr std::size_t margin_bytes = 8;           // by which the file's header is longer with pairs
+constexpr std::size_t pair_count_bytes = 20;      // by which a frame's header is
+constexpr std::size_t filter_bytes = 28;
+constexpr std::size_t pair_bytes = 8;
 constexpr std::size_t checksum_bytes = 4;
 
 /// CRC-32C (Castagnoli's polynomial, as in iSCSI, RFC 3720) of all bytes given so far, eight at a time
@@ -86,14 +92,33 @@ class Checksum {
 /// A slot is a box's place in an array: the caller's choice, small numbers, each used again as it becomes
 /// free. Boxes are closed; infinite extents are allowed.
 ///
+/// A trace opened with a margin also holds the pairs that the engine's own broad phase reports, which
+/// `broadside verify` then checks. In each frame, the engine promises to report
+///
+/// - every two boxes that overlap, but for those whose filters reject each other and for ignored pairs;
+/// - no pair whose boxes, each enlarged by the margin on every side, do not overlap;
+/// - no pair twice.
+///
+/// Boxes and pairs of a frame belong to the same moment. If a step looks for pairs and then moves the boxes,
+/// record the boxes before the step and the pairs after it:
+///
+///     recorder.open("recording.btrace", margin);
+///     for (...) {
+///       recorder.set(slot, min, max);
+///       recorder.set_filter(slot, category, mask);  // of a box that is new, if not all pairs count
+///       engine.step();
+///       recorder.add_pair(slot, other_slot);        // each pair that the broad phase holds now
+///       recorder.end_frame();
+///     }
+///
 /// Errors: a call that fails returns false, and error() says why: the text of the first failure since open().
 /// A call refused for its arguments changes nothing, and recording goes on; after a failed write nothing more
 /// is written. Nothing here throws but the standard library when memory runs out, so it works with exceptions
 /// switched off.
 ///
 /// A frame has left the process when end_frame() returns: a crash of the process loses at most the frame
-/// under way. Time a frame: that of the slots named since the last one; memory: two boxes a slot. One thread
-/// at a time.
+/// under way. Time a frame: that of the slots named since the last one, and of sorting the pairs; memory: two
+/// boxes a slot and two numbers a pair, with pairs also two filters a slot. One thread at a time.
 template <int D, typename Real = float>
 class Recorder {
   static_assert(D == 2 || D == 3, "a trace has two or three dimensions");
@@ -115,25 +140,28 @@ class Recorder {
   /// Begins a trace in a file, which is created, or emptied. The trace that was open before is closed.
   bool open(const std::string& path) {
     close();
-    errno = 0;
-    file_ = std::fopen(path.c_str(), "wb");
-    path_ = path;
-    if (file_ == nullptr) {
-      error_.clear();
-      return fail(path + ": cannot be created: " + std::strerror(errno));
-    }
-    // What is written leaves the process at once; it is collected here.
-    std::setvbuf(file_, nullptr, _IONBF, 0);
-    std::FILE* const file = file_;
-    return begin(
-        [file](const void* bytes, std::size_t count) { return std::fwrite(bytes, 1, count, file) == count; });
+    return open_file(path, false, 0);
+  }
+
+  /// Likewise, a trace that also holds the engine's pairs, which it promises within this margin (see above).
+  /// Refused where the margin is negative, infinite or a NaN: then there is no file.
+  bool open(const std::string& path, double margin) {
+    close();
+    return is_margin(path, margin) && open_file(path, true, margin);
   }
 
   /// Begins a trace that goes wherever `write` puts it, some 64 KiB or less a call.
   bool open_with(Write write) {
     close();
     path_ = "recorder";
-    return begin(std::move(write));
+    return begin(std::move(write), false, 0);
+  }
+
+  /// Likewise, with pairs.
+  bool open_with(Write write, double margin) {
+    close();
+    path_ = "recorder";
+    return is_margin(path_, margin) && begin(std::move(write), true, margin);
   }
 
   /// Puts the box with corners min[0 .. D-1] and max[0 .. D-1] in a slot; min = +inf and max = -inf on every
@@ -183,14 +211,44 @@ class Recorder {
     const std::size_t before = now_.size();
     for (std::size_t slot = count; slot < before; ++slot) touch(slot);
     now_.resize(count, absent_box());
+    if (has_pairs_) filters_.resize(count, standard_filter());
     if (is_touched_.size() < count) is_touched_.resize(count);
     for (std::size_t slot = before; slot < count; ++slot) touch(slot);
     return true;
   }
 
-  /// Writes what has changed since the last frame; the first frame is all change.
+  /// Says which pairs of this box count, as most engines do: two boxes need to be reported if each one's mask
+  /// has a bit of the other one's category, or, where they are of the same group other than 0, if that is
+  /// positive; and never if both are static. Holds until the slot is emptied; a new box has category 1 and
+  /// all masks. Refused where the slot is empty, and in a trace without pairs.
+  bool set_filter(std::uint32_t slot, std::uint64_t category, std::uint64_t mask, std::int32_t group = 0,
+                  bool is_static = false) {
+    if (!takes_pairs("set_filter")) return false;
+    if (!has_box(slot))
+      return fail(path_ + ": filter of slot " + std::to_string(slot) + ", which is empty; expected a box");
+    touch(slot);
+    filters_[slot] = {category, mask, group, is_static};
+    return true;
+  }
+
+  /// Adds a pair that the engine's broad phase reports in this frame: each one that it holds, in any order
+  /// and with either slot first; one that it reports twice, twice. The next frame begins without pairs.
+  /// Refused where both slots are the same or one is empty, and in a trace without pairs.
+  bool add_pair(std::uint32_t first, std::uint32_t second) {
+    return put_pair("add_pair", first, second, pairs_now_);
+  }
+
+  /// Adds a pair that the engine need not report in this frame although its boxes may overlap, such as two
+  /// bodies that a joint connects. The next frame begins without such pairs. Refused as by add_pair().
+  bool ignore_pair(std::uint32_t first, std::uint32_t second) {
+    return put_pair("ignore_pair", first, second, ignored_now_);
+  }
+
+  /// Writes what has changed since the last frame; the first frame is all change. Returns false also where a
+  /// slot of an added pair has been emptied since: the frame is then written without that pair.
   bool end_frame() {
     if (!is_open("end_frame")) return false;
+    const bool pairs_are_right = !has_pairs_ || settle_pairs();
     const auto same = [this](std::uint32_t slot) {
       is_touched_[slot] = 0;
       return slot >= now_.size() || (slot < written_.size() && written_[slot] == now_[slot]);
@@ -204,6 +262,7 @@ class Recorder {
     put(static_cast<std::uint32_t>(now_.size()));
     put(static_cast<std::uint32_t>(removed));
     put(static_cast<std::uint32_t>(touched_.size() - static_cast<std::size_t>(removed)));
+    if (has_pairs_) put_pair_counts();
     put_checksum();
     for (const std::uint32_t slot : touched_) {
       if (is_absent(slot)) put(slot);
@@ -213,13 +272,14 @@ class Recorder {
       put(slot);
       for (const Bits coordinate : now_[slot]) put(coordinate);
     }
+    if (has_pairs_) put_pair_changes();
     put_checksum();
 
     written_.resize(now_.size());
     is_touched_.resize(now_.size());
     for (const std::uint32_t slot : touched_) written_[slot] = now_[slot];
     touched_.clear();
-    return flush();
+    return flush() && pairs_are_right;
   }
 
   /// Ends the trace with the last whole frame. Returns whether nothing has failed since open().
@@ -246,19 +306,82 @@ class Recorder {
       sizeof(Real) == 4 ? Bits{0x7f800000} : static_cast<Bits>(0x7ff0000000000000);
   static constexpr Bits sign = static_cast<Bits>(Bits{1} << (8 * sizeof(Real) - 1));
 
-  bool begin(Write write) {
+  struct SlotFilter {
+    std::uint64_t category;
+    std::uint64_t mask;
+    std::int32_t group;
+    bool is_static;
+
+    bool operator==(const SlotFilter& other) const noexcept {
+      return category == other.category && mask == other.mask && group == other.group &&
+             is_static == other.is_static;
+    }
+  };
+  using Pairs = std::vector<std::uint64_t>;  // the lesser slot in the upper half
+
+  /// What differs between the pairs of two frames.
+  struct PairChanges {
+    Pairs ended;
+    Pairs begun;
+
+    void take(const Pairs& before, const Pairs& now) {
+      ended.clear();
+      begun.clear();
+      std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(ended));
+      std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(begun));
+    }
+  };
+
+  static SlotFilter standard_filter() noexcept { return {1, ~std::uint64_t{0}, 0, false}; }
+
+  bool is_margin(const std::string& path, double margin) {
+    error_.clear();
+    std::uint64_t bits;
+    std::memcpy(&bits, &margin, sizeof bits);
+    const bool is_finite = (bits >> 52 & 0x7ff) != 0x7ff;
+    const bool is_negative = bits >> 63 != 0 && bits << 1 != 0;
+    if (is_finite && !is_negative) return true;
+    return fail(path + ": margin " + std::to_string(margin) + "; expected a finite number, 0 or more");
+  }
+
+  bool open_file(const std::string& path, bool has_pairs, double margin) {
+    errno = 0;
+    file_ = std::fopen(path.c_str(), "wb");
+    path_ = path;
+    if (file_ == nullptr) {
+      error_.clear();
+      return fail(path + ": cannot be created: " + std::strerror(errno));
+    }
+    // What is written leaves the process at once; it is collected here.
+    std::setvbuf(file_, nullptr, _IONBF, 0);
+    std::FILE* const file = file_;
+    return begin(
+        [file](const void* bytes, std::size_t count) { return std::fwrite(bytes, 1, count, file) == count; },
+        has_pairs, margin);
+  }
+
+  bool begin(Write write, bool has_pairs, double margin) {
     error_.clear();
     checksum_ = trace::Checksum();
     now_.clear();
     written_.clear();
     touched_.clear();
     is_touched_.clear();
+    has_pairs_ = has_pairs;
+    filters_.clear();
+    written_filters_.clear();
+    for (Pairs* const pairs : {&pairs_now_, &pairs_before_, &ignored_now_, &ignored_before_}) pairs->clear();
     buffer_.resize(std::size_t{1} << 16);
     used_ = summed_ = 0;
     write_ = std::move(write);
     for (const unsigned char byte : trace::magic) put(byte);
-    put(trace::version);
+    put(has_pairs ? trace::pairs_version : trace::version);
     put(static_cast<std::uint32_t>(axes | sizeof(Real) << 8));
+    if (has_pairs) {
+      std::uint64_t bits;
+      std::memcpy(&bits, &margin, sizeof bits);
+      put(bits << 1 == 0 ? std::uint64_t{0} : bits);  // -0.0 is no negative margin, and no other one than 0
+    }
     put_checksum();
     return flush();
   }
@@ -266,6 +389,99 @@ class Recorder {
   bool is_open(const char* call) {
     if (write_) return true;
     return fail(std::string("recorder: ") + call + "() without a trace; expected a successful open() before");
+  }
+
+  bool takes_pairs(const char* call) {
+    if (!is_open(call)) return false;
+    if (has_pairs_) return true;
+    return fail(path_ + ": " + call + "() in a trace without pairs; expected open() with a margin before");
+  }
+
+  bool has_box(std::uint32_t slot) const noexcept {
+    return slot < now_.size() && !(now_[slot] == absent_box());
+  }
+
+  static std::string text_of_pair(std::uint32_t first, std::uint32_t second) {
+    return "pair (" + std::to_string(first) + ", " + std::to_string(second) + ")";
+  }
+
+  bool put_pair(const char* call, std::uint32_t first, std::uint32_t second, Pairs& pairs) {
+    if (!takes_pairs(call)) return false;
+    const auto refuse_pair = [&](const std::string& why) {
+      return fail(path_ + ": " + text_of_pair(first, second) + " " + why);
+    };
+    if (first == second) return refuse_pair("of a slot and itself; expected two slots");
+    for (const std::uint32_t slot : {first, second}) {
+      if (!has_box(slot))
+        return refuse_pair("names slot " + std::to_string(slot) + ", which is empty; expected a box");
+    }
+    pairs.push_back(std::uint64_t{std::min(first, second)} << 32 | std::max(first, second));
+    return true;
+  }
+
+  /// Sorts the frame's pairs, and drops those with a slot that has become empty; returns whether there were
+  /// none such.
+  bool settle_pairs() {
+    bool are_right = true;
+    const auto is_gone = [&](std::uint64_t pair) {
+      const std::uint32_t first = static_cast<std::uint32_t>(pair >> 32);
+      const std::uint32_t second = static_cast<std::uint32_t>(pair);
+      if (has_box(first) && has_box(second)) return false;
+      are_right = false;
+      fail(path_ + ": " + text_of_pair(first, second) + " names slot " +
+           std::to_string(has_box(first) ? second : first) +
+           ", which was emptied before the frame ended; expected a box");
+      return true;
+    };
+    for (Pairs* const pairs : {&pairs_now_, &ignored_now_}) {
+      pairs->erase(std::remove_if(pairs->begin(), pairs->end(), is_gone), pairs->end());
+      std::sort(pairs->begin(), pairs->end());
+    }
+    ignored_now_.erase(std::unique(ignored_now_.begin(), ignored_now_.end()), ignored_now_.end());
+    pair_changes_.take(pairs_before_, pairs_now_);
+    ignored_changes_.take(ignored_before_, ignored_now_);
+
+    // A reader knows by itself that a slot without a box has the standard filter.
+    written_filters_.resize(now_.size(), standard_filter());
+    refiltered_.clear();
+    for (const std::uint32_t slot : touched_) {
+      if (slot >= now_.size()) continue;
+      if (has_box(slot) && !(filters_[slot] == written_filters_[slot])) refiltered_.push_back(slot);
+      written_filters_[slot] = filters_[slot];
+    }
+    std::sort(refiltered_.begin(), refiltered_.end());
+    return are_right;
+  }
+
+  void put_pair_counts() {
+    put(static_cast<std::uint32_t>(refiltered_.size()));
+    for (const PairChanges* const changes : {&pair_changes_, &ignored_changes_}) {
+      put(static_cast<std::uint32_t>(changes->ended.size()));
+      put(static_cast<std::uint32_t>(changes->begun.size()));
+    }
+  }
+
+  void put_pair_changes() {
+    for (const std::uint32_t slot : refiltered_) {
+      const SlotFilter& filter = filters_[slot];
+      put(slot);
+      put(filter.category);
+      put(filter.mask);
+      put(static_cast<std::uint32_t>(filter.group));
+      put(std::uint32_t{filter.is_static});
+    }
+    for (const PairChanges* const changes : {&pair_changes_, &ignored_changes_}) {
+      for (const Pairs* const pairs : {&changes->ended, &changes->begun}) {
+        for (const std::uint64_t pair : *pairs) {
+          put(static_cast<std::uint32_t>(pair >> 32));
+          put(static_cast<std::uint32_t>(pair));
+        }
+      }
+    }
+    pairs_before_.swap(pairs_now_);
+    pairs_now_.clear();
+    ignored_before_.swap(ignored_now_);
+    ignored_now_.clear();
   }
 
   bool fail(const std::string& text) {
@@ -333,6 +549,7 @@ class Recorder {
     if (now_[slot] == box) return;
     touch(slot);
     now_[slot] = box;
+    if (has_pairs_ && box == absent_box()) filters_[slot] = standard_filter();
   }
 
   template <typename Number>
@@ -379,6 +596,18 @@ class Recorder {
   std::vector<Box> written_;               // as they were in the last frame
   std::vector<std::uint32_t> touched_;     // slots that may have changed since then, each once
   std::vector<unsigned char> is_touched_;  // for each slot, of now or then
+
+  // Of a trace with pairs alone.
+  bool has_pairs_ = false;
+  std::vector<SlotFilter> filters_;          // for each slot; the standard one where it is empty
+  std::vector<SlotFilter> written_filters_;  // as they were in the last frame
+  std::vector<std::uint32_t> refiltered_;    // slots whose filters this frame changes
+  Pairs pairs_now_;                          // those of the frame under way
+  Pairs pairs_before_;                       // those of the last frame, sorted
+  Pairs ignored_now_;
+  Pairs ignored_before_;
+  PairChanges pair_changes_;
+  PairChanges ignored_changes_;
 };
 
 using Recorder2 = Recorder<2>;

@@ -98,6 +98,10 @@ struct BoxOptions {
   std::uint64_t user_data = 0;  ///< the caller's; the world only keeps it
 };
 
+/// Which boxes make the pairs of a world: the boxes themselves, or the enlarged ones that it keeps around
+/// them.
+enum class WorldEvents : std::uint8_t { exact, enlarged };
+
 /// How a world works.
 struct WorldOptions {
   /// The spec of the algorithm that finds the pairs.
@@ -107,14 +111,26 @@ struct WorldOptions {
   /// pair and some ten nanoseconds an event, and a predicate can only be set before the first update.
   bool keep_pairs = true;
 
-  /// If greater than 0, the tracker sees each box enlarged by this distance on every side, and a new one only
-  /// when the box has left the enlarged one. The pairs reported are those of the boxes themselves all the
-  /// same, exactly and in the same update.
-  ///
-  /// Each pair of enlarged boxes takes some 50 bytes and is tested whenever one of its boxes moves, which
-  /// costs about a microsecond a mover. So it pays over a tracker of your own for which a mover is dearer
-  /// than that, and not over the library's own, which took 0.3 (n = 100,000 in 2D).
+  /// How far a box is enlarged on every side: by `margin`, or by its longest side times `relative_margin`, or
+  /// by the lesser of the two where both are greater than 0. Where either is, or `predicted_frames`, the
+  /// tracker sees enlarged boxes, and a new one only when the box has left it, or has become far smaller. The
+  /// enlarged boxes are part of the world: of its snapshots, too.
   double margin = 0;
+  double relative_margin = 0;
+
+  /// For how many frames ahead an enlarged box also covers the way of its box, where move() is given a
+  /// velocity.
+  double predicted_frames = 0;
+
+  /// Which boxes make the pairs that update() and pairs() tell, and that a predicate is asked about.
+  ///
+  /// `exact`: pairs begin and end where the boxes themselves do, exactly and in the same update, whatever the
+  /// margin. Each pair of enlarged boxes takes some 50 bytes, and is tested when one of its boxes moves.
+  ///
+  /// `enlarged`: pairs begin where enlarged boxes meet and end where they part, as in engines, which test
+  /// the pairs closely anyway: among bodies that tremble no pair begins and ends again and again, and a move
+  /// within the enlarged box costs a comparison and a store. overlaps() tells which pairs' boxes overlap.
+  WorldEvents events = WorldEvents::exact;
 
   /// The generation of the first handles. Worlds that begin far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
@@ -151,7 +167,7 @@ struct WorldStatistics {
   std::size_t pairs = 0;  ///< that hold since the last update
   std::size_t begun = 0;  ///< events of the last update
   std::size_t ended = 0;
-  std::size_t enlarged_pairs = 0;  ///< pairs of enlarged boxes, where there is a margin or a predicate
+  std::size_t enlarged_pairs = 0;  ///< pairs of enlarged boxes, which boxes or a predicate decide about
   std::size_t ignored_pairs = 0;   ///< that ignore() was called for
 
   /// What the tracker counted in the last update: tests, hits (the other tests are false positives),
@@ -192,7 +208,7 @@ template <int D, typename Real = float>
 class World {
  public:
   /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
-  /// std::invalid_argument if a margin is negative or not finite.
+  /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite.
   explicit World(std::string_view spec = default_algorithm);
   explicit World(const WorldOptions& options);
 
@@ -207,18 +223,23 @@ class World {
   Handle add(const Box<D, Real>& box, const BoxOptions& options = {});
 
   /// Replaces a box. O(1). Throws InvalidHandle if it is not in the world, InvalidInput as add() does.
+  ///
+  /// `velocity` is how far the box is expected to go in a frame, for WorldOptions::predicted_frames; throws
+  /// InvalidInput if a coordinate of it is not finite, std::logic_error where no frames are predicted.
   void move(Handle handle, const Box<D, Real>& box);
+  void move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity);
 
   /// Takes a box out, and forgets what was ignored of it. O(1). Its pairs end at the next update. Throws
   /// InvalidHandle if it is not in the world.
   void remove(Handle handle);
 
   /// The same for many at once: all of them or, if one is wrong, none. `handles` takes the names of the
-  /// boxes; `options` are one for each box, or none. Adding a million boxes to an empty world is one build at
-  /// the next update. Throws std::invalid_argument if the lengths differ; of a handle given twice, the last
-  /// move counts and the second removal is refused.
+  /// boxes; `options` and `velocities` are one for each box, or none. Adding a million boxes to an empty
+  /// world is one build at the next update. Throws std::invalid_argument if the lengths differ; of a handle
+  /// given twice, the last move counts and the second removal is refused.
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options = {});
-  void move(std::span<const Handle> handles, BoxView<D, Real> boxes);
+  void move(std::span<const Handle> handles, BoxView<D, Real> boxes,
+            std::span<const Point<D, Real>> velocities = {});
   void remove(std::span<const Handle> handles);
 
   /// Makes `origin` the new origin: subtracts it from all coordinates. O(slots), and the next update has
@@ -258,6 +279,11 @@ class World {
   /// were any. Throws std::logic_error in a world without `keep_pairs`.
   std::span<const HandlePair> pairs() const;
   std::span<const HandlePair> persisting() const;
+
+  /// Sets each flag to 1 if the pair's boxes themselves overlap, as they are now, else to 0; a pair with a
+  /// box that is not in the world does not. Filters and ignored pairs count for nothing. Some nanoseconds a
+  /// pair. Throws std::invalid_argument if the lengths differ.
+  void overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const;
 
   /// Puts into `pairs` those of a box of this world and an overlapping one of `other`, if their filters
   /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Found
@@ -314,6 +340,10 @@ class World {
   /// its removal, so that the code that handles its ended pairs can look at it; so do its filter and user
   /// data. The reference holds until the next add(), remove() or update(). Throws InvalidHandle.
   const Box<D, Real>& box(Handle handle) const;
+
+  /// The enlarged box that the tracker sees; the box itself where boxes are not enlarged. Throws
+  /// InvalidHandle if it is not in the world.
+  const Box<D, Real>& enlarged_box(Handle handle) const;
   Filter filter(Handle handle) const;
   std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);

@@ -173,7 +173,7 @@ BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options)
   AnyFrameReader frames = format.open(std::move(input), options);
   if (options.dimension == 3 && dimension_of(frames) == 2)
     throw FileError(fmt::format("{}: holds boxes in 2D; expected boxes in 3D", name));
-  if (options.dimension == 2) frames = flattened(std::move(frames));
+  if (options.dimension == 2) frames = flattened(std::move(frames), name);
   if (options.precision) frames = with_precision(std::move(frames), *options.precision, name);
   return {std::move(name), &format, std::move(frames)};
 }
@@ -190,6 +190,7 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
       content.in_3d = read_all(frames);
   };
   Rounding rounding;
+  const bool has_pairs = has_recorded_pairs(file.frames);
   const auto read_any = [&]<int D, typename Real>(std::unique_ptr<FrameReader<D, Real>>& frames) {
     if constexpr (std::is_same_v<Real, float>) {
       read(*frames);
@@ -210,6 +211,10 @@ FileContent read_file(const std::filesystem::path& path, const ReadOptions& opti
     content.warning +=
         fmt::format("{}{}: {}, in which scenes are compared; `pairs` and `verify` take them exactly",
                     content.warning.empty() ? "" : "\n", file.name, rounding.text());
+  if (has_pairs)
+    content.warning += fmt::format(
+        "{}{}: left out the recorded pairs, which scenes do not have; `verify` and `convert` take them",
+        content.warning.empty() ? "" : "\n", file.name);
   if (content.in_3d && file.format->is_seen_flat && options.dimension == 0) {
     AnyFrameReader flat = flattened(std::make_unique<HistoryReader<3, float>>(*content.in_3d));
     read(*std::get<std::unique_ptr<FrameReader<2, float>>>(flat));
@@ -255,6 +260,7 @@ void write_frames(AnyFrameReader frames, const std::filesystem::path& path, cons
     });
     const std::shared_ptr<const BoxLabels> labels = reader.labels();
     if (labels && labels->has_ids && format.keeps_ids) writer->use_ids(labels->ids);
+    if (reader.recorded() != nullptr && format.keeps_pairs) writer->use_recorded(*reader.recorded());
     const std::vector<Box<D, Real>> boxes = reader.first();
     written([&] { writer->first(boxes); });
     for (Step<D, Real> step; reader.next(step);) written([&] { writer->next(step); });

@@ -39,9 +39,17 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
   std::string warning() const override {
     std::string warning = frames_->warning();
-    if (rounding_.rounded == 0) return warning;
-    return fmt::format("{}{}{}: {}", warning, warning.empty() ? "" : "\n", name_, rounding_.text());
+    const auto add = [&](std::string_view what) {
+      warning += fmt::format("{}{}: {}", warning.empty() ? "" : "\n", name_, what);
+    };
+    if (rounding_.rounded > 0) add(rounding_.text());
+    if (!keeps_pairs && frames_->recorded() != nullptr)
+      add(fmt::format("left out the recorded pairs: they are those of boxes in {}D, in {}", OldD,
+                      lab::name(precision_of<OldReal>)));
+    return warning;
   }
+
+  const RecordedPairs* recorded() const override { return keeps_pairs ? frames_->recorded() : nullptr; }
 
   std::string_view importer() const override { return frames_->importer(); }
 
@@ -50,6 +58,9 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
  private:
+  // Flat or rounded boxes overlap where these do not.
+  static constexpr bool keeps_pairs = D == OldD && sizeof(Real) >= sizeof(OldReal);
+
   std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
     if constexpr (std::is_same_v<Real, float> && std::is_same_v<OldReal, double>)
       rounding_.count(std::span<const Box<OldD, OldReal>>(boxes));
@@ -74,11 +85,11 @@ AnyFrameReader with_coordinates_of(std::unique_ptr<FrameReader<D, OldReal>> fram
 }
 
 template <int D, typename Real>
-AnyFrameReader flat(std::unique_ptr<FrameReader<D, Real>> frames) {
+AnyFrameReader flat(std::unique_ptr<FrameReader<D, Real>> frames, std::string name) {
   if constexpr (D == 2)
     return frames;
   else
-    return std::make_unique<ConvertedFrames<2, Real, 3, Real>>(std::move(frames));
+    return std::make_unique<ConvertedFrames<2, Real, 3, Real>>(std::move(frames), std::move(name));
 }
 
 }  // namespace
@@ -112,6 +123,10 @@ std::string_view importer_of(const AnyFrameReader& frames) {
   return std::visit([](const auto& reader) { return reader->importer(); }, frames);
 }
 
+bool has_recorded_pairs(const AnyFrameReader& frames) {
+  return std::visit([](const auto& reader) { return reader->recorded() != nullptr; }, frames);
+}
+
 AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::string name) {
   return std::visit(
       [&](auto& reader) {
@@ -122,8 +137,8 @@ AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::s
       frames);
 }
 
-AnyFrameReader flattened(AnyFrameReader frames) {
-  return std::visit([](auto& reader) { return flat(std::move(reader)); }, frames);
+AnyFrameReader flattened(AnyFrameReader frames, std::string name) {
+  return std::visit([&](auto& reader) { return flat(std::move(reader), std::move(name)); }, frames);
 }
 
 }  // namespace broadside::lab

@@ -15,6 +15,7 @@
 
 #include "broadside/box.hpp"
 
+#include "lab/formats/recorded_pairs.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -96,6 +97,10 @@ class FrameReader {
   /// boxes are not exact. Empty otherwise.
   virtual std::string_view importer() const { return {}; }
 
+  /// What the frame read last changes of the pairs that an engine reported, where they were recorded; before
+  /// first(), their margin alone. Null otherwise. Valid as long as the reader, and changed by each frame.
+  virtual const RecordedPairs* recorded() const { return nullptr; }
+
   /// Whether bounds are computed, in double, from a centre and a size: pairs of these boxes are not exact
   /// either.
   virtual bool is_computed() const { return false; }
@@ -110,6 +115,10 @@ class FrameWriter {
   /// Called before first() where the boxes have ids and the format keeps them (Format::keeps_ids): the ids by
   /// place. The list outlives the writer, and grows before each call that brings new boxes.
   virtual void use_ids(const std::vector<std::string>& ids) { static_cast<void>(ids); }
+
+  /// Called before first() where pairs were recorded with the boxes and the format keeps them
+  /// (Format::keeps_pairs). They outlive the writer, and are those of each frame when it is written.
+  virtual void use_recorded(const RecordedPairs& recorded) { static_cast<void>(recorded); }
 
   /// The boxes of the first frame. Called once, before next().
   virtual void first(std::span<const Box<D, Real>> boxes) = 0;
@@ -141,6 +150,9 @@ Precision precision_of_frames(const AnyFrameReader& frames) noexcept;
 
 /// FrameReader::importer() of the reader.
 std::string_view importer_of(const AnyFrameReader& frames);
+
+/// Whether an engine's pairs were recorded with the boxes.
+bool has_recorded_pairs(const AnyFrameReader& frames);
 
 /// The frames of a file whose reader has all its boxes in memory.
 template <int D, typename Real>
@@ -178,10 +190,11 @@ History<D, Real> read_all(FrameReader<D, Real>& frames) {
 }
 
 /// The same frames with coordinates of another type: rounded to the nearest, and the infinite beyond the
-/// largest. Their warning says how many of the file of this name were rounded.
+/// largest. Their warning says how many of the file of this name were rounded. Recorded pairs are those of
+/// the exact boxes: where boxes are rounded, they are left out, and the warning says so.
 AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::string name = {});
 
-/// The same frames in 2D: 3D boxes seen along the z axis.
-AnyFrameReader flattened(AnyFrameReader frames);
+/// The same frames in 2D: 3D boxes seen along the z axis. Recorded pairs are left out, with a warning.
+AnyFrameReader flattened(AnyFrameReader frames, std::string name = {});
 
 }  // namespace broadside::lab

@@ -32,6 +32,7 @@ std::vector<Part> quick_parts() {
       {{"uniform"}, {10'000}, {0.01, 1}, 10},
       {{"uniform"}, {100'000}, {0.1}, 5},
       {{"churn"}, {1'000}, {0}, 20},
+      {{"pile"}, {2'000}, {0}, 10},
       {{"box2d_rain", "box2d_pyramid", "bullet_free_fall"}, {1'000}, {0}, 30},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
   };
@@ -43,7 +44,7 @@ std::vector<Part> long_parts() {
       {{"one_line", "lattice", "integers", "thin", "terdiman"}, {1'000, 10'000, 100'000}},
       {{"one_point"}, {1'000, 5'000}},
       {{"uniform", "clustered"}, {10'000, 100'000}, {0.01, 0.1, 0.5, 1}, 50},
-      {{"churn", "jumps"}, {1'000, 10'000, 100'000}, {0}, 50},
+      {{"churn", "jumps", "pile"}, {1'000, 10'000, 100'000}, {0}, 50},
       {{"box2d_rain", "box2d_tumbler", "box2d_pyramid"}, {1'000, 5'000}, {0}, 60},
       {{"bullet_free_fall", "bullet_brownian", "bullet_moving_gravity"}, {1'000, 5'000}, {0}, 60},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},

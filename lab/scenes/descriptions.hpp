@@ -19,6 +19,7 @@ Scene thin();
 Scene terdiman();
 Scene churn();
 Scene jumps();
+Scene pile();
 Scene bunny();
 Scene counties();
 Scene coastlines();

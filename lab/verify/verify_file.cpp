@@ -11,6 +11,7 @@
 #include "lab/numbers.hpp"
 #include "lab/report/columns.hpp"
 #include "lab/verify/verify_history.hpp"
+#include "lab/verify/verify_recorded.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -54,30 +55,59 @@ Counterexample write(const History<D, Real>& smallest, const Entry& entry, const
 }
 
 template <int D, typename Real>
+Counterexample write(const Recording<D, Real>& smallest, std::span<const Algorithm> known,
+                     const VerifyOptions& options) {
+  const std::filesystem::path path =
+      options.counterexample.empty() ? free_name(".btrace") : options.counterexample;
+  write_frames(std::make_unique<RecordingReader<D, Real>>(smallest), path, writable_format(path));
+  BoxFile file = open_file(path);
+  auto& frames = std::get<std::unique_ptr<FrameReader<D, Real>>>(file.frames);
+  const RecordedVerdict again = verify_recorded<D, Real>(read_recording(*frames), known, options);
+  const std::string& reason = again.verdict.reason;
+  return {recorded_pairs_name,
+          path,
+          places_of(smallest.history),
+          smallest.history.steps.size() + 1,
+          again.first ? reason.substr(0, reason.find('\n')) : "",
+          fmt::format("verify {}", path.string())};
+}
+
+template <int D, typename Real>
 void verify(Verification& verification, FrameReader<D, Real>& frames, const Catalogue& catalogue,
             const VerifyOptions& options) {
-  const History<D, Real> history = read_all(frames);
+  const Recording<D, Real> recording = read_recording(frames);
+  const History<D, Real>& history = recording.history;
   verification.warning = frames.warning();
   verification.boxes = places_of(history);
   verification.frames = history.steps.size() + 1;
   std::vector<Entry> entries = catalogue.select(options.algorithms);
   const std::span<const Algorithm> known = catalogue.algorithms();
+  if (!recording.pairs.empty()) {
+    const RecordedVerdict recorded = verify_recorded<D, Real>(recording, known, options);
+    verification.verdicts.push_back(recorded.verdict);
+    if (recorded.first)
+      verification.counterexample =
+          write<D, Real>(smallest_recording<D, Real>(recording, *recorded.first), known, options);
+  }
   HistoryVerdicts checked = verify_history<D, Real>(history, entries, known, options);
-  verification.verdicts = std::move(checked.verdicts);
+  const auto failed = std::ranges::find(checked.verdicts, Outcome::failed, &EntryVerdict::outcome);
+  if (failed != checked.verdicts.end() && !verification.counterexample) {
+    const Entry entry = catalogue.select(failed->algorithm).front();
+    const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, entry, known, options);
+    if (smallest)
+      verification.counterexample = write<D, Real>(*smallest, entry, catalogue, options.counterexample);
+  }
+  verification.verdicts.insert(verification.verdicts.end(), checked.verdicts.begin(), checked.verdicts.end());
   verification.pairs = checked.pairs;
-  const auto failed = std::ranges::find(verification.verdicts, Outcome::failed, &EntryVerdict::outcome);
-  if (failed == verification.verdicts.end()) return;
-  const Entry entry = catalogue.select(failed->algorithm).front();
-  const auto smallest = smallest_failure<D, Real>(history, failed->frames - 1, entry, known, options);
-  if (smallest)
-    verification.counterexample = write<D, Real>(*smallest, entry, catalogue, options.counterexample);
 }
 
 std::string text_of(const Counterexample& counterexample, std::string_view program) {
   std::string text =
       fmt::format("{}: {}", counterexample.path.string(), counted(counterexample.boxes, "box", "boxes"));
   if (counterexample.frames > 1) text += fmt::format(", {} frames", counterexample.frames);
-  text += fmt::format(", on which {} fails\n", counterexample.algorithm);
+  text += counterexample.algorithm == recorded_pairs_name
+              ? ", in which the recorded pairs are wrong\n"
+              : fmt::format(", on which {} fails\n", counterexample.algorithm);
   if (counterexample.fault.empty())
     text += "  but not once they are read back from the file: it fails on something no file holds\n";
   else
@@ -94,7 +124,15 @@ bool Verification::all_verified() const {
 }
 
 Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options) {
-  catalogue.select(options.algorithms);  // what is wrong there is known before anything is read
+  // What is wrong with the options is known before anything is read.
+  catalogue.select(options.algorithms);
+  if (has_recorded_pairs(file.frames) && !options.counterexample.empty()) {
+    const Format& format = writable_format(options.counterexample);
+    if (!format.keeps_pairs)
+      throw FileError(
+          fmt::format("{}: would hold recorded pairs, and format {} holds boxes alone; expected a .btrace",
+                      options.counterexample.string(), format.name));
+  }
   Verification verification{.file = file.name,
                             .dimension = dimension_of(file.frames),
                             .precision = precision_of_frames(file.frames),

@@ -22,9 +22,6 @@ namespace {
 /// What the definition may take over all frames, in tests of two boxes: some seconds.
 constexpr double most_tests_by_definition = 4e9;
 
-/// In how many frames a reference is sampled.
-constexpr std::size_t sampled_frames = 20;
-
 /// The pairs that are expected of some entries in the frame that is being looked at.
 struct Expectation {
   Reference reference;
@@ -122,9 +119,8 @@ class HistoryCheck {
   }
 
   Expectation& expectation_for(const Algorithm& algorithm) {
-    const double frames = static_cast<double>(history_.steps.size()) + 1;
-    const auto most = static_cast<std::size_t>(std::sqrt(2 * most_tests_by_definition / frames));
-    const Reference reference(algorithm, known_, fullest_.size(), std::min(most, most_boxes_by_definition));
+    const Reference reference(algorithm, known_, fullest_.size(),
+                              most_by_definition(history_.steps.size() + 1));
     for (const auto& known : expectations_) {
       if (known->reference == reference) return *known;
     }
@@ -254,6 +250,11 @@ class HistoryCheck {
 };
 
 }  // namespace
+
+std::size_t most_by_definition(std::size_t frames) noexcept {
+  const double most = std::sqrt(2 * most_tests_by_definition / static_cast<double>(frames));
+  return std::min(static_cast<std::size_t>(most), most_boxes_by_definition);
+}
 
 template <int D, typename Real>
 HistoryVerdicts verify_history(const History<D, Real>& history, std::span<const Entry> entries,

@@ -15,6 +15,12 @@
 
 namespace broadside::lab {
 
+/// In about how many frames of a history a reference is sampled that is not the definition.
+inline constexpr std::size_t sampled_frames = 20;
+
+/// The most boxes whose expected pairs are the definition's in each of `frames` frames.
+std::size_t most_by_definition(std::size_t frames) noexcept;
+
 /// The fault of an algorithm on a history; empty if there is none. `known` is where the expected pairs of
 /// many boxes come from.
 template <int D, typename Real>

@@ -15,23 +15,6 @@
 namespace broadside::core {
 
 template <int D, typename Real>
-bool is_present_by_value(const Box<D, Real>& box) noexcept {
-  using Bits = std::conditional_t<sizeof(Real) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
-  bool is_certain = true;
-  for (int axis = 0; axis < D; ++axis) {
-    const Real min = box.min[axis];
-    const Real max = box.max[axis];
-    // Denormals taken for zeros make numbers equal that are not, and never one less that is not.
-    is_certain &=
-        std::isless(min, max) || (min == max && std::bit_cast<Bits>(min) == std::bit_cast<Bits>(max));
-  }
-  if (is_certain) return true;
-  const DefaultEnvironment environment;
-  const volatile bool result = is_present(box);
-  return result;
-}
-
-template <int D, typename Real>
 std::string fault_of(const Box<D, Real>& box, const std::string& name, bool may_be_absent) {
   return name + " has " + text_of(box) + "; expected numbers with min <= max on every axis" +
          (may_be_absent ? ", or the absent box (min = +inf, max = -inf)" : "");
@@ -59,10 +42,6 @@ void check_count(std::size_t count) {
     throw InvalidFrame(std::to_string(count) + " boxes; expected at most " + std::to_string(most));
 }
 
-template bool is_present_by_value(const Box<2>&) noexcept;
-template bool is_present_by_value(const Box<3>&) noexcept;
-template bool is_present_by_value(const DoubleBox2&) noexcept;
-template bool is_present_by_value(const DoubleBox3&) noexcept;
 template std::string fault_of(const Box<2>&, const std::string&, bool);
 template std::string fault_of(const Box<3>&, const std::string&, bool);
 template std::string fault_of(const DoubleBox2&, const std::string&, bool);

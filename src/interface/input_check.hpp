@@ -16,11 +16,6 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
   return !is_present(box) && !is_absent(box);
 }
 
-/// is_present(), whatever the floating-point environment: where that takes denormals for zeros, is_present()
-/// does. For where a DefaultEnvironment would cost more than the rest.
-template <int D, typename Real>
-bool is_present_by_value(const Box<D, Real>& box) noexcept;
-
 /// The message of an exception for a box that is refused: `name`, its values, and what is expected, of which
 /// the absent box is one only if it `may_be_absent`.
 template <int D, typename Real>

@@ -8,8 +8,10 @@
 namespace broadside::snapshot {
 
 inline constexpr std::array<unsigned char, 8> magic = {0x89, 'B', 'W', 'S', '\r', '\n', 0x1a, '\n'};
-/// The version written. Version 1, which is read as well, had 32 bits for a filter's category and its mask.
-inline constexpr std::uint32_t version = 2;
+/// The version written, and the first that is read. Version 2 had a margin and neither a relative one nor
+/// predicted frames; version 1, moreover, 32 bits for a filter's category and its mask.
+inline constexpr std::uint32_t version = 3;
+inline constexpr std::uint32_t first_version = 1;
 inline constexpr std::uint16_t byte_order = 0x0102;
 inline constexpr std::size_t checksum_bytes = 4;
 
@@ -23,7 +25,8 @@ inline constexpr std::uint32_t has_user_data = 32;
 inline constexpr std::uint32_t was_updated = 64;
 inline constexpr std::uint32_t was_settled = 128;
 inline constexpr std::uint32_t refilters = 256;
-inline constexpr std::uint32_t all_flags = 511;
+inline constexpr std::uint32_t tells_enlarged = 512;
+inline constexpr std::uint32_t all_flags = 1023;
 
 // Flags of the tracker's last frame.
 inline constexpr int last_has_filters = 1;

@@ -14,6 +14,7 @@
 
 #include "interface/input_check.hpp"
 #include "world/current_pairs.hpp"
+#include "world/margins.hpp"
 #include "world/pair_graph.hpp"
 #include "world/slot_set.hpp"
 
@@ -77,13 +78,16 @@ struct World<D, Real>::State {
   std::uint32_t readable_slot(Handle handle) const;
   [[noreturn]] void refuse(Handle handle, const char* action) const;
   void check_box(const Box<D, Real>& box, std::size_t index, const char* whose, std::size_t number) const;
-  Box<D, Real> kept(const Box<D, Real>& box) const noexcept {
-    return core::is_present_by_value(box) ? box : absent_box<D, Real>();
-  }
+  void check_velocity(const Point<D, Real>& velocity, std::size_t index, const char* whose,
+                      std::size_t number) const;
   void reserve(std::size_t boxes, bool with_filters, bool with_user_data);
   std::uint32_t next_slot() const noexcept;
   Handle add_valid(const Box<D, Real>& box, const BoxOptions& options) noexcept;
-  void set_box(std::uint32_t slot, const Box<D, Real>& box) noexcept;
+  void reserve_moves(std::size_t boxes);
+  void set_box(std::uint32_t slot, const Box<D, Real>& box,
+               const Point<D, Real>* velocity = nullptr) noexcept;
+  void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
+  void set_within(std::uint32_t slot, const Box<D, Real>& box) noexcept;
   void reserve_removals(std::size_t boxes, std::size_t ignored);
   void remove_valid(std::uint32_t slot) noexcept;
   void mark_changed(std::uint32_t slot) noexcept;
@@ -100,7 +104,10 @@ struct World<D, Real>::State {
   void ask_tracker();
   void apply_candidates();
   void refine();
-  void touch(core::PairGraph::EdgeId edge);
+  void touch(core::PairGraph::EdgeId edge, bool overlaps);
+  void touch_once(core::PairGraph::EdgeId edge);
+  void touch_of(BoxId id);
+  void touch_all();
   void deliver(PairEvents& events);
   void recycle() noexcept;
   void settle() noexcept;
@@ -144,10 +151,12 @@ struct World<D, Real>::State {
   void release_unneeded() noexcept;
   void release();
 
-  bool has_margin() const noexcept { return margin > 0; }
+  /// Whether the tracker sees enlarged boxes, and whether the boxes themselves decide about its pairs.
+  bool has_margin() const noexcept { return margins.any(); }
+  bool refines_by_boxes() const noexcept { return has_margin() && options.events == WorldEvents::exact; }
 
   WorldOptions options;
-  Real margin;
+  core::Margins<D, Real> margins;
   bool is_own_tracker;  // made from options.algorithm, so that another one can be made
   std::unique_ptr<PairTracker<D, Real>> tracker;
 
@@ -169,7 +178,7 @@ struct World<D, Real>::State {
   std::size_t most_slots = 0;  // since memory was last given back
 
   std::vector<BoxId> changed;     // boxes and filters, since the last update
-  std::vector<BoxId> moved;       // enlarged boxes and filters; unused without a margin
+  std::vector<BoxId> moved;       // likewise enlarged boxes; unused where there are none
   std::vector<Removed> removed;   // since the last update
   std::vector<Removed> reported;  // whose removal the last update told
   bool is_settled = true;         // nothing was changed since the last update, and that one did not fail

@@ -20,7 +20,7 @@ const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
-  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp")";
+  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp"|"kernels/overlap_flags\.hpp")";
   const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/descriptions\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
                           R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
@@ -28,6 +28,8 @@ const std::vector<Rule>& rules() {
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
+      // An integration sees its engine.
+      {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
       {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
       {"src/core/", core},
@@ -50,6 +52,8 @@ const std::vector<Rule>& rules() {
       {"lab/formats/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/engines/",
+       lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},
@@ -58,9 +62,11 @@ const std::vector<Rule>& rules() {
            R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
       // As a user writes it.
+      {"examples/bullet/", standard + R"(|<broadside/[a-z_]+\.hpp>)" + engines},
       {"examples/fcl_", standard + R"(|<broadside/[a-z_]+\.hpp>|<fcl/.*>)"},
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
       {"tests/integrations/fcl/", library + "|<fcl/.*>|<gtest/.*>|<gmock/.*>"},
+      {"tests/integrations/", library + engines + R"(|<(gmock|gtest)/.*>|"[a-z_]+\.hpp"|"tests/support/.*")"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.
       {"tests/",

@@ -8,6 +8,7 @@
 
 #include "process.hpp"
 #include "refusal.hpp"
+#include "tests/support/recorded.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -60,6 +61,37 @@ TEST(VerifyVerb, SaysWhatItDidNotRead) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.errors, HasSubstr("is cut off in frame 6"));
   EXPECT_THAT(ended.output, HasSubstr("6 frames"));
+}
+
+TEST(VerifyVerb, ChecksTheRecordedPairsOfAnEngine) {
+  const TemporaryFolder folder;
+  const std::string right = folder.put("right.btrace", falling_box(report_rightly));
+  const Ended fine = run({"verify", right, "--algorithms", "grid"});
+  EXPECT_EQ(fine.status, 0) << fine.output;
+  EXPECT_THAT(fine.output, HasSubstr("  recorded pairs  verified  against the definition; margin 0.25\n"));
+
+  const std::string wrong = folder.put("wrong.btrace", falling_box([](Recorder2&, std::size_t) {}));
+  const std::string small = folder.file("small.btrace");
+  const Ended failed = run({"verify", wrong, "--algorithms", "grid", "--counterexample", small});
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_THAT(failed.output, AllOf(HasSubstr("recorded pairs: frame 3, pair (0, 1) is missed"),
+                                   HasSubstr("to see it again: broadside verify " + small)));
+  EXPECT_EQ(run({"verify", small}).status, 1);
+
+  const Ended refused = run({"verify", wrong, "--counterexample", folder.file("small.csv")});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("small.csv: would hold recorded pairs"));
+}
+
+TEST(VerifyVerb, SaysWhereRecordedPairsAreLeftOut) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("a.btrace", falling_box(report_rightly));
+  EXPECT_THAT(run({"convert", file, "-o", folder.file("a.csv")}).errors,
+              HasSubstr("left out the recorded pairs: format csv holds boxes alone"));
+  EXPECT_THAT(run({"scene", file, "-o", folder.file("b.btrace")}).errors,
+              HasSubstr("left out the recorded pairs, which scenes do not have"));
+  EXPECT_EQ(run({"convert", file, "-o", folder.file("c.btrace")}).status, 0);
+  EXPECT_THAT(run({"info", folder.file("c.btrace")}).output, HasSubstr("  recorded pairs, margin 0.25: "));
 }
 
 TEST(VerifyVerb, RefusesWhatItCannotUseAndSaysWhy) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -77,10 +78,11 @@ void ask(const World<D, Real>& world, const Box<D, Real>& box, Log& log) {
 
 /// What a world of these boxes tells, whatever happens to it.
 template <int D, typename Real>
-Log life_of(const std::vector<Box<D, Real>>& boxes, double margin) {
+Log life_of(const std::vector<Box<D, Real>>& boxes, double margin, WorldEvents events) {
   Log log;
   WorldOptions options;
   options.margin = margin;
+  options.events = events;
   World<D, Real> world(options);
   std::vector<Handle> handles;
   for (const Box<D, Real>& box : boxes) handles.push_back(world.add(box));
@@ -131,12 +133,14 @@ TYPED_TEST(WorldInEnvironments, TellsAndKeepsTheSame) {
       std::copy(box.max.begin(), box.max.end(), added.max.begin());
     }
     if (boxes.size() > 200) continue;
-    for (const double margin : {0.0, 0.1}) {
-      const Log expected = life_of(boxes, margin);
+    for (const auto& [margin, events] :
+         {std::pair(0.0, WorldEvents::exact), std::pair(0.1, WorldEvents::exact),
+          std::pair(0.1, WorldEvents::enlarged)}) {
+      const Log expected = life_of(boxes, margin, events);
       // The one with most in it, and another in turn.
       for (const Environment* environment : {&environments()[++turn % environments().size()], &hardest()}) {
         const InEnvironment in(*environment);
-        EXPECT_TRUE(life_of(boxes, margin) == expected)
+        EXPECT_TRUE(life_of(boxes, margin, events) == expected)
             << input.name << ", " << environment->name << ", margin " << margin;
       }
     }

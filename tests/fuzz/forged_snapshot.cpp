@@ -35,6 +35,8 @@ SnapshotBytes any_snapshot(Bytes& bytes) {
   WorldOptions options;
   options.algorithm = kind % 4 == 3 ? "grid" : "brute_force";
   options.margin = kind % 2 == 0 ? 0 : 1;
+  options.relative_margin = bytes.next() % 4 == 0 ? 0.5 : 0;
+  if (kind % 2 == 1 && bytes.next() % 2 == 0) options.events = WorldEvents::enlarged;
   options.keep_pairs = bytes.next() % 4 != 0;
   World<D, Real> world(options);
   const bool has_predicate = kind / 2 % 2 == 1;
@@ -71,6 +73,8 @@ WorldModel<D, Real> model_of(const SnapshotFields<D, Real>& fields) {
 template <int D, typename Real>
 void check_life(World<D, Real>& world, const SnapshotFields<D, Real>& fields, Bytes& bytes) {
   const bool keeps_pairs = fields.is_set(snapshot::keeps_pairs);
+  const WorldEvents events =
+      fields.is_set(snapshot::tells_enlarged) ? WorldEvents::enlarged : WorldEvents::exact;
   WorldModel<D, Real> model = model_of(fields);
   const SnapshotBytes taken = world.snapshot();
   World<D, Real> same;
@@ -84,10 +88,10 @@ void check_life(World<D, Real>& world, const SnapshotFields<D, Real>& fields, By
   if (fields.is_set(snapshot::has_predicate)) world.refilter();
   HandlePairs before;
   if (keeps_pairs) before.assign(world.pairs().begin(), world.pairs().end());
-  HandlePairs now = model.check_update(world, keeps_pairs, keeps_pairs ? &before : nullptr);
+  HandlePairs now = model.check_update(world, keeps_pairs, keeps_pairs ? &before : nullptr, events);
   for (int frame = 0; frame < 3; ++frame) {
     for (std::size_t i = bytes.below(6); i > 0; --i) model.change(world, bytes);
-    now = model.check_update(world, keeps_pairs, &now);
+    now = model.check_update(world, keeps_pairs, &now, events);
     same.restore(world.snapshot());
   }
 }

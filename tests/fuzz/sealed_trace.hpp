@@ -36,15 +36,22 @@ inline std::string sealed_trace(std::string bytes) {
     return true;
   };
   constexpr std::size_t summed_bytes = trace::header_bytes - trace::checksum_bytes;
-  if (!seal(summed_bytes)) return bytes;
+  const bool has_pairs = bytes.size() > summed_bytes && trace_word(bytes, 8) == trace::pairs_version;
+  if (!seal(summed_bytes + (has_pairs ? trace::margin_bytes : 0))) return bytes;
   const std::uint64_t bytes_a_box =
       4 + std::uint64_t{2} * static_cast<unsigned char>(bytes[12]) * static_cast<unsigned char>(bytes[13]);
   for (;;) {
     const std::size_t frame = at;
-    if (!seal(summed_bytes)) return bytes;
+    if (!seal(summed_bytes + (has_pairs ? trace::pair_count_bytes : 0))) return bytes;
     const std::uint64_t removed = trace_word(bytes, frame + 8);
     const std::uint64_t set = trace_word(bytes, frame + 12);
-    if (!seal(4 * removed + bytes_a_box * set)) return bytes;
+    std::uint64_t size = 4 * removed + bytes_a_box * set;
+    if (has_pairs) {
+      size += std::uint64_t{trace::filter_bytes} * trace_word(bytes, frame + 16);
+      for (const std::size_t list : {20, 24, 28, 32})
+        size += std::uint64_t{trace::pair_bytes} * trace_word(bytes, frame + list);
+    }
+    if (!seal(size)) return bytes;
   }
 }
 

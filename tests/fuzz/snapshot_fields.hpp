@@ -30,6 +30,8 @@ struct SnapshotFields {
 
   std::uint32_t flags = 0;
   double margin = 0;
+  double relative_margin = 0;
+  double predicted_frames = 0;
   std::vector<std::uint8_t> algorithm{};
   std::uint32_t first_generation = 0;
   std::uint64_t pair_count = 0;
@@ -65,13 +67,18 @@ struct SnapshotFields {
   std::vector<Pair> fresh{};
 
   bool is_set(std::uint32_t flag) const { return (flags & flag) != 0; }
-  bool has_margin() const { return static_cast<Real>(margin) > 0; }
+  bool has_margin() const {
+    return static_cast<Real>(margin) > 0 || static_cast<Real>(relative_margin) > 0 ||
+           static_cast<Real>(predicted_frames) > 0;
+  }
 
   /// Passes each field to `codec`, which reads or writes it.
   template <typename Codec>
   void pass(Codec& codec) {
     codec.number(flags);
     codec.number(margin);
+    codec.number(relative_margin);
+    codec.number(predicted_frames);
     codec.list(algorithm);
     codec.number(first_generation);
     codec.number(pair_count);

@@ -226,7 +226,7 @@ void SnapshotMutator<D, Real>::change_filter() {
 
 template <int D, typename Real>
 void SnapshotMutator<D, Real>::change_flags() {
-  fields_.flags ^= 1U << bytes_.below(10);
+  fields_.flags ^= 1U << bytes_.below(11);
   fields_.filters.resize(fields_.is_set(snapshot::has_filters) ? slots() : 0);
   fields_.user_data.resize(fields_.is_set(snapshot::has_user_data) ? slots() : 0);
   if (bytes_.next() % 2 == 0 && !fields_.is_set(snapshot::keeps_pairs)) fields_.pairs.clear();
@@ -249,7 +249,8 @@ void SnapshotMutator<D, Real>::change_options() {
       fields_.pair_count += bytes_.next() % 2 == 0 ? 1 : ~std::uint64_t{0};
       break;
     default: {
-      fields_.margin = margins[bytes_.below(margins.size())];
+      double* const distances[] = {&fields_.margin, &fields_.relative_margin, &fields_.predicted_frames};
+      *distances[bytes_.below(3)] = margins[bytes_.below(margins.size())];
       fields_.enlarged = fields_.has_margin() ? fields_.boxes : std::vector<Box<D, Real>>{};
       break;
     }

@@ -1,11 +1,13 @@
 // World against a model: whatever is done to it, it knows what a map from handles to boxes would know.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,6 +27,7 @@ enum class Action {
   add_many,
   move,
   move_two,
+  move_on,
   remove,
   update,
   use_a_removed_one,
@@ -45,17 +48,9 @@ struct Command {
 
 template <int D>
 void showValue(const Command<D>& command, std::ostream& out) {
-  constexpr std::array names = {"add",
-                                "add many",
-                                "move",
-                                "move two",
-                                "remove",
-                                "update",
-                                "use a removed one",
-                                "filter",
-                                "ignore",
-                                "unignore",
-                                "change the predicate",
+  constexpr std::array names = {"add",     "add many", "move",     "move two",
+                                "move on", "remove",   "update",   "use a removed one",
+                                "filter",  "ignore",   "unignore", "change the predicate",
                                 "shrink"};
   out << "\n  " << names[static_cast<std::size_t>(command.action)] << " " << command.which << " "
       << command.other << " ";
@@ -66,8 +61,17 @@ namespace {
 
 /// What kind of world.
 struct WorldKind {
-  bool has_margin;
+  std::uint32_t margins;  ///< a bit each: margin, relative margin, predicted frames, enlarged events
   bool has_predicate;
+
+  WorldOptions options() const {
+    WorldOptions options;
+    if ((margins & 1) != 0) options.margin = 0.75;
+    if ((margins & 2) != 0) options.relative_margin = 0.25;
+    if ((margins & 4) != 0) options.predicted_frames = 2;
+    if (margins > 8) options.events = WorldEvents::enlarged;
+    return options;
+  }
 };
 
 template <int D>
@@ -76,6 +80,7 @@ rc::Gen<Command<D>> command(const rc::Gen<Box<D>>& box) {
                                                         {1, Action::add_many},
                                                         {4, Action::move},
                                                         {1, Action::move_two},
+                                                        {2, Action::move_on},
                                                         {3, Action::remove},
                                                         {4, Action::update},
                                                         {1, Action::use_a_removed_one},
@@ -88,18 +93,12 @@ rc::Gen<Command<D>> command(const rc::Gen<Box<D>>& box) {
   return rc::gen::construct<Command<D>>(action, number, number, box);
 }
 
-WorldOptions options_of(WorldKind kind) {
-  WorldOptions options;
-  if (kind.has_margin) options.margin = 0.75;
-  return options;
-}
-
 /// A world and what it must know.
 template <int D>
 class Model {
  public:
   Model(std::unique_ptr<PairTracker<D>> tracker, WorldKind kind)
-      : world_(std::move(tracker), options_of(kind)), has_predicate_(kind.has_predicate) {
+      : options_(kind.options()), world_(std::move(tracker), options_), has_predicate_(kind.has_predicate) {
     if (has_predicate_)
       world_.set_predicate([this](Handle first, Handle second) { return accepts_now(first, second); });
   }
@@ -116,10 +115,13 @@ class Model {
       case Action::move:
         if (live_.empty() || !has_box) break;
         world_.move(live_handle(command.which), command.box);
-        live_[live_handle(command.which)].box = command.box;
+        set(live_[live_handle(command.which)], command.box);
         break;
       case Action::move_two:
         if (!live_.empty() && has_box) move_two(command);
+        break;
+      case Action::move_on:
+        if (!live_.empty() && has_box) move_on(command);
         break;
       case Action::remove:
         if (!live_.empty()) remove(live_handle(command.which));
@@ -156,6 +158,7 @@ class Model {
       RC_ASSERT(world_.box(handle) == its.box);
       RC_ASSERT(world_.filter(handle) == its.filter);
       RC_ASSERT(world_.user_data(handle) == its.user_data);
+      RC_ASSERT(world_.enlarged_box(handle) == its.enlarged);
     }
     for (const auto& [handle, removal] : removed_) {
       RC_ASSERT(!world_.contains(handle));
@@ -174,6 +177,7 @@ class Model {
     Box<D> box;
     Filter filter;
     std::uint64_t user_data = 0;
+    Box<D> enlarged = absent_box<D>();
   };
 
   struct Removal {
@@ -194,6 +198,10 @@ class Model {
       default:
         return {};
     }
+  }
+
+  bool meet(const Live& a, const Live& b) const {
+    return options_.events == WorldEvents::exact ? overlap(a.box, b.box) : overlap(a.enlarged, b.enlarged);
   }
 
   static HandlePair ordered(Handle a, Handle b) {
@@ -222,13 +230,65 @@ class Model {
     RC_ASSERT(!live_.contains(handle));
     RC_ASSERT(!removed_.contains(handle));
     live_[handle] = live;
+    set(live_[handle], live.box);
+  }
+
+  float margin_of(const Box<D>& box) const {
+    const auto margin = static_cast<float>(options_.margin);
+    if (options_.relative_margin == 0) return margin;
+    float longest = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      const float side = box.max[axis] - box.min[axis];
+      if (std::isfinite(side) && side > longest) longest = side;
+    }
+    const float share = static_cast<float>(options_.relative_margin) * longest;
+    return margin == 0 || share < margin ? share : margin;
+  }
+
+  /// Keeps the enlarged box while it contains the box and is at most six margins and the way ahead longer.
+  void set(Live& live, const Box<D>& box, const Point<D>& velocity = {}) const {
+    live.box = box;
+    const float margin = margin_of(box);
+    Box<D> wanted = box;
+    for (int axis = 0; axis < D; ++axis) {
+      const float way = static_cast<float>(options_.predicted_frames) * velocity[axis];
+      wanted.min[axis] = box.min[axis] - margin + std::min(way, 0.0F);
+      wanted.max[axis] = box.max[axis] + margin + std::max(way, 0.0F);
+    }
+    const Box<D>& kept = live.enlarged;
+    for (int axis = 0; axis < D; ++axis) {
+      const float most = box.max[axis] - box.min[axis] + 6 * margin +
+                         std::abs(static_cast<float>(options_.predicted_frames) * velocity[axis]);
+      if (kept.min[axis] > box.min[axis] || kept.max[axis] < box.max[axis] ||
+          kept.max[axis] - kept.min[axis] > most) {
+        live.enlarged = wanted;
+        return;
+      }
+    }
   }
 
   void move_two(const Command<D>& command) {
     const std::vector<Handle> handles = {live_handle(command.which), live_handle(command.other)};
     world_.move(handles, std::vector<Box<D>>{live_[handles[1]].box, command.box});
-    live_[handles[0]].box = live_[handles[1]].box;
-    live_[handles[1]].box = command.box;
+    const Box<D> first = live_[handles[1]].box;
+    set(live_[handles[0]], first);
+    set(live_[handles[1]], command.box);
+  }
+
+  void move_on(const Command<D>& command) {
+    const Handle handle = live_handle(command.which);
+    Point<D> velocity;
+    for (int axis = 0; axis < D; ++axis)
+      velocity[axis] = static_cast<float>((command.other >> axis) % 4) / 2 - 0.5F;
+    if (options_.predicted_frames == 0) {
+      RC_ASSERT_THROWS_AS(world_.move(handle, command.box, velocity), std::logic_error);
+      return;
+    }
+    if (command.other % 2 == 0)
+      world_.move(handle, command.box, velocity);
+    else
+      world_.move(std::vector{handle}, std::vector{command.box}, std::vector{velocity});
+    set(live_[handle], command.box, velocity);
   }
 
   void remove(Handle handle) {
@@ -283,7 +343,7 @@ class Model {
     for (auto a = live_.begin(); a != live_.end(); ++a) {
       for (auto b = std::next(a); b != live_.end(); ++b) {
         const HandlePair pair{a->first, b->first};
-        if (!overlap(a->second.box, b->second.box) || !accepts(a->second.filter, b->second.filter) ||
+        if (!meet(a->second, b->second) || !accepts(a->second.filter, b->second.filter) ||
             ignored_.contains(pair))
           continue;
         const auto old = old_answers.find(pair);
@@ -307,10 +367,17 @@ class Model {
     if (++updates_ % 3 != 0) {
       RC_ASSERT(std::ranges::equal(world_.persisting(), persisting));
       RC_ASSERT(std::ranges::equal(world_.pairs(), pairs_));
+      std::vector<std::uint8_t> flags(pairs_.size());
+      world_.overlaps(pairs_, flags);
+      for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const bool overlaps = overlap(live_.at(pairs_[i].first).box, live_.at(pairs_[i].second).box);
+        RC_ASSERT((flags[i] == 1) == overlaps);
+      }
     }
     for (auto& [handle, removal] : removed_) ++removal.updates;
   }
 
+  WorldOptions options_;
   World<D> world_;
   bool has_predicate_;
   std::uint32_t phase_ = 0;
@@ -327,7 +394,7 @@ class WorldProperty : public Law {
   template <int D>
   bool holds(const rc::Gen<Box<D>>& box) const {
     return rc::check("a world over " + name(GetParam()) + " knows what its model knows", [&] {
-      const WorldKind kind{*rc::gen::arbitrary<bool>().as("margin"),
+      const WorldKind kind{*rc::gen::inRange<std::uint32_t>(0, 16).as("margins"),
                            *rc::gen::arbitrary<bool>().as("predicate")};
       const auto commands = *rc::gen::container<std::vector<Command<D>>>(command(box)).as("commands");
       Model<D> model(make_tracker<D>(algorithm(), spec()), kind);

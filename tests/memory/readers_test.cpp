@@ -20,6 +20,7 @@
 
 #include "failing_allocation.hpp"
 #include "lab/formats/format.hpp"
+#include "tests/support/tape.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -92,6 +93,7 @@ TEST(ReadersOutOfMemory, ThrowAndReadTheFileRightAfterwards) {
   const Files files;
   std::vector<std::string> paths = {
       files.put("frames.btrace", written("trace", true)),
+      files.put("pairs.btrace", small_trace_with_pairs()),
       files.put("frames.csv", written("csv", true)),
       files.put("ids.csv", "id,min_x,min_y,max_x,max_y\na,0,0,1,1\nb,1,1,2,2\n"),
       files.put("boxes.npy", written("npy", false)),

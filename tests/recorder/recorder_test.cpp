@@ -42,14 +42,14 @@ std::string hexadecimal(const std::string& bytes) {
   return text;
 }
 
-/// The bytes of the example at the end of docs/trace-format.md: the pairs of digits with which its lines
-/// begin.
-std::string documented_example() {
+/// The bytes of an example of docs/trace-format.md under its heading: the pairs of digits with which the
+/// lines begin.
+std::string documented_example(const std::string& heading = "## An example") {
   std::ifstream file(BROADSIDE_SOURCE_DIR "/docs/trace-format.md");
   std::string text;
   std::string example;
-  while (std::getline(file, text) && text != "## An example") continue;
-  while (std::getline(file, text)) {
+  while (std::getline(file, text) && text != heading) continue;
+  while (std::getline(file, text) && !text.starts_with("## ")) {
     std::istringstream line(text);
     const auto is_byte = [](const std::string& word) {
       return word.size() == 2 && word.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -104,6 +104,10 @@ TEST(TraceChecksum, DoesNotDependOnHowTheBytesArrive) {
 
 TEST(Recorder, WritesTheBytesThatTheFormatShows) {
   EXPECT_EQ(hexadecimal(small_trace()), documented_example());
+}
+
+TEST(Recorder, WritesPairsAsTheFormatShows) {
+  EXPECT_EQ(hexadecimal(small_trace_with_pairs()), documented_example("## An example with pairs"));
 }
 
 TEST(Recorder, WritesDoublesAndThreeAxesAlike) {
@@ -229,6 +233,92 @@ TEST(Recorder, RefusesMoreSlotsThanTheFormatHas) {
   EXPECT_THAT(other.recorder.error(), HasSubstr("4294967296 slots"));
 }
 
+constexpr std::size_t empty_pairs_frame = empty_frame + trace::pair_count_bytes;
+
+/// A tape of boxes in slots 0 to 2, all on the same place, and the pair (0, 1).
+struct PairTape : Tape<2> {
+  PairTape() : Tape<2>(0.0) {
+    for (std::uint32_t slot = 0; slot < 3; ++slot) set(slot, {0, 0, 1, 1});
+    recorder.add_pair(0, 1);
+    end_frame();
+  }
+};
+
+TEST(Recorder, StoresOnlyWhatChangedOfPairs) {
+  PairTape tape;
+  tape.recorder.add_pair(1, 0);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame) << "the same pair";
+  tape.recorder.add_pair(0, 1);
+  tape.recorder.add_pair(0, 1);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + trace::pair_bytes) << "reported twice";
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + 2 * trace::pair_bytes) << "no longer reported";
+  tape.recorder.ignore_pair(0, 1);
+  tape.recorder.ignore_pair(1, 0);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + trace::pair_bytes) << "ignored once";
+  tape.recorder.set_filter(0, 1, ~std::uint64_t{0});
+  tape.recorder.ignore_pair(0, 1);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame) << "the standard filter";
+  tape.recorder.set_filter(0, 2, 4);
+  tape.recorder.ignore_pair(0, 1);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + trace::filter_bytes);
+}
+
+TEST(Recorder, ForgetsTheFilterOfABoxThatIsGone) {
+  PairTape tape;
+  tape.recorder.set_filter(2, 2, 4);
+  tape.end_frame();
+  tape.recorder.remove(2);
+  tape.set(2, {0, 0, 1, 1});
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + trace::filter_bytes) << "back in the same frame";
+  tape.recorder.set_filter(2, 2, 4);
+  tape.recorder.remove(2);
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + removal);
+  tape.set(2, {0, 0, 1, 1});
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame + flat_box) << "back in the next one";
+}
+
+TEST(Recorder, RefusesWrongPairsAndGoesOn) {
+  const auto refused = [](const auto& call) {
+    PairTape tape;
+    tape.recorder.add_pair(0, 1);
+    EXPECT_FALSE(call(tape.recorder));
+    EXPECT_EQ(tape.end_frame(), empty_pairs_frame) << "a refused call changes nothing";
+    return tape.recorder.error();
+  };
+  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(2, 2); }),
+            "recorder: pair (2, 2) of a slot and itself; expected two slots");
+  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(7, 0); }),
+            "recorder: pair (7, 0) names slot 7, which is empty; expected a box");
+  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.ignore_pair(0, 7); }),
+            "recorder: pair (0, 7) names slot 7, which is empty; expected a box");
+  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.set_filter(7, 1, 1); }),
+            "recorder: filter of slot 7, which is empty; expected a box");
+}
+
+TEST(Recorder, LeavesOutAPairWhoseSlotIsEmptiedBeforeTheFrameEnds) {
+  PairTape tape;
+  tape.recorder.add_pair(0, 1);
+  tape.recorder.remove(1);
+  const std::size_t before = tape.bytes.size();
+  EXPECT_FALSE(tape.recorder.end_frame());
+  EXPECT_EQ(tape.bytes.size() - before, empty_pairs_frame + removal + trace::pair_bytes);
+  EXPECT_EQ(tape.recorder.error(),
+            "recorder: pair (0, 1) names slot 1, which was emptied before the frame ended; expected a box");
+  EXPECT_EQ(tape.end_frame(), empty_pairs_frame);
+}
+
+TEST(Recorder, TakesPairsOnlyWhereItWasOpenedWithAMargin) {
+  Tape<2> tape;
+  tape.set(0, {0, 0, 1, 1});
+  tape.set(1, {0, 0, 1, 1});
+  EXPECT_FALSE(tape.recorder.add_pair(0, 1));
+  EXPECT_FALSE(tape.recorder.ignore_pair(0, 1));
+  EXPECT_FALSE(tape.recorder.set_filter(0, 1, 1));
+  EXPECT_EQ(tape.end_frame(), empty_frame + 2 * flat_box);
+  EXPECT_THAT(tape.recorder.error(),
+              HasSubstr("add_pair() in a trace without pairs; expected open() with a margin before"));
+}
+
 TEST(Recorder, SaysThatNothingIsOpen) {
   Recorder2 recorder;
   EXPECT_FALSE(recorder.end_frame());
@@ -280,6 +370,22 @@ TEST_F(RecorderFiles, HoldEachFrameAsSoonAsItHasEnded) {
       << "a frame that was not ended is not written";
 }
 
+TEST_F(RecorderFiles, AreNotMadeWhereTheMarginIsNone) {
+  const std::vector<std::pair<double, std::string>> wrong = {
+      {-0.5, "-0.5"}, {std::numeric_limits<double>::infinity(), "inf"}, {nan, "nan"}};
+  for (const auto& [margin, found] : wrong) {
+    Recorder2 recorder;
+    EXPECT_FALSE(recorder.open(path("a.btrace").string(), margin));
+    EXPECT_THAT(recorder.error(), AllOf(HasSubstr("a.btrace: margin " + found),
+                                        HasSubstr("expected a finite number, 0 or more")));
+    EXPECT_FALSE(recorder.end_frame());
+  }
+  EXPECT_EQ(count_files(), 0u);
+  Recorder2 recorder;
+  EXPECT_TRUE(recorder.open(path("a.btrace").string(), -0.0));
+  EXPECT_EQ(text_of("a.btrace").substr(16, 8), std::string(8, '\0'));
+}
+
 TEST_F(RecorderFiles, StartAnewWithEachOpen) {
   Recorder2 recorder;
   for (const char* name : {"a.btrace", "b.btrace"}) {
@@ -316,6 +422,19 @@ TEST_F(RecorderFiles, FromAnEngineOfCxx11AreTheSameWhateverItIsCompiledWith) {
         << "-ffast-math must not let a NaN through";
     EXPECT_EQ(run_engine(engine, "b.btrace", "3 8", "set 7 -inf -inf -inf inf inf inf\nend_frame\n"), "");
     EXPECT_THAT(run_engine(engine, "b.btrace", "3 4", "set 7 0 0 inf 1 1 -inf\n"), HasSubstr("slot 7"));
+  }
+}
+
+TEST_F(RecorderFiles, WithPairsFromAnEngineOfCxx11AreTheSameWhateverItIsCompiledWith) {
+  const std::string script =
+      "set 0 0 0 1 1\nset 1 1 0 2 1\nset 2 1 1 3 2\nset_filter 0 2 5 -1 1\nadd_pair 2 1\nadd_pair 0 1\n"
+      "ignore_pair 0 2\nend_frame\nset 1 2 0 3 1\nadd_pair 1 2\nadd_pair 1 2\nend_frame\n";
+  for (const char* engine : {PLAIN_ENGINE, FAST_ENGINE}) {
+    EXPECT_EQ(run_engine(engine, "a.btrace", "2 4 0.5", script), "");
+    EXPECT_EQ(hexadecimal(text_of("a.btrace")), documented_example("## An example with pairs")) << engine;
+    for (const char* margin : {"nan", "inf", "-1"})
+      EXPECT_THAT(run_engine(engine, "b.btrace", std::string("2 4 ") + margin, ""),
+                  HasSubstr("b.btrace: margin"));
   }
 }
 

@@ -35,6 +35,8 @@ class TraceFrames final : public FrameReader<D, Real> {
 
   std::string warning() const override { return reader_->warning(); }
 
+  const RecordedPairs* recorded() const override { return reader_->recorded(); }
+
  private:
   Step<D, Real> step() const {
     const std::span<const BoxId> changed = reader_->changed();
@@ -60,16 +62,15 @@ AnyFrameReader open_trace(std::unique_ptr<Input> input, const ReadOptions&) {
 template <int D, typename Real>
 class TraceWriter final : public FrameWriter<D, Real> {
  public:
-  explicit TraceWriter(std::ostream& stream) : stream_(stream) {
-    recorder_.open_with([&stream](const void* bytes, std::size_t count) {
-      return bool(stream.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count)));
-    });
-  }
+  explicit TraceWriter(std::ostream& stream) : stream_(stream) {}
+
+  void use_recorded(const RecordedPairs& recorded) override { recorded_ = &recorded; }
 
   void first(std::span<const Box<D, Real>> boxes) override {
+    open();
     recorder_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) set(i, boxes[i]);
-    end_frame();
+    end_frame(boxes.size());
   }
 
   void next(const Step<D, Real>& step) override {
@@ -77,21 +78,45 @@ class TraceWriter final : public FrameWriter<D, Real> {
     for (std::size_t i = 0; i < step.changed.size(); ++i) {
       if (index(step.changed[i]) < step.size) set(index(step.changed[i]), step.boxes[i]);
     }
-    end_frame();
+    end_frame(step.size);
   }
 
  private:
+  void open() {
+    const auto write = [this](const void* bytes, std::size_t count) {
+      return bool(stream_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count)));
+    };
+    if (recorded_ == nullptr)
+      recorder_.open_with(write);
+    else
+      recorder_.open_with(write, recorded_->margin);
+  }
+
   void set(std::size_t slot, const Box<D, Real>& box) {
+    if (recorded_ != nullptr && is_absent(box)) emptied_.push_back(BoxId(slot));
     recorder_.set(static_cast<std::uint32_t>(slot), box.min.data(), box.max.data());
   }
 
-  void end_frame() {
+  void put_pairs(std::size_t slots) {
+    pairs_.apply(*recorded_, slots, emptied_);
+    emptied_.clear();
+    for (const auto& [slot, filter] : recorded_->filters)
+      recorder_.set_filter(index(slot), filter.category, filter.mask, filter.group, filter.is_static);
+    for (const Pair pair : pairs_.reported()) recorder_.add_pair(index(pair.first), index(pair.second));
+    for (const Pair pair : pairs_.ignored()) recorder_.ignore_pair(index(pair.first), index(pair.second));
+  }
+
+  void end_frame(std::size_t slots) {
+    if (recorded_ != nullptr) put_pairs(slots);
     // The caller checks the stream.
     if ((!recorder_.end_frame() || !recorder_.error().empty()) && stream_) throw FileError(recorder_.error());
   }
 
   std::ostream& stream_;
   Recorder<D, Real> recorder_;
+  const RecordedPairs* recorded_ = nullptr;  // of the frame being written; null where there are no pairs
+  RecordedFrame pairs_;
+  std::vector<BoxId> emptied_;  // in the frame being written
 };
 
 AnyFrameWriter create_trace(std::ostream& stream, int dimension, Precision precision) {
@@ -115,6 +140,7 @@ Format trace() {
           },
       .open = open_trace,
       .create = create_trace,
+      .keeps_pairs = true,
   };
 }
 

@@ -1,6 +1,7 @@
 // Traces (docs/trace-format.md), read frame by frame: what a Recorder wrote in somebody's engine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <istream>
@@ -12,10 +13,13 @@
 #include "broadside/pair.hpp"
 #include "broadside/recorder.hpp"
 
+#include "lab/formats/recorded_pairs.hpp"
+
 namespace broadside::lab {
 
-/// Reads a trace frame by frame. Memory: that of one frame's changes, however long the trace, and never more
-/// than the bytes that are there justify, whatever they claim.
+/// Reads a trace frame by frame. Memory: that of one frame's changes and, where an engine's pairs were
+/// recorded, of the pairs of a frame, however long the trace, and never more than the bytes that are there
+/// justify, whatever they claim.
 ///
 /// What is wrong is refused with a FileError (lab/formats/format.hpp) that names the frame and the byte. One
 /// thread at a time.
@@ -64,6 +68,10 @@ class TraceReader {
     return box;
   }
 
+  /// What this frame changes of the pairs that the engine reported, checked; before the first frame, the
+  /// margin alone. Null where the trace holds no pairs.
+  const RecordedPairs* recorded() const noexcept { return has_pairs_ ? &recorded_ : nullptr; }
+
   /// After the last frame: where the trace was cut off, if it was; empty otherwise.
   const std::string& warning() const noexcept { return warning_; }
 
@@ -74,15 +82,25 @@ class TraceReader {
     std::uint32_t slots;
     std::uint32_t removed;
     std::uint32_t set;
+    std::array<std::uint32_t, 5> pairs;  // filters; ended, begun; ignored ones ended, begun
   };
 
   void read_header();
+  std::size_t frame_header_bytes() const noexcept;
   bool read_frame_header(FrameHeader& header);
   void take(const FrameHeader& header);
   void take_box(std::uint32_t slot, std::size_t at);
 
+  void take_pairs(const FrameHeader& header, std::size_t at);
+  void take_filters(const FrameHeader& header, std::size_t at);
+  void take_pair_list(std::size_t at, std::uint32_t count, bool may_repeat, std::vector<Pair>& pairs) const;
+  void check_held(std::size_t at, const std::vector<Pair>& ended, const std::vector<Pair>& held) const;
+  void check_boxes(const FrameHeader& header) const;
+
   bool read(std::uint64_t count);
+  bool read_on(std::uint64_t count);
   std::uint32_t word(std::size_t at) const noexcept;
+  std::uint64_t long_word(std::size_t at) const noexcept;
   double coordinate(std::size_t at) const noexcept;
   void check_sum(std::size_t count);
   bool cut_off(std::uint64_t frame_byte, const std::string& found);
@@ -99,6 +117,11 @@ class TraceReader {
   std::vector<double> bounds_;  // of each changed slot, one after the other
   std::string warning_;
   bool ended_ = false;
+
+  bool has_pairs_ = false;
+  RecordedPairs recorded_;
+  RecordedFrame pairs_;        // those of this frame
+  std::vector<bool> has_box_;  // of each slot; kept only where there are pairs
 
   trace::Checksum checksum_;
   std::vector<unsigned char> bytes_;  // those read last ...

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -28,13 +29,20 @@ bool TraceReader::next_frame() {
   FrameHeader header;
   if (!read_frame_header(header)) return false;
   const std::uint64_t bytes_a_box = word_bytes + 2 * static_cast<unsigned>(dimension_ * coordinate_bytes_);
-  const std::uint64_t size = word_bytes * header.removed + bytes_a_box * header.set;
+  const std::uint64_t boxes = word_bytes * header.removed + bytes_a_box * header.set;
+  std::uint64_t size = boxes;
+  if (has_pairs_) {
+    size += trace::filter_bytes * std::uint64_t{header.pairs[0]};
+    for (std::size_t i = 1; i < header.pairs.size(); ++i)
+      size += trace::pair_bytes * std::uint64_t{header.pairs[i]};
+  }
   if (!read(size + trace::checksum_bytes)) {
-    return cut_off(header.byte, fmt::format("{} of its {} bytes", trace::header_bytes + bytes_.size(),
-                                            trace::header_bytes + size + trace::checksum_bytes));
+    return cut_off(header.byte, fmt::format("{} of its {} bytes", frame_header_bytes() + bytes_.size(),
+                                            frame_header_bytes() + size + trace::checksum_bytes));
   }
   check_sum(static_cast<std::size_t>(size));
   take(header);
+  if (has_pairs_) take_pairs(header, static_cast<std::size_t>(boxes));
   slots_ = header.slots;
   ++frames_;
   ended_ = false;
@@ -42,7 +50,9 @@ bool TraceReader::next_frame() {
 }
 
 void TraceReader::read_header() {
-  const bool whole = read(trace::header_bytes);
+  // As much as every version has alike, and then the rest.
+  constexpr std::size_t common = trace::header_bytes - trace::checksum_bytes;
+  bool whole = read(common);
   if (bytes_.empty())
     throw FileError(fmt::format("{}: is empty; expected a trace, which has {} bytes or more", name_,
                                 trace::header_bytes));
@@ -50,11 +60,15 @@ void TraceReader::read_header() {
   if (!std::equal(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(there), trace::magic.begin()))
     refuse(0, fmt::format("the first bytes are {:02x}", fmt::join(bytes_.data(), bytes_.data() + there, " ")),
            fmt::format("{:02x}, with which a trace begins", fmt::join(trace::magic, " ")));
+  has_pairs_ = whole && word(8) == trace::pairs_version;
+  if (whole && word(8) != trace::version && !has_pairs_)
+    refuse(8, fmt::format("version {}", word(8)),
+           fmt::format("{}, or {} with pairs", trace::version, trace::pairs_version));
+  const std::size_t size = common + (has_pairs_ ? trace::margin_bytes : 0);
+  whole = whole && read_on(size - common + trace::checksum_bytes);
   if (!whole)
-    refuse(bytes_.size(), "the file ends", fmt::format("a header of {} bytes", trace::header_bytes));
-  if (word(8) != trace::version)
-    refuse(8, fmt::format("version {}", word(8)), std::to_string(trace::version));
-  check_sum(trace::header_bytes - trace::checksum_bytes);
+    refuse(bytes_.size(), "the file ends", fmt::format("a header of {} bytes", size + trace::checksum_bytes));
+  check_sum(size);
   dimension_ = bytes_[12];
   coordinate_bytes_ = bytes_[13];
   if (dimension_ != 2 && dimension_ != 3) refuse(12, fmt::format("dimension {}", dimension_), "2 or 3");
@@ -62,11 +76,19 @@ void TraceReader::read_header() {
     refuse(13, fmt::format("{} bytes a coordinate", coordinate_bytes_), "4 or 8");
   if (bytes_[14] != 0 || bytes_[15] != 0)
     refuse(14, fmt::format("{:02x} {:02x}", bytes_[14], bytes_[15]), "00 00");
+  if (!has_pairs_) return;
+  recorded_.margin = std::bit_cast<double>(long_word(common));
+  if (!(recorded_.margin >= 0) || std::isinf(recorded_.margin) || std::signbit(recorded_.margin))
+    refuse(common, fmt::format("margin {}", recorded_.margin), "a finite number, 0 or more");
+}
+
+std::size_t TraceReader::frame_header_bytes() const noexcept {
+  return trace::header_bytes + (has_pairs_ ? trace::pair_count_bytes : 0);
 }
 
 /// Whether there is a whole header of a frame; if there is a piece of one, warning_ says so.
 bool TraceReader::read_frame_header(FrameHeader& header) {
-  const bool whole = read(trace::header_bytes);
+  const bool whole = read(frame_header_bytes());
   const std::size_t there = std::min(bytes_.size(), word_bytes);
   for (std::size_t i = 0; i < there; ++i) {
     if (bytes_[i] != (trace::frame_mark >> 8 * i & 0xff))
@@ -76,9 +98,11 @@ bool TraceReader::read_frame_header(FrameHeader& header) {
   if (bytes_.empty()) return false;
   if (!whole)
     return cut_off(begin_,
-                   fmt::format("{} of the {} bytes of its header", bytes_.size(), trace::header_bytes));
-  check_sum(trace::header_bytes - trace::checksum_bytes);
-  header = {begin_, word(4), word(8), word(12)};
+                   fmt::format("{} of the {} bytes of its header", bytes_.size(), frame_header_bytes()));
+  check_sum(frame_header_bytes() - trace::checksum_bytes);
+  header = {begin_, word(4), word(8), word(12), {}};
+  for (std::size_t i = 0; has_pairs_ && i < header.pairs.size(); ++i)
+    header.pairs[i] = word(16 + word_bytes * i);
   return true;
 }
 
@@ -138,11 +162,17 @@ void TraceReader::take_box(std::uint32_t slot, std::size_t at) {
 bool TraceReader::read(std::uint64_t count) {
   begin_ += bytes_.size();
   bytes_.clear();
-  while (bytes_.size() < count) {
+  return read_on(count);
+}
+
+/// Likewise, behind the bytes that were read last.
+bool TraceReader::read_on(std::uint64_t count) {
+  const std::uint64_t all = bytes_.size() + count;
+  while (bytes_.size() < all) {
     // In pieces, which grow as they turn out to be there.
     constexpr std::uint64_t least = std::uint64_t{1} << 16;
     const std::size_t before = bytes_.size();
-    const std::uint64_t more = std::min(count - before, std::max<std::uint64_t>(before, least));
+    const std::uint64_t more = std::min(all - before, std::max<std::uint64_t>(before, least));
     bytes_.resize(before + static_cast<std::size_t>(more));
     errno = 0;
     stream_.read(reinterpret_cast<char*>(bytes_.data() + before), static_cast<std::streamsize>(more));
@@ -162,9 +192,13 @@ std::uint32_t TraceReader::word(std::size_t at) const noexcept {
   return value;
 }
 
+std::uint64_t TraceReader::long_word(std::size_t at) const noexcept {
+  return word(at) | std::uint64_t{word(at + word_bytes)} << 32;
+}
+
 double TraceReader::coordinate(std::size_t at) const noexcept {
   if (coordinate_bytes_ == 4) return static_cast<double>(std::bit_cast<float>(word(at)));
-  return std::bit_cast<double>(word(at) | std::uint64_t{word(at + word_bytes)} << 32);
+  return std::bit_cast<double>(long_word(at));
 }
 
 /// Checks the checksum behind the first `count` bytes of those read last.

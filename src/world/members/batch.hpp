@@ -27,6 +27,7 @@ void check_lengths(std::size_t found, const char* things, std::size_t boxes) {
 template <int D, typename Real>
 void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
                          std::span<const BoxOptions> options) {
+  const core::DefaultEnvironment environment;
   check_lengths(handles.size(), "handles", boxes.size());
   if (!options.empty()) check_lengths(options.size(), "options", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -52,15 +53,29 @@ void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
 }
 
 template <int D, typename Real>
-void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxes) {
+void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxes,
+                          std::span<const Point<D, Real>> velocities) {
+  const core::DefaultEnvironment environment;
   check_lengths(handles.size(), "handles", boxes.size());
+  if (!velocities.empty()) check_lengths(velocities.size(), "velocities", boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!state_->is_live(handles[i])) state_->refuse(handles[i], "move");
-    state_->check_box(boxes[i], i, "to be moved to, number", i);
+    if (!is_present(boxes[i])) state_->check_box(boxes[i], i, "to be moved to, number", i);
+    if (!velocities.empty()) state_->check_velocity(velocities[i], i, "of the box number", i);
   }
-  make_room(state_->changed, boxes.size());
-  make_room(state_->moved, boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) state_->set_box(handles[i].slot, boxes[i]);
+  state_->reserve_moves(boxes.size());
+  const bool has_margin = state_->has_margin();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const std::uint32_t slot = handles[i].slot;
+    const Box<D, Real>& box = boxes[i];
+    const Point<D, Real>* const velocity = velocities.empty() ? nullptr : &velocities[i];
+    if (!has_margin || !is_present(box))
+      state_->set_box(slot, box, velocity);
+    else if (state_->margins.keeps(state_->enlarged[slot], box, velocity))
+      state_->set_within(slot, box);
+    else
+      state_->set_outside(slot, box, velocity);
+  }
 }
 
 template <int D, typename Real>
@@ -99,8 +114,7 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
     throw std::invalid_argument("coordinate " + std::to_string(axis) + " of a new origin is " +
                                 std::to_string(origin[axis]) + "; expected a finite number");
   }
-  make_room(state.changed, state.slots.size());
-  make_room(state.moved, state.slots.size());
+  state.reserve_moves(state.slots.size());
   const auto shifted = [&origin](Box<D, Real> box) {
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] -= origin[axis];
@@ -110,7 +124,7 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   };
   for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
     if (state.slots[slot].state != State::SlotState::live) continue;
-    // So that it is enlarged anew, and not kept where it was.
+    // So that it is enlarged anew.
     if (state.has_margin()) state.enlarged[slot] = absent_box<D, Real>();
     state.set_box(slot, shifted(state.boxes[slot]));
   }

@@ -1,6 +1,8 @@
 // World: slots, their boxes, and the handles that name them.
 #pragma once
 
+#include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "broadside/debug/shadow.hpp"
@@ -8,30 +10,13 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
-#include "interface/encloses.hpp"
 #include "interface/input_check.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
-namespace {
-
-/// The box with `margin` on every side.
-template <int D, typename Real>
-Box<D, Real> enlarge(Box<D, Real> box, Real margin) noexcept {
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] -= margin;
-    box.max[axis] += margin;
-  }
-  return box;
-}
-
-/// An enlarged box that exceeds its box by more margins than this is replaced: the box has shrunk.
-constexpr int most_margins = 4;
-
-}  // namespace
-
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
+  const core::DefaultEnvironment environment;
   const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
   state_->check_box(added, 0, "for slot", state_->next_slot());
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
@@ -40,11 +25,21 @@ Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
 
 template <int D, typename Real>
 void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
+  const core::DefaultEnvironment environment;
   const std::uint32_t slot = state_->live_slot(handle, "move");
   state_->check_box(box, 0, "for slot", slot);
-  make_room(state_->changed, 1);
-  make_room(state_->moved, 1);
+  state_->reserve_moves(1);
   state_->set_box(slot, box);
+}
+
+template <int D, typename Real>
+void World<D, Real>::move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity) {
+  const core::DefaultEnvironment environment;
+  const std::uint32_t slot = state_->live_slot(handle, "move");
+  state_->check_box(box, 0, "for slot", slot);
+  state_->check_velocity(velocity, 0, "for slot", slot);
+  state_->reserve_moves(1);
+  state_->set_box(slot, box, &velocity);
 }
 
 template <int D, typename Real>
@@ -71,6 +66,12 @@ const Box<D, Real>& World<D, Real>::box(Handle handle) const {
     default:
       return state_->boxes[slot];
   }
+}
+
+template <int D, typename Real>
+const Box<D, Real>& World<D, Real>::enlarged_box(Handle handle) const {
+  const std::uint32_t slot = state_->live_slot(handle, "read the enlarged box of");
+  return state_->has_margin() ? state_->enlarged[slot] : state_->boxes[slot];
 }
 
 template <int D, typename Real>
@@ -132,7 +133,7 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
 template <int D, typename Real>
 void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t index, const char* whose,
                                       std::size_t number) const {
-  if (core::is_present_by_value(box)) return;
+  if (is_present(box)) return;
   if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
   const std::string name = std::string("the box ") + whose + " " + std::to_string(number);
   if (is_absent(box)) throw InvalidInput(index, name + " is absent; expected a box");
@@ -153,11 +154,8 @@ void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool w
   make_room(boxes, added);
   make_room(generations, added);
   make_room(slots, added);
-  make_room(changed, count);
-  if (has_margin()) {
-    make_room(enlarged, added);
-    make_room(moved, count);
-  }
+  reserve_moves(count);
+  if (has_margin()) make_room(enlarged, added);
   if (with_filters || uses_filters) make_room(filters, slots.size() - filters.size() + added);
   if (with_user_data || uses_user_data) make_room(user_data, slots.size() - user_data.size() + added);
   free.reserve(slots.size() + added);
@@ -189,20 +187,68 @@ Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOption
   return {slot, generations[slot]};
 }
 
-/// There is room in `changed` and `moved`.
 template <int D, typename Real>
-void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given) noexcept {
+void World<D, Real>::State::check_velocity(const Point<D, Real>& velocity, std::size_t index,
+                                           const char* whose, std::size_t number) const {
+  if (margins.frames == 0) {
+    throw std::logic_error(
+        "a velocity was given to a world that predicts no frames; expected WorldOptions::predicted_frames "
+        "above 0, or no velocity");
+  }
+  for (int axis = 0; axis < D; ++axis) {
+    if (std::isfinite(velocity[axis])) continue;
+    throw InvalidInput(index, "coordinate " + std::to_string(axis) + " of the velocity " + whose + " " +
+                                  std::to_string(number) + " is " + std::to_string(velocity[axis]) +
+                                  "; expected a finite number");
+  }
+}
+
+/// Makes all the room that set_box() takes for `count` boxes.
+template <int D, typename Real>
+void World<D, Real>::State::reserve_moves(std::size_t count) {
+  make_room(changed, count);
+  if (has_margin()) make_room(moved, count);
+  if (queried != nullptr) make_room(unindexed, count);
+}
+
+/// In the default environment, and with room for what it lists, as set_within().
+template <int D, typename Real>
+void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given,
+                                    const Point<D, Real>* velocity) noexcept {
+  // Where invalid ones are not quarantined, it has been checked.
+  const Box<D, Real> box =
+      options.bad_input == BadInput::quarantine && !is_present(given) ? absent_box<D, Real>() : given;
+  if (!has_margin()) {
+    boxes[slot] = box;
+    mark_changed(slot);
+  } else if (margins.keeps(enlarged[slot], box, velocity)) {
+    set_within(slot, box);
+  } else {
+    set_outside(slot, box, velocity);
+  }
+}
+
+/// Moves a box out of its enlarged one, to where it gets another.
+template <int D, typename Real>
+void World<D, Real>::State::set_outside(std::uint32_t slot, const Box<D, Real>& box,
+                                        const Point<D, Real>* velocity) noexcept {
+  boxes[slot] = box;
   mark_changed(slot);
-  boxes[slot] = kept(given);
-  if (!has_margin()) return;
-  const core::DefaultEnvironment environment;
-  const Box<D, Real>& box = boxes[slot];
-  Box<D, Real>& seen = enlarged[slot];
-  if (!is_absent(seen) && core::encloses(seen, box) &&
-      core::encloses(enlarge(box, most_margins * margin), seen))
-    return;
   mark_moved(slot);
-  seen = enlarge(box, margin);
+  enlarged[slot] = margins.enlarged(box, velocity);
+}
+
+/// Moves a box within its enlarged one. Where only enlarged boxes make pairs, that concerns nothing but
+/// queries.
+template <int D, typename Real>
+inline void World<D, Real>::State::set_within(std::uint32_t slot, const Box<D, Real>& box) noexcept {
+  boxes[slot] = box;
+  if (refines_by_boxes()) {
+    mark_changed(slot);
+  } else if (queried != nullptr) {
+    unindexed.push_back(BoxId{slot});
+    is_indexed.store(false, std::memory_order_relaxed);
+  }
 }
 
 /// Makes all the room that removing `count` boxes takes, which may be part of `ignored_count` ignored pairs.

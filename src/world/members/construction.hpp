@@ -17,11 +17,16 @@
 namespace broadside {
 namespace {
 
+/// One of the distances that boxes are enlarged by, as a number of the world's type.
 template <typename Real>
-Real rounded(const double& number) noexcept {
+Real checked_distance(const char* name, const double& number) {
   const core::DefaultEnvironment environment;
-  const volatile Real result = static_cast<Real>(number);
-  return result;
+  const volatile Real rounded = static_cast<Real>(number);
+  if (!(rounded >= 0) || !std::isfinite(rounded)) {
+    throw std::invalid_argument(std::string("the ") + name + " of a world is " + std::to_string(number) +
+                                "; expected a finite number of at least 0");
+  }
+  return rounded;
 }
 
 WorldOptions with_algorithm(std::string_view spec) {
@@ -54,17 +59,20 @@ template <int D, typename Real>
 World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
                              const WorldOptions& its_options, bool is_own)
     : options(its_options),
-      margin(rounded<Real>(its_options.margin)),
+      margins{checked_distance<Real>("margin", its_options.margin),
+              checked_distance<Real>("relative margin", its_options.relative_margin),
+              checked_distance<Real>("number of predicted frames", its_options.predicted_frames)},
       is_own_tracker(is_own),
       tracker(is_own || !its_tracker || !its_options.shadow
                   ? std::move(its_tracker)
                   : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
       first_generation(its_options.first_generation),
-      is_refining(margin > 0) {
+      is_refining(refines_by_boxes()) {
   if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
-  if (!(margin >= 0) || !std::isfinite(margin)) {
-    throw std::invalid_argument("the margin of a world is " + std::to_string(options.margin) +
-                                "; expected a finite number of at least 0");
+  if (options.events == WorldEvents::enlarged && !has_margin()) {
+    throw std::invalid_argument(
+        "a world is to tell of enlarged boxes and enlarges none; expected a margin, a relative margin or a "
+        "number of predicted frames above 0");
   }
 }
 

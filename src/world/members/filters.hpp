@@ -34,8 +34,7 @@ template <int D, typename Real>
 void World<D, Real>::set_filter(Handle handle, const Filter& filter) {
   const std::uint32_t slot = state_->live_slot(handle, "filter");
   if (filter == this->filter(handle)) return;
-  make_room(state_->changed, 1);
-  make_room(state_->moved, 1);
+  state_->reserve_moves(1);
   state_->reserve(0, true, false);
   state_->mark_changed(slot);
   if (state_->has_margin()) state_->mark_moved(slot);

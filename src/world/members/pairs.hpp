@@ -2,13 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
+#include "core/float_environment.hpp"
+#include "kernels/overlap_flags.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
@@ -43,6 +48,34 @@ std::span<const HandlePair> World<D, Real>::persisting() const {
     }
   }
   return state.persisting;
+}
+
+template <int D, typename Real>
+void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const {
+  const core::DefaultEnvironment environment;
+  if (flags.size() != pairs.size()) {
+    throw std::invalid_argument(std::to_string(flags.size()) + " flags for " + std::to_string(pairs.size()) +
+                                " pairs; expected one for each");
+  }
+  const State& state = *state_;
+  const std::span<const Box<D, Real>> boxes = state.boxes;
+  constexpr std::size_t at_once = 256;
+  std::array<Pair, at_once> places;
+  std::array<std::uint8_t, at_once> are_live;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
+    const std::span<const HandlePair> some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
+    std::uint8_t* const its_flags = flags.data() + begin;
+    if (boxes.empty()) {
+      std::fill_n(its_flags, some.size(), std::uint8_t{0});
+      continue;
+    }
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      are_live[i] = state.is_live(some[i].first) && state.is_live(some[i].second);
+      places[i] = are_live[i] != 0 ? Pair{BoxId{some[i].first.slot}, BoxId{some[i].second.slot}} : Pair{};
+    }
+    kernels::set_overlap_flags(boxes, std::span<const Pair>(places).first(some.size()), its_flags);
+    for (std::size_t i = 0; i < some.size(); ++i) its_flags[i] &= are_live[i];
+  }
 }
 
 template <int D, typename Real>

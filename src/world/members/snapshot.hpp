@@ -87,8 +87,11 @@ void World<D, Real>::State::put(ByteWriter& out, std::span<const HandlePair> pai
   out.put(flag(options.keep_pairs, keeps_pairs) | flag(is_own_tracker, has_own_tracker) |
           flag(static_cast<bool>(predicate), has_predicate) | flag(is_refining, refines) |
           flag(uses_filters, has_filters) | flag(uses_user_data, has_user_data) |
-          flag(has_updated, was_updated) | flag(is_settled, was_settled) | flag(refilters_all, refilters));
+          flag(has_updated, was_updated) | flag(is_settled, was_settled) | flag(refilters_all, refilters) |
+          flag(options.events == WorldEvents::enlarged, tells_enlarged));
   out.put(options.margin);
+  out.put(options.relative_margin);
+  out.put(options.predicted_frames);
   out.put(std::uint64_t{options.algorithm.size()});
   for (const char letter : options.algorithm) out.put(static_cast<std::uint8_t>(letter));
   out.put(first_generation);
@@ -148,7 +151,8 @@ void World<D, Real>::restore(std::span<const std::byte> bytes) {
   for (const unsigned char byte : snapshot::magic)
     expect_equal("a byte of the magic number", in.get<unsigned char>(), byte);
   const auto version = in.get<std::uint32_t>();
-  if (version != 1) expect_equal("the version", version, snapshot::version);
+  if (version < snapshot::first_version || version > snapshot::version)
+    expect_equal("the version", version, snapshot::version);
   expect_equal("the dimension", int{in.get<std::uint8_t>()}, D);
   expect_equal("the size of a coordinate", std::size_t{in.get<std::uint8_t>()}, sizeof(Real));
   expect_equal("the byte order", in.get<std::uint16_t>(), snapshot::byte_order);

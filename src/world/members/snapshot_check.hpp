@@ -93,10 +93,10 @@ void World<D, Real>::State::check_marks(bool asks_predicate) const {
     const Slot& a = slots[index(pair.first)];
     const Slot& b = slots[index(pair.second)];
     const bool is_looked_at = refilters_all || a.is_refilter || b.is_refilter ||
-                              (has_margin() && (a.is_changed || b.is_changed)) ||
+                              (refines_by_boxes() && (a.is_changed || b.is_changed)) ||
                               std::ranges::binary_search(new_edges, pair);
     if (is_looked_at) return;
-    const bool overlaps = !has_margin() || overlap(boxes[index(pair.first)], boxes[index(pair.second)]);
+    const bool overlaps = !refines_by_boxes() || overlap(boxes[index(pair.first)], boxes[index(pair.second)]);
     if (mark.overlaps != overlaps) {
       core::refuse(pair, std::string("is said to ") + (mark.overlaps ? "" : "not ") +
                              "overlap; expected what its boxes do, which did not change");

@@ -118,9 +118,10 @@ std::unique_ptr<typename World<D, Real>::State> World<D, Real>::State::get(ByteR
   WorldOptions options = like.options;
   options.keep_pairs = is_set(keeps_pairs);
   options.margin = in.get<double>();
+  options.relative_margin = in.version() < 3 ? 0 : in.get<double>();
+  options.predicted_frames = in.version() < 3 ? 0 : in.get<double>();
+  options.events = is_set(tells_enlarged) ? WorldEvents::enlarged : WorldEvents::exact;
   const std::string algorithm = in.text(in.count(1, "characters of a spec"));
-  const Real margin = static_cast<Real>(options.margin);
-  expect(margin >= 0 && std::isfinite(margin), "its margin is negative or no finite number");
   std::unique_ptr<State> state;
   try {
     if (is_set(has_own_tracker) && like.is_own_tracker) options.algorithm = core::current_spec(algorithm);
@@ -129,11 +130,13 @@ std::unique_ptr<typename World<D, Real>::State> World<D, Real>::State::get(ByteR
     state = std::make_unique<State>(make_own_tracker(unshadowed), options, true);
   } catch (const InvalidSpec& error) {
     throw InvalidSnapshot(std::string("a snapshot's algorithm cannot be made: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    throw InvalidSnapshot(std::string("a snapshot's options are refused: ") + error.what());
   }
   state->is_own_tracker = like.is_own_tracker;
   state->is_refining = is_set(refines);
-  expect(state->is_refining || (!state->has_margin() && !is_set(has_predicate)),
-         "it has a margin or a predicate and does not refine pairs");
+  expect(state->is_refining || (!state->refines_by_boxes() && !is_set(has_predicate)),
+         "it has exact pairs of enlarged boxes or a predicate, and does not refine pairs");
   state->uses_filters = is_set(has_filters);
   state->uses_user_data = is_set(has_user_data);
   state->has_updated = is_set(was_updated);

@@ -1,5 +1,5 @@
 // An engine of C++11 with a recorder: does what it is told on standard input, a call a line, and prints what
-// failed. Usage: plain_engine PATH DIMENSION BYTES_OF_A_COORDINATE < script
+// failed. Usage: plain_engine PATH DIMENSION BYTES_OF_A_COORDINATE [MARGIN] < script
 //
 // It sees the one header alone, as an engine does that it was copied into.
 #include <cstdio>
@@ -24,9 +24,12 @@ std::vector<Real> read_coordinates(std::size_t count) {
 }
 
 template <int D, typename Real>
-int run(const char* path) {
+int run(const char* path, const char* margin) {
   broadside::Recorder<D, Real> recorder;
-  recorder.open(path);
+  if (margin == nullptr)
+    recorder.open(path);
+  else
+    recorder.open(path, std::strtod(margin, nullptr));
   std::string call;
   while (std::cin >> call) {
     if (call == "end_frame") {
@@ -45,8 +48,19 @@ int run(const char* path) {
       recorder.remove(number);
     } else if (call == "resize") {
       recorder.resize(number);
+    } else if (call == "set_filter") {
+      std::uint64_t category = 0;
+      std::uint64_t mask = 0;
+      std::int32_t group = 0;
+      bool is_static = false;
+      std::cin >> category >> mask >> group >> is_static;
+      recorder.set_filter(number, category, mask, group, is_static);
+    } else if (call == "add_pair" || call == "ignore_pair") {
+      std::uint32_t other = 0;
+      std::cin >> other;
+      call == "add_pair" ? recorder.add_pair(number, other) : recorder.ignore_pair(number, other);
     } else {
-      std::printf("the call is '%s'; expected set, set_boxes, remove, resize or end_frame\n", call.c_str());
+      std::printf("the call is '%s'; expected one of the recorder's\n", call.c_str());
       return 2;
     }
   }
@@ -58,9 +72,10 @@ int run(const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 2;
+  if (argc != 4 && argc != 5) return 2;
+  const char* const margin = argc == 5 ? argv[4] : nullptr;
   const bool is_flat = std::atoi(argv[2]) == 2;
   const bool is_float = std::atoi(argv[3]) == 4;
-  if (is_flat) return is_float ? run<2, float>(argv[1]) : run<2, double>(argv[1]);
-  return is_float ? run<3, float>(argv[1]) : run<3, double>(argv[1]);
+  if (is_flat) return is_float ? run<2, float>(argv[1], margin) : run<2, double>(argv[1], margin);
+  return is_float ? run<3, float>(argv[1], margin) : run<3, double>(argv[1], margin);
 }

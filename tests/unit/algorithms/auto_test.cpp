@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/debug/history.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
@@ -48,6 +49,24 @@ TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
   // One overlap by chance among the sampled boxes would stand for a dozen tests a box.
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6})
     EXPECT_EQ(chosen_for("one_line", 100'000, seed), "sweep_and_prune") << seed;
+}
+
+/// What auto's tracker says after some frames of a pile at rest.
+template <int D>
+std::string chosen_for_a_pile() {
+  const lab::NamedScene named = lab::find_scene("pile");
+  const History<D> history = lab::make_history<D>(named.scene, named.spec, {.boxes = 5'051, .frames = 3});
+  const auto tracker = make_tracker<D>("auto");
+  PairCounter none;
+  Replay<D> replay(history);
+  tracker->update(replay.frame(), none, none);
+  for (const Step<D>& step : history.steps) tracker->update(replay.next(step), none, none);
+  return tracker->explanation();
+}
+
+TEST(AutoTracker, TakesCellsForAPileAtRest) {
+  EXPECT_THAT(chosen_for_a_pile<2>(), testing::HasSubstr("grid"));
+  EXPECT_THAT(chosen_for_a_pile<3>(), testing::HasSubstr("grid"));
 }
 
 std::vector<Box2> boxes_anywhere(std::size_t count, Rng& random) {

@@ -231,7 +231,7 @@ TEST(TraceReader, RefusesWrongHeaders) {
             "trace begins");
   EXPECT_EQ(trace_refusal(small_trace().substr(0, 9)),
             "t: byte 9: the file ends; expected a header of 20 bytes");
-  EXPECT_EQ(trace_refusal(small_trace_with(8, "\x02")), "t: byte 8: version 2; expected 1");
+  EXPECT_EQ(trace_refusal(small_trace_with(8, "\x03")), "t: byte 8: version 3; expected 1, or 2 with pairs");
   EXPECT_EQ(trace_refusal(small_trace_with(12, "\x04")), "t: byte 12: dimension 4; expected 2 or 3");
   EXPECT_EQ(trace_refusal(small_trace_with(13, "\x02")), "t: byte 13: 2 bytes a coordinate; expected 4 or 8");
   EXPECT_EQ(trace_refusal(small_trace_with(15, "\x01")), "t: byte 14: 00 01; expected 00 00");

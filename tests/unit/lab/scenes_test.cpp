@@ -1,6 +1,9 @@
 // The generated scenes: the same everywhere, as many boxes and as many neighbours as asked for.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -210,6 +213,92 @@ TEST(MakeHistory, RefusesADimensionThatTheSceneDoesNotHave) {
   Scene flat = find_scene("uniform").scene;
   flat.boxes_3d = nullptr;
   EXPECT_THROW(make_history<3>(flat, Spec{flat.name, {}}, {}), InvalidSpec);
+}
+
+/// The pile's frames, one after the other.
+template <int D>
+std::vector<std::vector<Box<D>>> pile_frames(std::string_view text, const SceneRequest& request) {
+  const NamedScene named = find_scene(text);
+  const History<D> history = make_history<D>(named.scene, named.spec, request);
+  std::vector<std::vector<Box<D>>> frames = {history.boxes};
+  for (const Step<D>& step : history.steps) {
+    frames.push_back(frames.back());
+    lab::apply(step, frames.back());
+  }
+  return frames;
+}
+
+template <int D>
+std::vector<Pair> pairs_of(const std::vector<Box<D>>& boxes) {
+  std::vector<Pair> pairs = find_pairs(boxes, "brute_force");
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+template <int D>
+void check_that_a_pile_rests(std::size_t least_pairs) {
+  constexpr std::size_t count = 800;
+  const auto frames = pile_frames<D>("pile", {.boxes = count, .seed = 3, .frames = 20});
+  std::vector<Pair> pairs = pairs_of(frames[0]);
+  EXPECT_GT(pairs.size(), least_pairs);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    std::size_t moved = 0;
+    float furthest = 0;
+    for (std::size_t box = 0; box < count; ++box) {
+      moved += frames[i][box] == frames[i - 1][box] ? 0 : 1;
+      for (int axis = 0; axis < D; ++axis)
+        furthest = std::max(furthest, std::abs(frames[i][box].min[axis] - frames[i - 1][box].min[axis]));
+    }
+    EXPECT_GT(moved, count - 10) << "all but the ground tremble";
+    EXPECT_LT(furthest, 0.01F);
+    EXPECT_GT(furthest, 0.0005F) << "it sways, beside trembling";
+    const std::vector<Pair> now = pairs_of(frames[i]);
+    std::vector<Pair> changed;
+    std::ranges::set_symmetric_difference(pairs, now, std::back_inserter(changed));
+    EXPECT_LT(changed.size(), least_pairs / 100);
+    pairs = now;
+  }
+}
+
+TEST(PileScene, TremblesAndHardlyChangesItsPairs) {
+  check_that_a_pile_rests<2>(2000);
+  check_that_a_pile_rests<3>(4000);
+}
+
+TEST(PileScene, IsTheSameUnderEveryCompiler) {
+  const auto hash = []<int D>() {
+    std::uint64_t sum = 0;
+    for (const auto& boxes : pile_frames<D>("pile", {.boxes = 500, .seed = 1, .frames = 10})) {
+      for (const Box<D>& box : boxes) {
+        for (const auto& corner : {box.min, box.max}) {
+          for (const float coordinate : corner)
+            sum = sum * 0x9e3779b97f4a7c15U + std::bit_cast<std::uint32_t>(coordinate);
+        }
+      }
+    }
+    return sum;
+  };
+  EXPECT_EQ(hash.operator()<2>(), 0x8bcb3a95b5102fbeU);
+  EXPECT_EQ(hash.operator()<3>(), 0xab7f04e57ff83e32U);
+}
+
+TEST(PileScene, HasAsManyBoxesAsAskedFor) {
+  const auto check = []<int D>(std::size_t count) {
+    for (const auto& boxes : pile_frames<D>("pile", {.boxes = count, .frames = 3})) {
+      EXPECT_EQ(boxes.size(), count);
+      EXPECT_TRUE(std::ranges::all_of(boxes, [](const Box<D>& box) { return is_present(box); })) << count;
+    }
+  };
+  for (const std::size_t count : {0, 1, 2, 3, 5, 2000}) {
+    check.operator()<2>(count);
+    check.operator()<3>(count);
+  }
+}
+
+TEST(PileScene, BeginsAlikeForAnyNumberOfFrames) {
+  const auto few = pile_frames<2>("pile:speed=0", {.boxes = 300, .frames = 2});
+  const auto many = pile_frames<2>("pile:speed=0", {.boxes = 300, .frames = 5});
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
 }
 
 TEST(JumpsScene, PutsEveryBoxElsewhereInOneFrameAndATenthOnALittleInOthers) {

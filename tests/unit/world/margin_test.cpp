@@ -142,5 +142,108 @@ TEST_F(WorldMarginTest, RefusesAMarginThatIsNone) {
   EXPECT_THROW(World2(with_margin(1e300)), std::invalid_argument) << "infinite as a float";
 }
 
+TEST(WorldMargin, IsTheLesserOfTheTwo) {
+  WorldOptions options = with_margin(0.5);
+  options.relative_margin = 0.125;
+  World2 world(options);
+  const Handle small = world.add({{0, 0}, {2, 1}});
+  const Handle large = world.add({{0, 0}, {64, 1}});
+  EXPECT_EQ(world.enlarged_box(small), (Box2{{-0.25F, -0.25F}, {2.25F, 1.25F}}));
+  EXPECT_EQ(world.enlarged_box(large), (Box2{{-0.5F, -0.5F}, {64.5F, 1.5F}}));
+  const Handle half_plane = world.add({{-infinity, -infinity}, {infinity, 0}});
+  EXPECT_EQ(world.enlarged_box(half_plane), (Box2{{-infinity, -infinity}, {infinity, 0}}));
+}
+
+TEST(WorldMargin, CoversTheWayAheadWhereAVelocityIsGiven) {
+  WorldOptions options = with_margin(0.25);
+  options.predicted_frames = 4;
+  World2 world(options);
+  const Handle a = world.add(at(0));
+  world.move(a, at(1), {0.5F, -1});
+  EXPECT_EQ(world.enlarged_box(a), (Box2{{0.75F, -4.25F}, {4.25F, 1.25F}}));
+  world.move(a, at(1.5F), {0.5F, -1});
+  EXPECT_EQ(world.enlarged_box(a).max[0], 4.25F) << "kept while the box is within";
+  world.move(a, at(1.5F));
+  EXPECT_EQ(world.enlarged_box(a), (Box2{{1.25F, -0.25F}, {2.75F, 1.25F}})) << "it has stopped";
+}
+
+TEST(WorldMargin, RefusesAVelocityThatIsNone) {
+  WorldOptions options = with_margin(0.25);
+  World2 still(options);
+  const Handle a = still.add(at(0));
+  EXPECT_THROW(still.move(a, at(1), {1, 0}), std::logic_error);
+  options.predicted_frames = 4;
+  World2 world(options);
+  const Handle b = world.add(at(0));
+  const auto before = world.snapshot();
+  EXPECT_EQ(message_of<InvalidInput>([&] {
+              world.move(b, at(1), {0, infinity});
+            }),
+            "coordinate 1 of the velocity for slot 0 is inf; expected a finite number");
+  const std::vector<Point<2>> velocities = {{0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0}};
+  try {
+    world.move(std::vector{b, b}, std::vector{at(1), at(2)}, velocities);
+    ADD_FAILURE();
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.index(), 1U);
+  }
+  EXPECT_THROW(world.move(std::vector{b}, std::vector{at(1)}, velocities), std::invalid_argument);
+  EXPECT_EQ(world.snapshot(), before);
+}
+
+TEST(WorldMargin, OfEnlargedEventsIsNeeded) {
+  WorldOptions options = with_margin(0);
+  options.events = WorldEvents::enlarged;
+  EXPECT_EQ(
+      message_of<std::invalid_argument>([&] { World2{options}; }),
+      "a world is to tell of enlarged boxes and enlarges none; expected a margin, a relative margin or a "
+      "number of predicted frames above 0");
+}
+
+TEST(EnlargedEvents, TellWhereEnlargedBoxesMeetAndPart) {
+  WorldOptions options = with_margin(0.5);
+  options.events = WorldEvents::enlarged;
+  World2 world(options);
+  const Handle a = world.add(at(0));
+  const Handle b = world.add(at(1.75F));
+  EXPECT_EQ(listed(world.update().begun), (HandlePairs{{a, b}}));
+  std::vector<std::uint8_t> flags(1);
+  world.overlaps(world.pairs(), flags);
+  EXPECT_EQ(flags[0], 0);
+  for (const float x : {1.5F, 1.0F, 1.75F, 2.25F}) {
+    world.move(b, at(x));
+    const Events events = world.update();
+    EXPECT_TRUE(events.begun.empty() && events.ended.empty()) << x;
+    world.overlaps(world.pairs(), flags);
+    EXPECT_EQ(flags[0], x == 1.0F);
+    EXPECT_EQ(world.box(b), at(x));
+  }
+  world.move(b, at(2.5F));
+  EXPECT_EQ(listed(world.update().ended), (HandlePairs{{a, b}}));
+}
+
+TEST(EnlargedEvents, LeaveQueriesToTheBoxesThemselves) {
+  WorldOptions options = with_margin(0.5);
+  options.events = WorldEvents::enlarged;
+  World2 world(options);
+  const Handle a = world.add(at(0));
+  world.update();
+  const auto is_found_at = [&](float x) {
+    bool found = false;
+    world.containing({x, 0.5F}, [&](Handle handle) {
+      found = handle == a;
+      return true;
+    });
+    return found;
+  };
+  EXPECT_FALSE(is_found_at(1.25F));
+  world.move(a, at(0.375F));
+  EXPECT_TRUE(is_found_at(1.25F));
+  world.update();
+  world.move(a, at(0));
+  EXPECT_FALSE(is_found_at(1.25F));
+  EXPECT_TRUE(is_found_at(0.25F));
+}
+
 }  // namespace
 }  // namespace broadside

@@ -41,5 +41,15 @@ TEST(OldSnapshot, OfVersion1IsReadWithItsMargin) {
   EXPECT_EQ(world.pairs().size(), 23U);
 }
 
+TEST(OldSnapshot, OfVersion2IsReadWithItsMargin) {
+  World2 world;
+  world.restore(fixture("world_margin_v2.bws"));
+  EXPECT_EQ(world.size(), 39U);
+  EXPECT_EQ(world.pairs().size(), 23U);
+  EXPECT_EQ(world.filter(world.handle_of(BoxId{30})).category, std::uint64_t{1} << 40);
+  EXPECT_EQ(world.update().begun.size(), 3U) << "a box was moved after the last update";
+  EXPECT_EQ(world.pairs().size(), 25U);
+}
+
 }  // namespace
 }  // namespace broadside

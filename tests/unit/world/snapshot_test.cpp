@@ -116,6 +116,13 @@ std::vector<Way> ways() {
   ways.push_back({"predicate", {}, true, true});
   ways.push_back({"predicate and margin", {}, true, true});
   ways.back().options.margin = 0.5;
+  ways.push_back({"enlarged events", {}, true, false});
+  ways.back().options.margin = 1;
+  ways.back().options.relative_margin = 0.25;
+  ways.back().options.events = WorldEvents::enlarged;
+  ways.push_back({"enlarged events and predicate", ways.back().options, true, true});
+  ways.push_back({"predicted frames", {}, true, false});
+  ways.back().options.predicted_frames = 4;
   return ways;
 }
 
@@ -341,9 +348,9 @@ TEST(Snapshot, SaysWhatItIsNotASnapshotOf) {
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { deep.restore(bytes); }),
               HasSubstr("the dimension of a snapshot is 2; expected 3"));
   Bytes newer = bytes;
-  newer[8] = std::byte{3};
+  newer[8] = std::byte{4};
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(newer); }),
-              HasSubstr("the version of a snapshot is 3; expected 2"));
+              HasSubstr("the version of a snapshot is 4; expected 3"));
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(std::span(bytes).first(3)); }),
               HasSubstr("expected"));
   World2 choosy;
@@ -395,7 +402,7 @@ TEST(Snapshot, LeavesTheWorldAsItWasWhenItsPairsAreNotThoseOfItsBoxes) {
   const Bytes before = world.snapshot();
   // The first box, which follows the slots' number: there it lies apart from the other.
   const std::array<float, 4> apart = {100, 0, 101, 1};
-  const std::size_t place = 24 + 4 + 8 + 8 + 4 + 4 + 8 + 8;
+  const std::size_t place = 24 + 4 + 3 * 8 + 8 + 4 + 4 + 8 + 8;
   ASSERT_EQ(std::memcmp(bytes.data() + place, std::array<float, 4>{0, 0, 1, 1}.data(), 16), 0);
   std::memcpy(bytes.data() + place, apart.data(), 16);
   seal(bytes);
@@ -420,11 +427,13 @@ TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {
   // One part a line; docs/snapshot-format.md has the same. A change of these bytes is a new version.
   EXPECT_EQ(text,
             "894257530d0a1a0a"                  // magic number
-            "02000000"                          // version 2
+            "03000000"                          // version 3
             "02040201"                          // 2D, coordinates of 4 bytes, byte order
-            "8301000000000000"                  // length: 387
+            "9301000000000000"                  // length: 403
             "43000000"                          // flags: keeps pairs, own algorithm, has had an update
             "0000000000000000"                  // margin 0
+            "0000000000000000"                  // relative margin 0
+            "0000000000000000"                  // 0 predicted frames
             "0b00000000000000"                  // 11 characters
             "62727574655f666f726365"            // brute_force
             "00000000"                          // generation of new slots: 0
@@ -460,7 +469,7 @@ TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {
             "0000000000000000"                          // no pairs of enlarged boxes
             "0000000000000000000000000000000000000000"  // no events of a failed update: five lists
             "0000000000000000000000000000000000000000"
-            "66361191");  // checksum
+            "a0fac269");  // checksum
 }
 
 }  // namespace

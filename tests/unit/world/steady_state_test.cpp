@@ -11,13 +11,23 @@
 namespace broadside {
 namespace {
 
-class SteadyState : public testing::TestWithParam<std::string> {};
+struct Steady {
+  std::string algorithm;
+  double margin = 0;
+  WorldEvents events = WorldEvents::exact;
+};
+
+class SteadyState : public testing::TestWithParam<Steady> {};
 
 TEST_P(SteadyState, AllocatesNothing) {
   if (!lab::AllocationMeter().read()) GTEST_SKIP() << "this build does not count allocations";
   constexpr int side = 40;
   constexpr int period = 8;
-  World2 world(GetParam());
+  WorldOptions options;
+  options.algorithm = GetParam().algorithm;
+  options.margin = GetParam().margin;
+  options.events = GetParam().events;
+  World2 world(options);
   std::vector<Handle> handles;
   const auto box_in = [](int place, int frame) {
     // Every third box goes to and fro, and meets its neighbours and leaves them.
@@ -43,8 +53,10 @@ TEST_P(SteadyState, AllocatesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SteadyState,
-                         testing::Values("auto", "brute_force", "grid", "sweep_and_prune", "quadtree",
-                                         "bvh"));
+                         testing::Values(Steady{"auto"}, Steady{"brute_force"}, Steady{"grid"},
+                                         Steady{"sweep_and_prune"}, Steady{"quadtree"}, Steady{"bvh"},
+                                         Steady{"auto", 0.125},
+                                         Steady{"auto", 0.125, WorldEvents::enlarged}));
 
 TEST(WorldEvents, BringTheUserDataOfTheirBoxes) {
   World2 world;

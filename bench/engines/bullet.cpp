@@ -1,0 +1,246 @@
+// Bullet over Broadside's broad phase and over its own: bullet [PART...] [options], each part a table.
+//
+// stage      the broad phase alone: the boxes of a simulation, recorded and set in both, in turns
+// rays       the same, and after each step a hundred rays through the scene
+// step       two simulations, in turns: the broad-phase stage as Bullet knows it, and the whole step
+// manifolds  the transforms of one simulation in two more: in how many frames do contacts differ?
+// drift      two simulations: energy and penetration over all steps
+#include "broadside/bullet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/engines/bullet_replay.hpp"
+#include "bench/engines/bullet_simulation.hpp"
+#include "bench/guarded.hpp"
+#include "lab/scenes/random.hpp"
+
+namespace broadside::bench {
+namespace {
+
+struct Wishes {
+  std::vector<std::string> scenes;
+  std::size_t bodies = 5000;
+  std::size_t steps = 600;
+  std::size_t rounds = 3;
+  WorldOptions options;
+};
+
+std::unique_ptr<btBroadphaseInterface> bullets() { return std::make_unique<btDbvtBroadphase>(); }
+std::unique_ptr<btBroadphaseInterface> ours(const Wishes& wishes) {
+  return std::make_unique<BulletBroadphase>(wishes.options);
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+double quantile(std::vector<double> values, double part) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(part * double(values.size() - 1))];
+}
+
+void print_times(const std::string& scene, const std::string& what, const std::vector<double>& bullets_us,
+                 const std::vector<double>& ours_us) {
+  fmt::print("{:<8} {:<14} {:>9.0f} {:>9.0f} {:>9.0f}   {:>9.0f} {:>9.0f} {:>9.0f}   {:>6.2f} {:>6.2f}\n",
+             scene, what, mean(bullets_us), quantile(bullets_us, 0.5), quantile(bullets_us, 0.99),
+             mean(ours_us), quantile(ours_us, 0.5), quantile(ours_us, 0.99), mean(bullets_us) / mean(ours_us),
+             quantile(bullets_us, 0.5) / quantile(ours_us, 0.5));
+}
+
+void print_times_heading() {
+  fmt::print(
+      "\n{:<23} {:>29}   {:>29}   {:>13}\n{:<23} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}   {:>6} {:>6}\n", "",
+      "btDbvtBroadphase, us a step", "BulletBroadphase, us a step", "times faster", "", "mean", "median",
+      "p99", "mean", "median", "p99", "mean", "median");
+}
+
+void stage(const Wishes& wishes) {
+  print_times_heading();
+  for (const std::string& scene : wishes.scenes) {
+    auto broadphase = std::make_unique<Recording>();
+    const Recording& recording = *broadphase;
+    Simulation simulation(scene, wishes.bodies, std::move(broadphase));
+    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
+
+    std::vector<double> bullets_us(wishes.steps, 1e30);
+    std::vector<double> ours_us(wishes.steps, 1e30);
+    for (std::size_t round = 0; round < wishes.rounds; ++round) {
+      Replay one(recording, bullets());
+      Replay other(recording, ours(wishes));
+      for (std::size_t step = 0; step < wishes.steps; ++step) {
+        bullets_us[step] = std::min(bullets_us[step], one.step(step));
+        ours_us[step] = std::min(ours_us[step], other.step(step));
+      }
+      if (round + 1 == wishes.rounds)
+        fmt::print("{}: {} boxes, {} and {} pairs at the end\n", scene, simulation.size(), one.pairs(),
+                   other.pairs());
+    }
+    const auto part = [&](const std::vector<double>& all, std::size_t third) {
+      const std::size_t size = all.size() / 3;
+      return std::vector(all.begin() + std::ptrdiff_t(third * size),
+                         all.begin() + std::ptrdiff_t((third + 1) * size));
+    };
+    print_times(scene, "all steps", bullets_us, ours_us);
+    for (const std::size_t third : {0, 1, 2})
+      print_times(scene, fmt::format("third {}", third + 1), part(bullets_us, third), part(ours_us, third));
+  }
+}
+
+/// The microseconds that a hundred rays take, from wall to wall.
+double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::uint64_t seed,
+                 std::size_t& met) {
+  lab::Random random(seed);
+  std::vector<std::pair<btVector3, btVector3>> rays;
+  for (int i = 0; i < 100; ++i) {
+    const btScalar z = half_width * btScalar(random.between(-1, 1));
+    const btScalar low = half_width * btScalar(random.between(0, 1));
+    const btScalar high = half_width * btScalar(random.between(0, 1));
+    rays.push_back({{-half_width, low, z}, {half_width, high, -z}});
+  }
+  const Stopwatch watch;
+  for (const auto& [from, to] : rays) {
+    CountingRay ray(from, to);
+    broadphase.rayTest(from, to, ray);
+    met += ray.met;
+  }
+  return watch.microseconds();
+}
+
+void rays(const Wishes& wishes) {
+  print_times_heading();
+  for (const std::string& scene : wishes.scenes) {
+    auto broadphase = std::make_unique<Recording>();
+    const Recording& recording = *broadphase;
+    Simulation simulation(scene, wishes.bodies, std::move(broadphase));
+    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
+    Replay one(recording, bullets());
+    Replay other(recording, ours(wishes));
+    std::vector<double> rays_us[2];
+    std::vector<double> both_us[2];
+    std::size_t met[2] = {0, 0};
+    const btScalar half_width = recording.created[0].call.max.x();  // the floor's
+    for (std::size_t step = 0; step < wishes.steps; ++step) {
+      for (const int turn : {0, 1}) {
+        Replay& replay = turn == 0 ? one : other;
+        const double stage_us = replay.step(step);
+        rays_us[turn].push_back(cast_rays(replay.broadphase(), half_width, step + 1, met[turn]));
+        both_us[turn].push_back(stage_us + rays_us[turn].back());
+      }
+    }
+    fmt::print("{}: {} boxes; a ray meets {:.0f} boxes of Bullet's and {:.0f} of ours\n", scene,
+               simulation.size(), double(met[0]) / double(100 * wishes.steps),
+               double(met[1]) / double(100 * wishes.steps));
+    print_times(scene, "100 rays", rays_us[0], rays_us[1]);
+    print_times(scene, "with the stage", both_us[0], both_us[1]);
+  }
+}
+
+void step(const Wishes& wishes) {
+  print_times_heading();
+  for (const std::string& scene : wishes.scenes) {
+    Simulation one(scene, wishes.bodies, bullets());
+    Simulation other(scene, wishes.bodies, ours(wishes));
+    std::vector<double> stage_us[2];
+    std::vector<double> step_us[2];
+    for (std::size_t step = 0; step < wishes.steps; ++step) {
+      for (const std::size_t turn : {step % 2, 1 - step % 2}) {
+        Simulation& simulation = turn == 0 ? one : other;
+        simulation.world().stage_us = 0;
+        const Stopwatch watch;
+        simulation.step();
+        step_us[turn].push_back(watch.microseconds());
+        stage_us[turn].push_back(simulation.world().stage_us);
+      }
+    }
+    fmt::print("{}: {} boxes, {} and {} pairs at the end\n", scene, one.size(), one.pairs(), other.pairs());
+    print_times(scene, "stage", stage_us[0], stage_us[1]);
+    print_times(scene, "whole step", step_us[0], step_us[1]);
+  }
+}
+
+void manifolds(const Wishes& wishes) {
+  fmt::print("\n{:<8} {:>7} {:>20} {:>22}\n", "", "frames", "contacts at the end", "frames that differ");
+  for (const std::string& scene : wishes.scenes) {
+    Simulation moving(scene, wishes.bodies, bullets());
+    Simulation one(scene, wishes.bodies, bullets());
+    Simulation other(scene, wishes.bodies, ours(wishes));
+    std::size_t different = 0;
+    for (std::size_t step = 0; step < wishes.steps; ++step) {
+      moving.step();
+      one.detect(moving);
+      other.detect(moving);
+      different += one.contacts() != other.contacts() ? 1 : 0;
+    }
+    fmt::print("{:<8} {:>7} {:>20} {:>22}\n", scene, wishes.steps, other.sums().contacts, different);
+  }
+}
+
+void drift(const Wishes& wishes) {
+  fmt::print("\n{:<8} {:>29}   {:>29}\n{:<8} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "energy, kJ, mean",
+             "penetration, mm a contact", "", "Bullet", "ours", "differ", "Bullet", "ours", "differ");
+  for (const std::string& scene : wishes.scenes) {
+    Simulation one(scene, wishes.bodies, bullets());
+    Simulation other(scene, wishes.bodies, ours(wishes));
+    Sums all[2];
+    for (std::size_t step = 0; step < wishes.steps; ++step) {
+      for (const int which : {0, 1}) {
+        Simulation& simulation = which == 0 ? one : other;
+        simulation.step();
+        const Sums now = simulation.sums();
+        all[which].energy += now.energy / double(wishes.steps) / 1000;
+        all[which].penetration += now.penetration * 1000;
+        all[which].contacts += now.contacts;
+      }
+    }
+    const double depth[2] = {all[0].penetration / double(all[0].contacts),
+                             all[1].penetration / double(all[1].contacts)};
+    fmt::print("{:<8} {:>9.3f} {:>9.3f} {:>7.2f} %   {:>9.4f} {:>9.4f} {:>7.2f} %\n", scene, all[0].energy,
+               all[1].energy, 100 * std::abs(all[1].energy / all[0].energy - 1), depth[0], depth[1],
+               100 * std::abs(depth[1] / depth[0] - 1));
+  }
+}
+
+int run(int count, char** arguments) {
+  const std::vector<std::pair<std::string, void (*)(const Wishes&)>> parts = {
+      {"stage", stage}, {"rays", rays}, {"step", step}, {"manifolds", manifolds}, {"drift", drift}};
+  std::vector<std::string> names;
+  for (const auto& [name, part] : parts) names.push_back(name);
+  Wishes wishes;
+  for (const BulletScene& scene : bullet_scenes()) wishes.scenes.push_back(scene.name);
+  std::vector<std::string> wanted;
+
+  CLI::App program("Bullet over Broadside's broad phase and over its own.");
+  program.add_option("parts", wanted, "stage, rays, step, manifolds, drift; all unless some are named")
+      ->check(CLI::IsMember(names));
+  program.add_option("--scenes", wishes.scenes, "fall, sheet, statics")
+      ->delimiter(',')
+      ->check(CLI::IsMember(wishes.scenes));
+  program.add_option("-n", wishes.bodies, "Bodies")->capture_default_str()->check(CLI::PositiveNumber);
+  program.add_option("--steps", wishes.steps, "Steps of a simulation")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{3}, std::size_t{1000000}));
+  program.add_option("--rounds", wishes.rounds, "Of each step of `stage`, the least time of so many counts")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  program.add_option("--algorithm", wishes.options.algorithm, "The world's")->capture_default_str();
+  program.add_option("--margin", wishes.options.margin, "The world's, in metres")->capture_default_str();
+  CLI11_PARSE(program, count, arguments);
+  for (const auto& [name, part] : parts) {
+    if (wanted.empty() || std::ranges::find(wanted, name) != wanted.end()) part(wishes);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace broadside::bench
+
+int main(int count, char** arguments) {
+  using namespace broadside::bench;
+  return guarded("bullet", 1, [&] { return run(count, arguments); });
+}

@@ -1,0 +1,106 @@
+// What a simulation tells its broad phase, recorded and played to others.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <btBulletDynamicsCommon.h>
+
+#include "bench/engines/bullet_simulation.hpp"
+
+namespace broadside::bench {
+
+/// A box that was set, by the proxy's place in the order of creation.
+struct Call {
+  int proxy;
+  btVector3 min;
+  btVector3 max;
+};
+
+/// Bullet's broad phase, which notes what it is told.
+class Recording final : public btDbvtBroadphase {
+ public:
+  struct Created {
+    Call call;
+    int group;
+    int mask;
+  };
+
+  btBroadphaseProxy* createProxy(const btVector3& min, const btVector3& max, int type, void* client,
+                                 int group, int mask, btDispatcher* dispatcher) override {
+    btBroadphaseProxy* const proxy =
+        btDbvtBroadphase::createProxy(min, max, type, client, group, mask, dispatcher);
+    places_[proxy] = static_cast<int>(created.size());
+    created.push_back({{places_[proxy], min, max}, group, mask});
+    return proxy;
+  }
+  void setAabb(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max,
+               btDispatcher* dispatcher) override {
+    calls.push_back({places_.at(proxy), min, max});
+    btDbvtBroadphase::setAabb(proxy, min, max, dispatcher);
+  }
+  void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+    ends.push_back(calls.size());
+    btDbvtBroadphase::calculateOverlappingPairs(dispatcher);
+  }
+
+  std::vector<Created> created;
+  std::vector<Call> calls;
+  std::vector<std::size_t> ends;  ///< where the calls of each step end
+
+ private:
+  std::map<btBroadphaseProxy*, int> places_;
+};
+
+/// A recording played to a broad phase.
+class Replay {
+ public:
+  Replay(const Recording& recording, std::unique_ptr<btBroadphaseInterface> broadphase)
+      : recording_(recording), broadphase_(std::move(broadphase)) {
+    for (const Recording::Created& made : recording.created)
+      proxies_.push_back(
+          broadphase_->createProxy(made.call.min, made.call.max, 0, nullptr, made.group, made.mask, nullptr));
+  }
+
+  /// The microseconds that a step takes.
+  double step(std::size_t number) {
+    const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
+    const Stopwatch watch;
+    for (std::size_t i = first; i < recording_.ends[number]; ++i) {
+      const Call& call = recording_.calls[i];
+      broadphase_->setAabb(proxies_[static_cast<std::size_t>(call.proxy)], call.min, call.max, nullptr);
+    }
+    broadphase_->calculateOverlappingPairs(nullptr);
+    return watch.microseconds();
+  }
+
+  btBroadphaseInterface& broadphase() { return *broadphase_; }
+  int pairs() const { return broadphase_->getOverlappingPairCache()->getNumOverlappingPairs(); }
+
+ private:
+  const Recording& recording_;
+  std::unique_ptr<btBroadphaseInterface> broadphase_;
+  std::vector<btBroadphaseProxy*> proxies_;
+};
+
+/// Counts what a ray meets.
+struct CountingRay final : btBroadphaseRayCallback {
+  CountingRay(const btVector3& from, const btVector3& to) {
+    const btVector3 way = to - from;
+    for (int axis = 0; axis < 3; ++axis) {
+      m_rayDirectionInverse[axis] = way[axis] == 0 ? btScalar(BT_LARGE_FLOAT) : 1 / way[axis];
+      m_signs[axis] = m_rayDirectionInverse[axis] < 0 ? 1 : 0;
+    }
+    m_lambda_max = 1;
+  }
+  bool process(const btBroadphaseProxy*) override {
+    ++met;
+    return true;
+  }
+  std::size_t met = 0;
+};
+
+}  // namespace broadside::bench

@@ -1,0 +1,236 @@
+// Parts about what must not matter: a spike, a frame in which all jump, boxes that rest; and recorded motion.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/motion/parts.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+#include "lab/scenes/motion.hpp"
+
+namespace broadside::bench {
+namespace {
+
+using lab::rounded;
+
+template <int D>
+std::vector<Box<D>> boxes_of(const std::string& scene, std::size_t boxes, std::uint64_t seed) {
+  const lab::NamedScene named = lab::find_scene(scene);
+  return lab::make_history<D>(named.scene, named.spec, {.boxes = boxes, .seed = seed}).boxes;
+}
+
+std::string scene_of(const Wishes& wishes) { return wishes.scenes.empty() ? "uniform" : wishes.scenes[0]; }
+
+double moving_of(const Wishes& wishes) { return wishes.moving.empty() ? 0.1 : wishes.moving[0]; }
+
+template <int D>
+void spikes_in(const Wishes& wishes) {
+  const std::size_t boxes = wishes.boxes_or(100'000);
+  const Turns turns = wishes.turns(1'000, 5);
+  const lab::Catalogue catalogue;
+  const Outcome outcome = race<D>(catalogue.select(wishes.algorithms_or("auto")),
+                                  motion_of<D>(scene_of(wishes), {.boxes = boxes,
+                                                                  .seed = wishes.seed,
+                                                                  .frames = turns.frames,
+                                                                  .moving = moving_of(wishes),
+                                                                  .drift = wishes.drift}),
+                                  turns);
+  print_heading(fmt::format("spikes, {}, {:.3g} % moving", scene_of(wishes), moving_of(wishes) * 100), D,
+                boxes, turns);
+  print_table(outcome);
+  for (const Runner& runner : outcome.runners) {
+    if (!runner.ran()) continue;
+    const auto worst = std::ranges::max_element(runner.frames_ms);
+    fmt::print("  {}: worst over median {:.2f}, frame {}\n", runner.algorithm,
+               *worst / lab::median(runner.frames_ms), worst - runner.frames_ms.begin() + 1);
+  }
+  fmt::print("\n");
+}
+
+constexpr std::size_t between_jumps = 9;
+
+template <int D>
+void jumps_in(const Wishes& wishes) {
+  const std::size_t boxes = wishes.boxes_or(100'000);
+  const Turns turns = wishes.turns(5 * (between_jumps + 1), 5);
+  const lab::Catalogue catalogue;
+  const std::string scene = fmt::format("jumps:every={}", between_jumps + 1);
+  const Outcome outcome =
+      race<D>(catalogue.select(wishes.algorithms_or("auto,auto:update=rebuild")),
+              motion_of<D>(scene, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames}), turns);
+  print_heading(scene, D, boxes, turns);
+  lab::Columns columns("<>>>>");
+  columns.add({"algorithm", "jump us", "the frame after", "others", "first frame"});
+  std::vector<std::pair<std::string, double>> jumps;
+  for (const Runner& runner : outcome.runners) {
+    if (!runner.ran()) continue;
+    std::array<std::vector<double>, 3> kinds;  // jumps, the frames after, others
+    for (std::size_t i = 0; i < runner.frames_ms.size(); ++i) {
+      const std::size_t place = i % (between_jumps + 1);
+      kinds[place == between_jumps ? 0 : place == 0 && i > 0 ? 1 : 2].push_back(runner.frames_ms[i] * 1e3);
+    }
+    const auto text = [](const std::vector<double>& times) {
+      return times.empty() ? std::string("-") : rounded(lab::median(times));
+    };
+    if (!kinds[0].empty()) jumps.emplace_back(runner.algorithm, lab::median(kinds[0]));
+    columns.add(
+        {runner.algorithm, text(kinds[0]), text(kinds[1]), text(kinds[2]), rounded(runner.build_ms * 1e3)});
+  }
+  fmt::print("{}", columns.text("  "));
+  for (std::size_t i = 1; i < jumps.size(); ++i)
+    fmt::print("  jump of {} over that of {}: {:.2f}\n", jumps[0].first, jumps[i].first,
+               jumps[0].second / jumps[i].second);
+  fmt::print("\n");
+}
+
+/// Boxes that move, first, and boxes that rest.
+template <int D>
+struct World {
+  std::vector<Box<D>> boxes;
+  std::vector<Box<D>> movers;
+};
+
+/// `movers` boxes within the middle of a scene, where about `around` of its boxes are; and those alone.
+template <int D>
+std::array<World<D>, 2> worlds(const std::string& scene, std::size_t resting, std::size_t around,
+                               std::size_t movers, std::uint64_t seed) {
+  const std::vector<Box<D>> still = boxes_of<D>(scene, resting, seed);
+  Box<D> bounds = still.front();
+  for (const Box<D>& box : still) {
+    for (int axis = 0; axis < D; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
+    }
+  }
+  // Of an even scene the middle holds as many boxes as its share of the whole.
+  const double share = std::pow(static_cast<double>(around) / static_cast<double>(resting), 1.0 / D);
+  Box<D> middle;
+  for (int axis = 0; axis < D; ++axis) {
+    const double centre = (double{bounds.min[axis]} + bounds.max[axis]) / 2;
+    const double half = (double{bounds.max[axis]} - bounds.min[axis]) / 2 * share;
+    middle.min[axis] = static_cast<float>(centre - half);
+    middle.max[axis] = static_cast<float>(centre + half);
+  }
+  std::array<World<D>, 2> made;
+  const auto inside = [&middle](const Box<D>& box) {
+    for (int axis = 0; axis < D; ++axis) {
+      if (box.min[axis] < middle.min[axis] || box.max[axis] > middle.max[axis]) return false;
+    }
+    return true;
+  };
+  for (const Box<D>& box : boxes_of<D>(scene, resting, seed + 1)) {
+    if (made[0].movers.size() < movers && inside(box)) made[0].movers.push_back(box);
+  }
+  made[1].movers = made[0].movers;
+  for (World<D>& world : made) world.boxes = world.movers;
+  for (const Box<D>& box : still) {
+    made[0].boxes.push_back(box);
+    if (overlap(box, middle)) made[1].boxes.push_back(box);
+  }
+  return made;
+}
+
+template <int D>
+void rest_in(const Wishes& wishes) {
+  constexpr std::size_t around = 10'000;
+  constexpr std::size_t movers = 2'000;
+  const std::size_t resting = wishes.boxes_or(1'000'000);
+  Turns turns = wishes.turns(50, 5);
+  const auto both = worlds<D>(scene_of(wishes), resting, around, movers, wishes.seed);
+  const lab::Catalogue catalogue;
+  const std::vector<lab::Entry> entries = catalogue.select(wishes.algorithms_or("auto"));
+  print_heading(fmt::format("boxes that rest, {}, {} and {} movers", scene_of(wishes),
+                            lab::grouped(both[1].boxes.size() - both[1].movers.size()),
+                            lab::grouped(both[0].movers.size())),
+                D, resting, turns);
+  std::array<Outcome, 2> outcomes;
+  const std::size_t rounds = std::exchange(turns.rounds, 1);
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t world = 0; world < 2; ++world) {
+      const StartMotion<D> start = [&]() -> Motion<D> {
+        const auto moving = std::make_shared<lab::MovingBoxes<D>>(
+            both[world].movers, lab::SceneRequest{.seed = wishes.seed, .moving = 1, .drift = wishes.drift},
+            false);
+        return {both[world].boxes, [moving, size = both[world].boxes.size()] {
+                  lab::Step<D> step = moving->next();
+                  step.size = size;
+                  return step;
+                }};
+      };
+      merge(outcomes[world], race<D>(entries, start, turns));
+    }
+  }
+  if (outcomes[0].events != outcomes[1].events)
+    throw std::runtime_error(
+        fmt::format("{} events in the large world and {} in the small one; expected "
+                    "equally many, as the same boxes meet",
+                    outcomes[0].events, outcomes[1].events));
+  fmt::print("  {} boxes\n", lab::grouped(both[0].boxes.size()));
+  print_table(outcomes[0]);
+  fmt::print("  {} boxes\n", lab::grouped(both[1].boxes.size()));
+  print_table(outcomes[1]);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!outcomes[0].runners[i].ran() || !outcomes[1].runners[i].ran()) continue;
+    fmt::print("  {}: the large world takes {:.2f} times as long\n", outcomes[0].runners[i].algorithm,
+               lab::median(outcomes[0].runners[i].frames_ms) / lab::median(outcomes[1].runners[i].frames_ms));
+  }
+  fmt::print("\n");
+}
+
+template <int D>
+void recorded_in(const Wishes& wishes, const std::string& engine, const std::string& scenes_of_engine) {
+  const std::size_t boxes = wishes.boxes_or(5'000);
+  const Turns turns = wishes.turns(60, 5);
+  const lab::Catalogue catalogue;
+  for (const lab::Scene& scene : lab::scenes()) {
+    const bool wanted = wishes.scenes.empty()
+                            ? scene.name.starts_with(scenes_of_engine) || scene.name == "pile"
+                            : std::ranges::find(wishes.scenes, scene.name) != wishes.scenes.end();
+    const bool moves = D == 2 ? bool(scene.history_2d) : bool(scene.history_3d);
+    if (!moves || !wanted) continue;
+    const StartMotion<D> motion =
+        motion_of<D>(scene.name, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames});
+    const Outcome outcome = race<D>(catalogue.select(wishes.algorithms_or("auto," + engine)), motion, turns);
+    print_heading(fmt::format("{} ({}), {:.3g} % moving", scene.name, scene.source,
+                              outcome.mean_movers() / static_cast<double>(boxes) * 100),
+                  D, boxes, turns);
+    print_table(outcome);
+    fmt::print("\n");
+  }
+}
+
+bool wants(const Wishes& wishes, int dimension) {
+  return std::ranges::find(wishes.dimensions, dimension) != wishes.dimensions.end();
+}
+
+}  // namespace
+
+void spikes(const Wishes& wishes) {
+  if (wants(wishes, 2)) spikes_in<2>(wishes);
+  if (wants(wishes, 3)) spikes_in<3>(wishes);
+}
+
+void jumps(const Wishes& wishes) {
+  if (wants(wishes, 2)) jumps_in<2>(wishes);
+  if (wants(wishes, 3)) jumps_in<3>(wishes);
+}
+
+void rest(const Wishes& wishes) {
+  if (wants(wishes, 2)) rest_in<2>(wishes);
+  if (wants(wishes, 3)) rest_in<3>(wishes);
+}
+
+void recorded(const Wishes& wishes) {
+  if (wants(wishes, 2)) recorded_in<2>(wishes, "box2d_tree", "box2d_");
+  if (wants(wishes, 3)) recorded_in<3>(wishes, "bullet_dbvt", "bullet_");
+}
+
+}  // namespace broadside::bench

@@ -1,0 +1,126 @@
+// The proxies of a BulletBroadphase: what Bullet calls an object's box, and the memory that they live in.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <LinearMath/btVector3.h>
+
+#include "broadside/box.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/world.hpp"
+
+namespace broadside::bullet_detail {
+
+using Box = broadside::Box<3, btScalar>;
+using World = broadside::World<3, btScalar>;
+
+inline Box box_of(const btVector3& min, const btVector3& max) {
+  return {{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}};
+}
+
+/// A box of the world's, as Bullet sees it.
+struct Proxy : btBroadphaseProxy {
+  Handle handle{};            ///< Handle{} unless the proxy is in use
+  std::uint32_t moved = 0;    ///< the step in which its box changed last
+  std::uint32_t checked = 0;  ///< the step in which `filter_group` and `filter_mask` were last compared
+  int filter_group = 0;       ///< what the world was told; the members of the base may be changed by anyone
+  int filter_mask = 0;
+
+  bool is_used() const noexcept { return handle != Handle{}; }
+};
+
+/// Bullet's rule is the world's: two meet if each one's mask has a bit of the other one's group. The sign is
+/// extended, so that Bullet's standard filter is the world's.
+inline Filter filter_of(const Proxy& proxy) noexcept {
+  return {.category = static_cast<std::uint64_t>(std::int64_t{proxy.m_collisionFilterGroup}),
+          .mask = static_cast<std::uint64_t>(std::int64_t{proxy.m_collisionFilterMask})};
+}
+
+inline std::uint64_t user_data_of(const Proxy& proxy) noexcept {
+  return std::uint64_t{std::bit_cast<std::uintptr_t>(&proxy)};
+}
+
+inline Proxy& proxy_in(std::uint64_t user_data) noexcept {
+  return *std::bit_cast<Proxy*>(static_cast<std::uintptr_t>(user_data));
+}
+
+/// Proxies at fixed addresses. Their memory is kept until the pool goes, so that a proxy which was destroyed
+/// can still be told from one in use.
+class ProxyPool {
+ public:
+  /// Makes room for one more proxy, and says which one take() is going to be.
+  Proxy& next() {
+    if (free_.empty()) add_chunk();
+    return *free_.back();
+  }
+
+  /// Takes next() out of the pool.
+  void take() noexcept {
+    free_.pop_back();
+    ++used_;
+  }
+
+  void give_back(Proxy& proxy) noexcept {
+    proxy.handle = {};
+    proxy.m_clientObject = nullptr;
+    free_.push_back(&proxy);  // there is room for all
+    --used_;
+  }
+
+  /// Whether the pointer, which may point anywhere, is to a proxy of this pool, used or not.
+  bool owns(const btBroadphaseProxy* proxy) const noexcept {
+    const auto address = std::bit_cast<std::uintptr_t>(proxy);
+    // The last chunk is the largest.
+    for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) {
+      const std::uintptr_t offset = address - std::bit_cast<std::uintptr_t>(chunk->proxies.get());
+      if (offset < chunk->size * sizeof(Proxy)) return offset % sizeof(Proxy) == 0;
+    }
+    return false;
+  }
+
+  template <typename Function>
+  void for_each_used(Function function) const {
+    for (const Chunk& chunk : chunks_) {
+      for (std::size_t i = 0; i < chunk.size; ++i) {
+        if (chunk.proxies[i].is_used()) function(chunk.proxies[i]);
+      }
+    }
+  }
+
+  /// Once none is used: hands out the same addresses in the same order again.
+  void reset() noexcept {
+    free_.clear();
+    for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) list_free(*chunk);
+  }
+
+  std::size_t used() const noexcept { return used_; }
+
+ private:
+  struct Chunk {
+    std::unique_ptr<Proxy[]> proxies;
+    std::size_t size;
+  };
+
+  void add_chunk() {
+    const std::size_t before = used_ + free_.size();
+    const std::size_t size = before < 64 ? 64 : before;  // doubles what there is
+    free_.reserve(before + size);
+    chunks_.push_back({std::make_unique<Proxy[]>(size), size});
+    list_free(chunks_.back());
+  }
+
+  void list_free(const Chunk& chunk) noexcept {
+    for (std::size_t i = chunk.size; i-- > 0;) free_.push_back(&chunk.proxies[i]);
+  }
+
+  std::vector<Chunk> chunks_;
+  std::vector<Proxy*> free_;  // the next one is the last
+  std::size_t used_ = 0;
+};
+
+}  // namespace broadside::bullet_detail

@@ -1,0 +1,43 @@
+// The pairs that an engine's own broad phase reported, frame by frame.
+#include "lab/formats/recorded_pairs.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace broadside::lab {
+namespace {
+
+/// Takes some pairs out of sorted ones, and puts others in.
+void change(std::vector<Pair>& pairs, const std::vector<Pair>& ended, const std::vector<Pair>& begun) {
+  if (ended.empty() && begun.empty()) return;
+  std::vector<Pair> left;
+  std::ranges::set_difference(pairs, ended, std::back_inserter(left));
+  pairs.clear();
+  std::ranges::merge(left, begun, std::back_inserter(pairs));
+}
+
+}  // namespace
+
+void RecordedFrame::apply(const RecordedPairs& changes, std::size_t slots, std::span<const BoxId> emptied) {
+  change(reported_, changes.ended, changes.begun);
+  change(ignored_, changes.ended_ignored, changes.begun_ignored);
+  for (const BoxId slot : emptied) filters_.erase(index(slot));
+  std::erase_if(filters_, [slots](const auto& filter) { return filter.first >= slots; });
+  for (const auto& [slot, filter] : changes.filters) {
+    if (filter == Filter{})
+      filters_.erase(index(slot));
+    else
+      filters_.insert_or_assign(index(slot), filter);
+  }
+}
+
+Filter RecordedFrame::filter(BoxId slot) const {
+  const auto found = filters_.find(index(slot));
+  return found == filters_.end() ? Filter{} : found->second;
+}
+
+bool RecordedFrame::must_report(Pair pair) const {
+  return accepts(filter(pair.first), filter(pair.second)) && !std::ranges::binary_search(ignored_, pair);
+}
+
+}  // namespace broadside::lab

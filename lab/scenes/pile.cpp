@@ -1,0 +1,160 @@
+// A pile at rest, as an engine that lets no body sleep sees it: boxes stacked to a pyramid that sways a
+// little and trembles, so that all bounds change in each frame and hardly a pair does. Modelled on steps 60
+// to 160 of the pyramid of 100 rows that comes with Box2D v3.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/scatter.hpp"
+
+namespace broadside::lab::generated {
+namespace {
+
+// In boxes, whose bounds have a skin, so that those of neighbours overlap.
+constexpr double next_beside = 1.0033;
+constexpr double next_above = 0.9914;
+constexpr double least_extent = 1.04;
+constexpr double most_extent = 1.056;
+constexpr double tremble = 1e-4;  // to either side
+
+/// One in this many boxes ends where its neighbour begins, so that trembling parts and joins them.
+constexpr std::uint64_t boxes_touching = 500;
+
+/// Nearly a sine of this many turns, between -1 and 1, from arithmetic that is exact everywhere. At most, it
+/// changes by 8 a turn.
+double wave(double turns) {
+  const double phase = turns - std::floor(turns);
+  return phase < 0.5 ? 16 * phase * (0.5 - phase) : -16 * (phase - 0.5) * (1 - phase);
+}
+
+template <int D>
+class Pile {
+ public:
+  Pile(std::size_t count, std::uint64_t seed, double speed) : speed_(speed), random_(seed) {
+    for (double& phase : phases_) phase = random_.fraction();
+    if (count == 0) return;
+    while (capacity(rows_) < count - 1) ++rows_;
+    add_ground();
+    for (std::size_t row = 0; rest_.size() < count; ++row) add_row(row, count);
+    for (std::size_t i = 1; i + 1 < rest_.size(); ++i) {
+      const bool is_row_end = rest_[i + 1].min[0] < rest_[i].min[0];
+      if (!is_row_end && random_.below(boxes_touching) == 0) rest_[i].max[0] = rest_[i + 1].min[0];
+    }
+  }
+
+  /// The boxes of a frame; those of each frame are asked for once, in order.
+  std::vector<Box<D>> boxes(std::size_t frame) {
+    std::vector<Box<D>> boxes(rest_.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const bool is_ground = i == 0;
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        const double way =
+            is_ground ? 0 : sway(axis, rest_[i].height, frame) + random_.between(-tremble, tremble);
+        boxes[i].min[axis] = static_cast<float>(rest_[i].min[axis] + way);
+        boxes[i].max[axis] = static_cast<float>(rest_[i].max[axis] + way);
+      }
+    }
+    return boxes;
+  }
+
+ private:
+  struct Resting {
+    std::array<double, D> min;
+    std::array<double, D> max;
+    double height;  // over that of the pile
+  };
+
+  /// How many boxes a pile of this many rows has.
+  static std::size_t capacity(std::size_t rows) {
+    return D == 2 ? rows * (rows + 1) / 2 : rows * (rows + 1) * (2 * rows + 1) / 6;
+  }
+
+  void add_ground() {
+    Resting ground{{}, {}, 0};
+    const double half = next_beside * static_cast<double>(rows_) + 1;
+    ground.min.fill(-half);
+    ground.max.fill(half);
+    ground.min[1] = -2.02;
+    ground.max[1] = 0.02;
+    rest_.push_back(ground);
+  }
+
+  /// A row of boxes in 2D, a layer in 3D, as far as there are boxes left.
+  void add_row(std::size_t row, std::size_t count) {
+    const std::size_t side = rows_ - row;
+    const std::size_t boxes = std::min(D == 2 ? side : side * side, count - rest_.size());
+    for (std::size_t i = 0; i < boxes; ++i) {
+      const auto place = [side](std::size_t at) {
+        return next_beside * (static_cast<double>(at) - static_cast<double>(side - 1) / 2);
+      };
+      std::array<double, D> centre{};
+      centre[0] = place(i % side);
+      centre[1] = 0.5 + next_above * static_cast<double>(row);
+      if constexpr (D == 3) centre[2] = place(i / side);
+      Resting box{{}, {}, static_cast<double>(row) / static_cast<double>(rows_)};
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        const double tilt = random_.fraction();
+        const double extent = least_extent + (most_extent - least_extent) * tilt * tilt;
+        box.min[axis] = centre[axis] - extent / 2;
+        box.max[axis] = centre[axis] + extent / 2;
+      }
+      rest_.push_back(box);
+    }
+  }
+
+  /// How far a box is from its place: the pile bends sideways in the middle and breathes towards its top, and
+  /// the motion travels up through it.
+  double sway(std::size_t axis, double height, std::size_t frame) const {
+    constexpr std::array<double, 3> periods = {48, 36, 54};
+    const double bend = 4 * height * (1 - height);
+    const double shape = axis == 1 ? height * height / 2 : bend * bend;
+    const double amplitude = speed_ * periods[axis] / 8;
+    return amplitude * shape * wave(phases_[axis] + height / 3 + static_cast<double>(frame) / periods[axis]);
+  }
+
+  double speed_;
+  Random random_;
+  std::array<double, D> phases_{};
+  std::size_t rows_ = 0;
+  std::vector<Resting> rest_;  // the ground, and then row by row
+};
+
+template <int D>
+History<D> make_pile(const Settings& settings, const SceneRequest& request) {
+  Pile<D> pile(request.boxes, request.seed, settings.number("speed"));
+  History<D> history{pile.boxes(0), {}};
+  std::vector<Box<D>> before = history.boxes;
+  for (std::size_t frame = 1; frame <= request.frames; ++frame) {
+    std::vector<Box<D>> now = pile.boxes(frame);
+    Step<D> step{now.size(), {}, {}};
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (now[i] == before[i]) continue;
+      step.changed.push_back(BoxId(i));
+      step.boxes.push_back(now[i]);
+    }
+    history.steps.push_back(std::move(step));
+    before = std::move(now);
+  }
+  return history;
+}
+
+}  // namespace
+
+Scene pile() {
+  return {
+      .name = "pile",
+      .summary = "a pile at rest: every box trembles, and hardly a pair changes",
+      .source = "Broadside, after Box2D v3's large pyramid",
+      .tunables = {{.name = "speed",
+                    .summary = "how far a box goes in a frame at most, in boxes, beside its trembling",
+                    .standard = "0.008",
+                    .least = 0,
+                    .most = 1}},
+      .history_2d = make_pile<2>,
+      .history_3d = make_pile<3>,
+  };
+}
+
+}  // namespace broadside::lab::generated

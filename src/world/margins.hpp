@@ -1,0 +1,67 @@
+// Margins: how far a world enlarges its boxes, and when it does so anew.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "broadside/box.hpp"
+
+namespace broadside::core {
+
+/// The distances of WorldOptions, as numbers of the world's type. A pointer to a velocity may be null: none.
+template <int D, typename Real>
+struct Margins {
+  Real margin;
+  Real relative;
+  Real frames;
+
+  /// Whether boxes are enlarged at all.
+  bool any() const noexcept { return margin > 0 || relative > 0 || frames > 0; }
+
+  /// The box with its margin on every side, and extended along its velocity.
+  Box<D, Real> enlarged(Box<D, Real> box, const Point<D, Real>* velocity) const noexcept {
+    const Real its_margin = margin_of(box);
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] -= its_margin;
+      box.max[axis] += its_margin;
+      if (velocity == nullptr) continue;
+      const Real way = frames * (*velocity)[axis];
+      (way < 0 ? box.min[axis] : box.max[axis]) += way;
+    }
+    return box;
+  }
+
+  /// Whether `kept` stays the enlarged box of a box that moved: it contains it, and is not far too long for a
+  /// box that has shrunk or slowed down. Without a branch. No absent box stays another's.
+  bool keeps(const Box<D, Real>& kept, const Box<D, Real>& box,
+             const Point<D, Real>* velocity) const noexcept {
+    const Real slack = most_margins * margin_of(box);
+    unsigned keeps = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      const Real way = velocity == nullptr ? 0 : std::abs(frames * (*velocity)[axis]);
+      const bool is_long = kept.max[axis] - kept.min[axis] > box.max[axis] - box.min[axis] + slack + way;
+      keeps &= static_cast<unsigned>(kept.min[axis] <= box.min[axis]) &
+               static_cast<unsigned>(box.max[axis] <= kept.max[axis]) & static_cast<unsigned>(!is_long);
+    }
+    return keeps != 0;
+  }
+
+ private:
+  /// A new enlarged box is longer than its box by two margins.
+  static constexpr Real most_margins = 6;
+
+  /// A side that is not finite counts for nothing.
+  Real margin_of(const Box<D, Real>& box) const noexcept {
+    if (relative == 0) return margin;
+    Real longest = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      const Real side = box.max[axis] - box.min[axis];
+      longest = std::max(longest, side < std::numeric_limits<Real>::infinity() ? side : 0);
+    }
+    const Real share = relative * longest;
+    return margin > 0 ? std::min(margin, share) : share;
+  }
+};
+
+}  // namespace broadside::core

@@ -1,0 +1,383 @@
+// BulletBroadphase alone: proxies, pairs, queries, errors.
+#include <limits>
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bullet_support.hpp"
+#include "tests/support/message.hpp"
+#include "tests/support/rng.hpp"
+
+namespace broadside::bullet_tests {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+constexpr btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+
+/// A hundred boxes with filters that come, move and go by chance, the same in both broad phases.
+class TwoBroadphases {
+ public:
+  TwoBroadphases(btBroadphaseInterface& ours, btBroadphaseInterface& bullets)
+      : ours_(ours), bullets_(bullets), proxies_(100) {}
+
+  void step() {
+    for (std::size_t i = 0; i < proxies_.size(); ++i) {
+      auto& [mine, theirs] = proxies_[i];
+      const btVector3 min(corner(), corner(), corner());
+      const btVector3 max = min + btVector3(side(), side(), side());
+      if (mine == nullptr) {
+        const int group = 1 << rng_.below(4);
+        const int mask = static_cast<int>(rng_.below(16)) - (rng_.one_in(4) ? 16 : 0);
+        mine = ours_.createProxy(min, max, 0, client(i), group, mask, nullptr);
+        theirs = bullets_.createProxy(min, max, 0, client(i), group, mask, nullptr);
+      } else if (rng_.one_in(10)) {
+        ours_.destroyProxy(std::exchange(mine, nullptr), nullptr);
+        bullets_.destroyProxy(std::exchange(theirs, nullptr), nullptr);
+      } else if (rng_.one_in(2)) {
+        ours_.setAabb(mine, min, max, nullptr);
+        bullets_.setAabb(theirs, min, max, nullptr);
+      }
+    }
+  }
+
+  void expect_equal() {
+    EXPECT_EQ(updated(ours_), overlapping_of(updated(bullets_)));
+    const btVector3 from(corner(), corner(), corner());
+    const btVector3 to(corner(), corner(), corner());
+    const btVector3 half(1, 2, 1);
+    EXPECT_EQ(ray(ours_, from, to), met(from, to, {0, 0, 0}));
+    EXPECT_EQ(ray(ours_, from, to, -half, half), met(from, to, half));
+    EXPECT_EQ(overlapping(ours_, from - half, from + half), met(from, from, half));
+    for (const auto& [mine, theirs] : proxies_) {
+      if (mine != nullptr) {
+        EXPECT_EQ(mine->m_uniqueId, theirs->m_uniqueId);
+      }
+    }
+  }
+
+ private:
+  btScalar corner() { return btScalar(rng_.whole(0, 40)); }
+  btScalar side() { return btScalar(rng_.whole(0, 6)); }
+
+  /// Of Bullet's pairs, whose boxes are enlarged, those of boxes that overlap.
+  std::vector<Numbers> overlapping_of(std::vector<Numbers> pairs) const {
+    std::erase_if(pairs, [this](const Numbers& pair) {
+      const btBroadphaseProxy& a = *proxies_[pair.first].first;
+      const btBroadphaseProxy& b = *proxies_[pair.second].first;
+      return !TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
+    });
+    return pairs;
+  }
+
+  /// What a box with half the extents `half` meets on its way.
+  std::multiset<std::uintptr_t> met(const btVector3& from, const btVector3& to, const btVector3& half) const {
+    const btVector3 way = to - from;
+    const BoxCast<3, btScalar> cast = {
+        bullet_detail::box_of(from - half, from + half), {way.x(), way.y(), way.z()}, 1};
+    std::multiset<std::uintptr_t> hit;
+    for (const auto& [proxy, theirs] : proxies_) {
+      if (proxy != nullptr && t_enter(cast, bullet_detail::box_of(proxy->m_aabbMin, proxy->m_aabbMax)))
+        hit.insert(number_of(*proxy));
+    }
+    return hit;
+  }
+
+  btBroadphaseInterface& ours_;
+  btBroadphaseInterface& bullets_;
+  std::vector<std::pair<btBroadphaseProxy*, btBroadphaseProxy*>> proxies_;
+  Rng rng_{1};
+};
+
+TEST(BulletBroadphase, HasThePairsAndAnswersOfBulletsOwn) {
+  for (const char* const algorithm : {"auto", "brute_force", "bvh", "grid:threads=2"}) {
+    SCOPED_TRACE(algorithm);
+    BulletBroadphase ours({.algorithm = algorithm});
+    btDbvtBroadphase bullets;
+    TwoBroadphases both(ours, bullets);
+    for (int step = 0; step < 30 && !testing::Test::HasFailure(); ++step) {
+      both.step();
+      both.expect_equal();
+    }
+  }
+}
+
+TEST(BulletBroadphase, KeepsACacheThatDefersRemovals) {
+  btSortedOverlappingPairCache cache;
+  ASSERT_TRUE(cache.hasDeferredRemoval());
+  BulletBroadphase ours(&cache);
+  btDbvtBroadphase bullets;
+  TwoBroadphases both(ours, bullets);
+  for (int step = 0; step < 30 && !testing::Test::HasFailure(); ++step) {
+    both.step();
+    both.expect_equal();
+  }
+}
+
+TEST(BulletBroadphase, ServesACacheThatHoldsNothing) {
+  btNullPairCache cache;
+  BulletBroadphase broadphase(&cache);
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, 0);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  broadphase.destroyProxy(a, nullptr);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+}
+
+TEST(BulletBroadphase, MeetsWhatIsInfinite) {
+  BulletBroadphase broadphase;
+  const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  broadphase.createProxy(-far, far, STATIC_PLANE_PROXYTYPE, client(1), 1, -1, nullptr);
+  btBroadphaseProxy* const body = cube(broadphase, 2, 0);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  move_to(broadphase, body, 1e6);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+}
+
+TEST(BulletBroadphase, TakesInAGroupOrMaskThatIsWrittenIntoAProxy) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0, 0, 2, 4);
+  btBroadphaseProxy* const b = cube(broadphase, 2, 0, 0, 8, 2);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  a->m_collisionFilterMask = 8;
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  b->m_collisionFilterGroup = 16;
+  move_to(broadphase, a, 0);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+}
+
+/// Accepts what it is told to accept, whatever the masks say.
+struct Whim final : btOverlapFilterCallback {
+  bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override {
+    ++asked;
+    if (action) action();
+    return accepts;
+  }
+  bool accepts = true;
+  std::function<void()> action{};
+  mutable int asked = 0;
+};
+
+TEST(BulletBroadphase, LeavesTheDecisionToAFilterCallback) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0, 0, 1, 0);
+  cube(broadphase, 2, 0);
+  EXPECT_THAT(updated(broadphase), IsEmpty()) << "by the masks";
+
+  Whim whim;
+  whim.accepts = false;
+  broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&whim);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  EXPECT_EQ(whim.asked, 1);
+  whim.accepts = true;
+  EXPECT_THAT(updated(broadphase), IsEmpty()) << "nothing has moved";
+  move_to(broadphase, a, btScalar(0.5));
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  move_to(broadphase, a, btScalar(0.6));
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  EXPECT_EQ(whim.asked, 2) << "a pair that there is is not asked about";
+  move_to(broadphase, a, 5);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+
+  broadphase.getOverlappingPairCache()->setOverlapFilterCallback(nullptr);
+  move_to(broadphase, a, 0);
+  EXPECT_THAT(updated(broadphase), IsEmpty()) << "by the masks again";
+}
+
+TEST(BulletBroadphase, MakesGoodWhatOthersChangeInTheCache) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  btBroadphaseProxy* const b = cube(broadphase, 2, 0);
+  btBroadphaseProxy* const c = cube(broadphase, 3, 9);
+  btOverlappingPairCache* const cache = broadphase.getOverlappingPairCache();
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  cache->removeOverlappingPairsContainingProxy(a, nullptr);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  cache->addOverlappingPair(b, c);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+}
+
+TEST(BulletBroadphase, LetsAFilterCallbackCreateMoveAndDestroyProxies) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  btBroadphaseProxy* b = cube(broadphase, 2, 0);
+  cube(broadphase, 3, 0);
+  Whim whim;
+  whim.action = [&] {
+    if (b == nullptr) return;
+    broadphase.destroyProxy(std::exchange(b, nullptr), nullptr);
+    cube(broadphase, 4, 0);
+    move_to(broadphase, a, btScalar(0.5));
+  };
+  broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&whim);
+  broadphase.calculateOverlappingPairs(nullptr);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 3), Numbers(1, 4), Numbers(3, 4)));
+}
+
+TEST(BulletBroadphase, DoesInTheNextStepWhatAnExceptionLeftUndone) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, 0);
+  btBroadphaseProxy* const c = cube(broadphase, 3, btScalar(1.5));
+  cube(broadphase, 4, btScalar(1.5));
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2), Numbers(3, 4)));
+  Whim whim;
+  whim.action = [] { throw std::runtime_error("no"); };
+  broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&whim);
+  move_to(broadphase, a, btScalar(0.7));
+  move_to(broadphase, c, 9);
+  EXPECT_THROW(broadphase.calculateOverlappingPairs(nullptr), std::runtime_error);
+  whim.action = {};
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2), Numbers(1, 4)));
+}
+
+TEST(BulletBroadphase, RefusesToCalculateInsideACallbackOfItself) {
+  BulletBroadphase broadphase;
+  cube(broadphase, 1, 0);
+  cube(broadphase, 2, 0);
+  Whim whim;
+  std::string message;
+  whim.action = [&] {
+    message = message_of<std::logic_error>([&] { broadphase.calculateOverlappingPairs(nullptr); });
+  };
+  broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&whim);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  EXPECT_THAT(message, HasSubstr("callback of its own"));
+}
+
+TEST(BulletBroadphase, LetsAQuerysCallbackCreateMoveAndDestroyProxies) {
+  BulletBroadphase broadphase;
+  std::vector<btBroadphaseProxy*> proxies;
+  for (std::uintptr_t i = 0; i < 200; ++i) proxies.push_back(cube(broadphase, i, btScalar(i) / 100));
+  bool is_first = true;
+  const auto disturb = [&](const btBroadphaseProxy* found) {
+    if (!std::exchange(is_first, false)) return;
+    for (std::uintptr_t i = 0; i < 200; ++i) {
+      if (proxies[i] != found) broadphase.destroyProxy(proxies[i], nullptr);
+      cube(broadphase, 200 + i, 0);
+    }
+  };
+  Lists<btBroadphaseAabbCallback, decltype(disturb)> list(disturb);
+  broadphase.aabbTest({0, 0, 0}, {9, 9, 9}, list);
+  EXPECT_EQ(list.numbers.size(), 1U) << "the others were destroyed before their turn";
+  EXPECT_EQ(overlapping(broadphase, {0, 0, 0}, {9, 9, 9}).size(), 201U);
+}
+
+TEST(BulletBroadphase, ShowsQueriesABoxAsItWasLastSet) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), ElementsAre(1U));
+  move_to(broadphase, a, 5);
+  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), IsEmpty());
+  EXPECT_THAT(ray(broadphase, {btScalar(5.5), 9, 0}, {btScalar(5.5), -9, 0}), ElementsAre(1U));
+  const btVector3 point(5, 1, 1);
+  EXPECT_THAT(ray(broadphase, point, point), ElementsAre(1U)) << "a line without length";
+  btVector3 min;
+  btVector3 max;
+  broadphase.getAabb(a, min, max);
+  EXPECT_EQ(min, btVector3(5, 0, 0));
+  EXPECT_EQ(max, btVector3(6, 1, 1));
+}
+
+TEST(BulletBroadphase, RefusesWhatIsNoBoxAndChangesNothing) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  EXPECT_THAT(message_of<InvalidInput>([&] { cube(broadphase, 2, nan); }), HasSubstr("nan"));
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                broadphase.setAabb(a, {0, 0, 0}, {1, -1, 1}, nullptr);
+              }),
+              HasSubstr("expected numbers with min <= max"));
+  EXPECT_THROW(overlapping(broadphase, {nan, 0, 0}, {1, 1, 1}), InvalidQuery);
+  EXPECT_THROW(ray(broadphase, {0, 0, 0}, {nan, 1, 1}), InvalidQuery);
+  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), ElementsAre(1U));
+  EXPECT_EQ(cube(broadphase, 3, 0)->m_uniqueId, 2);
+}
+
+TEST(BulletBroadphase, TakesInNoBoxWhereToldTo) {
+  BulletBroadphase broadphase({.bad_input = BadInput::quarantine});
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, 0);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  move_to(broadphase, a, nan);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  EXPECT_THAT(broadphase.world().quarantined(), ElementsAre(broadphase.handle(a)));
+  move_to(broadphase, a, 0);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+}
+
+TEST(BulletBroadphase, RefusesAProxyThatWasDestroyedOrIsNotItsOwn) {
+  BulletBroadphase broadphase;
+  BulletBroadphase other;
+  btSimpleBroadphase simple;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  broadphase.destroyProxy(a, nullptr);
+  btVector3 corner;
+  EXPECT_THAT(
+      message_of<InvalidHandle>([&] { broadphase.destroyProxy(a, nullptr); }),
+      AllOf(HasSubstr("destroyProxy(): the proxy at 0x"), HasSubstr("was destroyed; expected one of")));
+  EXPECT_THROW(move_to(broadphase, a, 0), InvalidHandle);
+  EXPECT_THROW(broadphase.getAabb(a, corner, corner), InvalidHandle);
+  for (btBroadphaseProxy* const foreign :
+       {cube(other, 2, 0), cube(simple, 3, 0), (btBroadphaseProxy*)nullptr}) {
+    EXPECT_THAT(message_of<InvalidHandle>([&] { broadphase.destroyProxy(foreign, nullptr); }),
+                HasSubstr("was never made by this broad phase"));
+    EXPECT_THROW(move_to(broadphase, foreign, 0), InvalidHandle);
+  }
+  EXPECT_THAT(overlapping(other, {0, 0, 0}, {1, 1, 1}), ElementsAre(2U));
+}
+
+TEST(BulletBroadphase, RefusesAWorldThatDoesNotKnowItsPairs) {
+  EXPECT_THAT(message_of<std::invalid_argument>([] { BulletBroadphase({.keep_pairs = false}); }),
+              HasSubstr("keep_pairs is false; expected true"));
+}
+
+TEST(BulletBroadphase, StartsOverWhenItsPoolIsReset) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  btBroadphaseProxy* const b = cube(broadphase, 2, 0);
+  broadphase.resetPool(nullptr);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2))) << "not while there are proxies";
+  broadphase.destroyProxy(a, nullptr);
+  broadphase.destroyProxy(b, nullptr);
+  EXPECT_THAT(cached(broadphase), IsEmpty());
+  broadphase.resetPool(nullptr);
+  EXPECT_EQ(cube(broadphase, 3, 0), a);
+  EXPECT_EQ(a->m_uniqueId, 1);
+  cube(broadphase, 4, 0);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(3, 4)));
+}
+
+TEST(BulletBroadphase, EnclosesAllBoxes) {
+  BulletBroadphase broadphase;
+  btVector3 min;
+  btVector3 max;
+  broadphase.getBroadphaseAabb(min, max);
+  EXPECT_EQ(min, btVector3(0, 0, 0));
+  EXPECT_EQ(max, btVector3(0, 0, 0));
+  cube(broadphase, 1, 3, -2);
+  cube(broadphase, 2, 7, 4);
+  broadphase.getBroadphaseAabb(min, max);
+  EXPECT_EQ(min, btVector3(3, -2, 0));
+  EXPECT_EQ(max, btVector3(8, 5, 1));
+}
+
+TEST(BulletBroadphase, LeadsFromProxiesToTheWorldAndBack) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a = cube(broadphase, 1, 3);
+  cube(broadphase, 2, 7);
+  std::vector<HandleNeighbour<btScalar>> nearest;
+  broadphase.world().nearest({0, 0, 0}, 1, nearest);
+  ASSERT_EQ(nearest.size(), 1U);
+  EXPECT_EQ(nearest[0].handle, broadphase.handle(a));
+  EXPECT_EQ(broadphase.proxy(nearest[0].handle), a);
+  broadphase.destroyProxy(a, nullptr);
+  EXPECT_THROW(broadphase.proxy(nearest[0].handle), InvalidHandle);
+}
+
+}  // namespace
+}  // namespace broadside::bullet_tests
