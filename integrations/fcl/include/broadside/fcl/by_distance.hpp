@@ -44,8 +44,8 @@ Box<3, S> enlarged(Box<3, S> box, S margin) {
   return box;
 }
 
-/// The distance from `box` of a box in `index` that is near and farther than `reached`; infinite if there is
-/// none. `boxes` are those of the index.
+/// How far from `box` to look next, after `reached`: as far as a near box that is farther than that, or as
+/// the centres of some near boxes suggest; infinite if none is farther. `boxes` are those of the index.
 template <typename S>
 S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
                   std::span<const Box<3, S>> boxes, std::optional<BoxId> except) {
@@ -64,6 +64,8 @@ S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
       if (distance > reached) least = std::min(least, distance);
     }
     if (found.size() < count || std::isfinite(least)) return least;
+    const S farthest = std::sqrt(found.back().distance_squared);
+    if (farthest > reached) return farthest;
   }
 }
 
