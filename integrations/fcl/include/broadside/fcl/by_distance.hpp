@@ -84,8 +84,8 @@ struct DistantPair {
 ///
 /// Pairs come from `gather(radius, pairs)`, which appends those whose distance is at most `radius` and
 /// perhaps others, for growing radii: each ring at least twice as wide as the last one, so that what is
-/// gathered again costs no more than what is new. `beyond(reached)` is a distance greater than `reached` of
-/// some pair, or infinite: the next ring has something in it.
+/// gathered again costs no more than what is new. `beyond(reached)` suggests how far the next ring should
+/// reach, by the boxes there are; it is infinite where nothing is left.
 template <typename S, typename Gather, typename Beyond, typename Visit>
 void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& visit) {
   S least = std::numeric_limits<S>::max();
