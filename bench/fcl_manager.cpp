@@ -1,14 +1,23 @@
 // Broadside as FCL's broad phase against FCL's dynamic tree: fcl_manager [FRAMES [SCENE]].
 //
 // Both managers hold the same objects, are told of the same moves and collide all objects, frame by frame, in
-// turns, in one thread. The callback adds up a hash of the pairs it gets, which must come to the same.
+// turns, in one thread, in milliseconds of processor time. The callback adds up a hash of the pairs it gets,
+// which must come to the same. Then both are asked about objects one by one, with callbacks that cost next to
+// nothing.
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <broadside/fcl.hpp>
@@ -19,7 +28,6 @@
 #include "broadside/broadside.hpp"
 
 #include "bench/guarded.hpp"
-#include "lab/measure/benchmark.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
@@ -33,6 +41,16 @@ template class fcl::DynamicAABBTreeCollisionManager<double>;
 
 namespace broadside::bench {
 namespace {
+
+/// Milliseconds of processor time since construction. All is in one thread, and what else the machine does
+/// disturbs it less than the time of day.
+class ProcessorClock {
+ public:
+  double milliseconds() const { return static_cast<double>(std::clock() - begin_) * 1e3 / CLOCKS_PER_SEC; }
+
+ private:
+  std::clock_t begin_ = std::clock();
+};
 
 /// An object that is nothing but its box.
 template <typename S>
@@ -80,6 +98,22 @@ class PairSet {
   std::uint64_t hash_ = 0;
 };
 
+/// The least distance of centres that a distance query found, and its callbacks.
+struct LeastDistance {
+  std::uint64_t calls = 0;
+  double distance = std::numeric_limits<double>::infinity();
+
+  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data, double& least) {
+    if (first == second) return false;  // FCL's tree asks about it
+    auto& query = *static_cast<LeastDistance*>(data);
+    ++query.calls;
+    query.distance =
+        std::min(query.distance, (first->getAABB().center() - second->getAABB().center()).norm());
+    least = query.distance;
+    return false;
+  }
+};
+
 /// A manager and its times.
 template <typename S>
 struct Side {
@@ -89,7 +123,7 @@ struct Side {
   std::vector<double> frame_ms{};
 
   PairSet<S> run(const std::vector<fcl::CollisionObject<S>*>& moved, PairSet<S> pairs) {
-    const lab::Stopwatch watch;
+    const ProcessorClock watch;
     if (moved.size() == manager->size())
       manager->update();
     else
@@ -103,6 +137,61 @@ struct Side {
     return pairs;
   }
 };
+
+/// What one query of one object takes, in microseconds, and how many callbacks.
+struct QueryCost {
+  double collide_us;
+  double distance_us;
+  double calls;
+};
+
+/// Asks about some of the objects; what was found goes to `found`.
+QueryCost query_cost(const fcl::BroadPhaseCollisionManagerd& manager,
+                     const std::vector<fcl::CollisionObjectd*>& objects,
+                     std::vector<std::pair<std::uint64_t, double>>& found) {
+  constexpr std::size_t queries = 1000;
+  const auto asked = [&](std::size_t query) { return objects[query * (objects.size() / queries)]; };
+  const auto count_others = [](fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data) {
+    *static_cast<std::uint64_t*>(data) += first != second ? 1 : 0;
+    return false;
+  };
+  found.assign(queries, {});
+  const ProcessorClock watch;
+  for (std::size_t i = 0; i < queries; ++i) manager.collide(asked(i), &found[i].first, count_others);
+  const double collided = watch.milliseconds();
+  std::uint64_t calls = 0;
+  for (std::size_t i = 0; i < queries; ++i) {
+    LeastDistance query;
+    manager.distance(asked(i), &query, LeastDistance::take);
+    found[i].second = query.distance;
+    calls += query.calls;
+  }
+  const double all = watch.milliseconds();
+  constexpr double us_per_query = 1e3 / queries;
+  return {collided * us_per_query, (all - collided) * us_per_query, static_cast<double>(calls) / queries};
+}
+
+void compare_queries(const fcl::BroadPhaseCollisionManagerd& tree,
+                     const fcl::BroadPhaseCollisionManagerd& own,
+                     const std::vector<fcl::CollisionObjectd*>& objects, std::size_t rounds) {
+  std::array<std::vector<double>, 2> collide;
+  std::array<std::vector<double>, 2> distance;
+  std::array<double, 2> calls{};
+  std::array<std::vector<std::pair<std::uint64_t, double>>, 2> found;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (const std::size_t side : {round % 2, 1 - round % 2}) {
+      const QueryCost cost = query_cost(side == 0 ? tree : own, objects, found[side]);
+      collide[side].push_back(cost.collide_us);
+      distance[side].push_back(cost.distance_us);
+      calls[side] = cost.calls;
+    }
+    if (found[0] != found[1]) throw std::runtime_error("the managers differ in queries of one object");
+  }
+  fmt::print("  one object, us: collide {} and {}; distance {} with {:.1f} callbacks, and {} with {:.1f}\n",
+             lab::rounded(lab::median(collide[0])), lab::rounded(lab::median(collide[1])),
+             lab::rounded(lab::median(distance[0])), calls[0], lab::rounded(lab::median(distance[1])),
+             calls[1]);
+}
 
 template <typename S>
 void compare(std::string_view scene, std::size_t count, double moving, std::size_t frames) {
@@ -165,6 +254,9 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
              fmt::format("{:.3g} %", moving * 100), lab::grouped(pairs / frames), median(fcl_side.update_ms),
              median(fcl_side.collide_ms), median(fcl_side.frame_ms), median(own_side.update_ms),
              median(own_side.collide_ms), median(own_side.frame_ms), lab::median(ratios));
+  if constexpr (std::is_same_v<S, double>) {
+    if (moving == 0.01) compare_queries(*fcl_side.manager, *own_side.manager, pointers, frames);
+  }
   std::fflush(stdout);
 }
 

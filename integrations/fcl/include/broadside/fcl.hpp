@@ -35,7 +35,7 @@ namespace broadside {
 /// not change it. As with FCL's managers, several threads may ask at once while nothing is changed.
 ///
 /// Costs: update() reads each object's box, some ten nanoseconds. collide() of all objects finds the pairs
-/// anew where more than one object in 16 changed, and follows those that changed elsewhere; asked again, it
+/// anew where more than about one in 16 changed, and follows those that changed elsewhere; asked again, it
 /// only calls back. The first query of one object builds an index, which later ones bring up to date.
 ///
 /// What is wrong is refused before anything has changed: std::invalid_argument for null, an object registered

@@ -44,8 +44,8 @@ Box<3, S> enlarged(Box<3, S> box, S margin) {
   return box;
 }
 
-/// The distance from `box` of a box in `index` that is near and farther than `reached`; infinite if there is
-/// none. `boxes` are those of the index.
+/// How far from `box` to look next, after `reached`: as far as a near box that is farther than that, or as
+/// the centres of some near boxes suggest; infinite if none is farther. `boxes` are those of the index.
 template <typename S>
 S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
                   std::span<const Box<3, S>> boxes, std::optional<BoxId> except) {
@@ -64,6 +64,8 @@ S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
       if (distance > reached) least = std::min(least, distance);
     }
     if (found.size() < count || std::isfinite(least)) return least;
+    const S farthest = std::sqrt(found.back().distance_squared);
+    if (farthest > reached) return farthest;
   }
 }
 
@@ -82,8 +84,8 @@ struct DistantPair {
 ///
 /// Pairs come from `gather(radius, pairs)`, which appends those whose distance is at most `radius` and
 /// perhaps others, for growing radii: each ring at least twice as wide as the last one, so that what is
-/// gathered again costs no more than what is new. `beyond(reached)` is a distance greater than `reached` of
-/// some pair, or infinite: the next ring has something in it.
+/// gathered again costs no more than what is new. `beyond(reached)` suggests how far the next ring should
+/// reach, by the boxes there are; it is infinite where nothing is left.
 template <typename S, typename Gather, typename Beyond, typename Visit>
 void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& visit) {
   S least = std::numeric_limits<S>::max();
@@ -103,7 +105,9 @@ void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& 
     }
     if (radius >= least) return;
     reached = radius;
-    radius = std::min(std::max(2 * radius, beyond(reached)), least);
+    radius *= 2;
+    if (radius < least) radius = std::max(radius, beyond(reached));
+    radius = std::min(radius, least);
   }
 }
 

@@ -16,14 +16,14 @@ template <typename S>
 void FclCollisionManager<S>::unregisterObject(Object* object) {
   refuse_within_query();
   objects_.remove(object, [this](std::size_t place) { pairs_.changed(place); });
-  pairs_.resized();
+  pairs_.shrunk();
 }
 
 template <typename S>
 void FclCollisionManager<S>::clear() {
   refuse_within_query();
   objects_.clear();
-  pairs_.resized();
+  pairs_.shrunk();
 }
 
 template <typename S>
