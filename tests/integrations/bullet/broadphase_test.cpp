@@ -110,13 +110,51 @@ TEST(BulletBroadphase, HasThePairsAndAnswersOfBulletsOwn) {
 TEST(BulletBroadphase, KeepsACacheThatDefersRemovals) {
   btSortedOverlappingPairCache cache;
   ASSERT_TRUE(cache.hasDeferredRemoval());
-  BulletBroadphase ours(&cache);
+  BulletBroadphase ours(&cache, {});
   btDbvtBroadphase bullets;
   TwoBroadphases both(ours, bullets);
   for (int step = 0; step < 30 && !testing::Test::HasFailure(); ++step) {
     both.step();
     both.expect_equal();
   }
+}
+
+TEST(BulletBroadphase, TellsOfEnlargedBoxesAndFindsTheBoxesThemselves) {
+  BulletBroadphase broadphase({.margin = 1, .events = WorldEvents::enlarged});
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, btScalar(2.5));
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  for (int step = 0; step < 40; ++step) {
+    const btScalar x = step % 2 == 0 ? btScalar(0.5) : 0;
+    move_to(broadphase, a, x);
+    EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+    if (step % 3 != 0) continue;
+    const btVector3 gap(btScalar(0.4), btScalar(0.5), btScalar(0.5));
+    EXPECT_EQ(overlapping(broadphase, gap, gap).count(1), step % 2 == 0 ? 0U : 1U);
+    EXPECT_EQ(broadphase.world().box(broadphase.handle(a)).min[0], x);
+  }
+  move_to(broadphase, a, -4);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  EXPECT_THAT(overlapping(broadphase, {-4, 0, 0}, {-4, 1, 1}), ElementsAre(1U));
+}
+
+TEST(BulletBroadphase, MakesAnEnlargedBoxSmallerWhoseBoxHasShrunk) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a =
+      broadphase.createProxy({0, 0, 0}, {9, 9, 9}, BOX_SHAPE_PROXYTYPE, client(1), 1, -1, nullptr);
+  cube(broadphase, 2, 8);
+  move_to(broadphase, a, 0);
+  for (int step = 0; step < 16; ++step) updated(broadphase);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+}
+
+TEST(BulletBroadphase, SeesAheadWhereABoxIsGoing) {
+  BulletBroadphase broadphase({.margin = 0.1, .predicted_frames = 4, .events = WorldEvents::enlarged});
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, 4);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  move_to(broadphase, a, 1);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
 }
 
 TEST(BulletBroadphase, ServesACacheThatHoldsNothing) {

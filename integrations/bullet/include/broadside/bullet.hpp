@@ -5,14 +5,17 @@
 //   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include "broadside/bullet/cached_pairs.hpp"
@@ -41,9 +44,15 @@ class BulletBroadphase final : public btBroadphaseInterface {
  public:
   using World = broadside::World<3, btScalar>;
 
+  /// Pairs of boxes enlarged as btDbvtBroadphase enlarges them, by gDbvtMargin (0.05), which bodies that
+  /// tremble in a heap hardly ever leave. With WorldOptions{}, pairs are those of the boxes themselves.
+  static WorldOptions standard_options() { return {.margin = gDbvtMargin, .events = WorldEvents::enlarged}; }
+
   /// With a pair cache of the caller's, which must outlive the broad phase, or with one of its own. Throws
-  /// what World does, and std::invalid_argument if options.keep_pairs is false.
-  explicit BulletBroadphase(btOverlappingPairCache* pair_cache = nullptr, const WorldOptions& options = {});
+  /// what World does, and std::invalid_argument if options.keep_pairs is false. With predicted_frames, a
+  /// box's velocity is taken from its last two places.
+  explicit BulletBroadphase(btOverlappingPairCache* pair_cache = nullptr,
+                            const WorldOptions& options = standard_options());
   explicit BulletBroadphase(const WorldOptions& options) : BulletBroadphase(nullptr, options) {}
 
   BulletBroadphase(const BulletBroadphase&) = delete;
@@ -88,7 +97,7 @@ class BulletBroadphase final : public btBroadphaseInterface {
   void printStats() override;
 
   /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above.
-  const World& world() const noexcept { return world_; }
+  const World& world() const { return current(); }
   Handle handle(const btBroadphaseProxy* proxy) const { return used(proxy, "handle()").handle; }
   btBroadphaseProxy* proxy(Handle handle) const;
 
@@ -114,6 +123,8 @@ class BulletBroadphase final : public btBroadphaseInterface {
   };
 
   Proxy& used(const btBroadphaseProxy* proxy, const char* function) const;
+  void move(Proxy& proxy, const bullet_detail::Box& box);
+  World& current() const;
   Found found(Handle handle) const { return {handle, &bullet_detail::proxy_in(world_.user_data(handle))}; }
   template <typename Callback>
   static void process(const std::vector<Found>& all, Callback& callback);
@@ -124,7 +135,12 @@ class BulletBroadphase final : public btBroadphaseInterface {
   void check_filters();
 
   WorldOptions options_;
-  World world_;
+  // While enlarged boxes make the pairs, a box that stays inside is told to the world when it is asked: the
+  // first reader does so, and there may be several.
+  mutable World world_;
+  mutable std::vector<Proxy*> untold_;  // with some that were told or destroyed since
+  mutable std::atomic<bool> has_untold_ = false;
+  mutable std::mutex telling_;
   bullet_detail::ProxyPool proxies_;
   std::unique_ptr<PairCache> own_cache_;  // null where the cache is the caller's
   btOverlappingPairCache* pair_cache_;

@@ -64,6 +64,8 @@ inline btBroadphaseProxy* BulletBroadphase::createProxy(const btVector3& min, co
   proxy.m_uniqueId = ++last_id_;
   proxy.m_aabbMin = min;
   proxy.m_aabbMax = max;
+  proxy.enlarged = world_.enlarged_box(handle);
+  proxy.is_untold = false;
   proxy.moved = proxy.checked = step_;
   ++checked_;
   if (is_ghost(proxy)) offer_overlaps_of(proxy);
@@ -83,13 +85,51 @@ inline void BulletBroadphase::setAabb(btBroadphaseProxy* moved, const btVector3&
   Proxy& proxy = used(moved, "setAabb()");
   const bullet_detail::Box box = bullet_detail::box_of(min, max);
   if (box != bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax)) {
-    world_.move(proxy.handle, box);
+    move(proxy, box);
     proxy.m_aabbMin = min;
     proxy.m_aabbMax = max;
     proxy.moved = step_;
   }
   check_filter(proxy);
   if (is_ghost(proxy)) offer_overlaps_of(proxy);
+}
+
+/// Moves the proxy's box in the world or, where that changes nothing but what queries find, notes that it
+/// moved.
+inline void BulletBroadphase::move(Proxy& proxy, const bullet_detail::Box& box) {
+  if (options_.events == WorldEvents::enlarged && bullet_detail::encloses(proxy.enlarged, box)) {
+    if (proxy.is_untold) return;
+    untold_.push_back(&proxy);
+    has_untold_.store(true, std::memory_order_relaxed);
+    proxy.is_untold = true;
+    return;
+  }
+  if (options_.predicted_frames > 0) {
+    const bullet_detail::Box before = bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax);
+    world_.move(proxy.handle, box,
+                {box.min[0] - before.min[0], box.min[1] - before.min[1], box.min[2] - before.min[2]});
+  } else {
+    world_.move(proxy.handle, box);
+  }
+  proxy.enlarged = world_.enlarged_box(proxy.handle);
+  proxy.is_untold = false;
+}
+
+/// The world with each box as it was last set.
+inline BulletBroadphase::World& BulletBroadphase::current() const {
+  if (!has_untold_.load(std::memory_order_acquire)) return world_;
+  const std::lock_guard lock(telling_);
+  while (!untold_.empty()) {
+    Proxy& proxy = *untold_.back();
+    if (proxy.is_used() && proxy.is_untold) {
+      world_.move(proxy.handle, bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax));
+      proxy.enlarged = world_.enlarged_box(proxy.handle);
+      proxy.is_untold = false;
+    }
+    untold_.pop_back();
+  }
+  has_untold_.store(false, std::memory_order_release);
+  return world_;
 }
 
 inline void BulletBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& min, btVector3& max) const {
@@ -107,7 +147,7 @@ inline void BulletBroadphase::rayTest(const btVector3& from, const btVector3& to
   const BoxCast<3, btScalar> cast = {
       bullet_detail::box_of(from + min, from + max), {way.x(), way.y(), way.z()}, end};
   std::vector<Found> all;
-  world_.hits(cast, [&](Handle handle, btScalar) {
+  current().hits(cast, [&](Handle handle, btScalar) {
     all.push_back(found(handle));
     return true;
   });
@@ -117,7 +157,7 @@ inline void BulletBroadphase::rayTest(const btVector3& from, const btVector3& to
 inline void BulletBroadphase::aabbTest(const btVector3& min, const btVector3& max,
                                        btBroadphaseAabbCallback& callback) {
   std::vector<Found> all;
-  world_.overlapping(bullet_detail::box_of(min, max), [&](Handle handle) {
+  current().overlapping(bullet_detail::box_of(min, max), [&](Handle handle) {
     all.push_back(found(handle));
     return true;
   });
@@ -141,6 +181,9 @@ inline void BulletBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher
     bool& is_calculating;
   } const calculating(is_calculating_);
   check_filters();
+  // The world makes an enlarged box smaller whose box has shrunk, which it has to be told.
+  constexpr std::uint32_t steps_untold = 16;
+  if (step_ % steps_untold == 0) current();
   const Events events = world_.update();
   checked_ = 0;
   const std::uint32_t step = step_++;
@@ -168,6 +211,8 @@ inline void BulletBroadphase::resetPool(btDispatcher*) {
   world_ = std::move(fresh);
   proxies_.reset();
   cached_pairs_.reset();
+  untold_.clear();
+  has_untold_ = false;
   last_id_ = 0;
   checked_ = 0;
 }
@@ -215,7 +260,7 @@ inline void BulletBroadphase::offer_overlaps_of(Proxy& proxy) {
   if (!is_present(box)) return;
   std::vector<Found> all;
   const Filter filter = world_.filter(proxy.handle);
-  world_.overlapping(
+  current().overlapping(
       box,
       [&](Handle handle) {
         all.push_back(found(handle));

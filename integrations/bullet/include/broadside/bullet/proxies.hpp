@@ -23,6 +23,17 @@ inline Box box_of(const btVector3& min, const btVector3& max) {
   return {{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}};
 }
 
+/// Whether a box lies in another; not if one of them has a NaN.
+inline bool encloses(const Box& outer, const Box& inner) {
+  bool is_inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    is_inside &= outer.min[axis] <= inner.min[axis];
+    is_inside &= inner.min[axis] <= inner.max[axis];
+    is_inside &= inner.max[axis] <= outer.max[axis];
+  }
+  return is_inside;
+}
+
 /// A box of the world's, as Bullet sees it.
 struct Proxy : btBroadphaseProxy {
   Handle handle{};            ///< Handle{} unless the proxy is in use
@@ -30,6 +41,8 @@ struct Proxy : btBroadphaseProxy {
   std::uint32_t checked = 0;  ///< the step in which `filter_group` and `filter_mask` were last compared
   int filter_group = 0;       ///< what the world was told; the members of the base may be changed by anyone
   int filter_mask = 0;
+  Box enlarged{};          ///< the world's, which a box may move in without being told
+  bool is_untold = false;  ///< its box has, since the world was last told
 
   bool is_used() const noexcept { return handle != Handle{}; }
 };
