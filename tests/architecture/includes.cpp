@@ -62,6 +62,7 @@ const std::vector<Rule>& rules() {
       {"examples/bullet/", standard + R"(|<broadside/[a-z_]+\.hpp>)" + engines},
       // As a user writes it.
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
+      {"tests/consumer/bullet/", standard + R"(|<broadside/bullet\.hpp>)" + engines},
       {"tests/integrations/", library + engines + R"(|<(gmock|gtest)/.*>|"[a-z_]+\.hpp"|"tests/support/.*")"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.

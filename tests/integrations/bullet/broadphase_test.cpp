@@ -46,8 +46,21 @@ class TwoBroadphases {
     }
   }
 
+  /// Moves half of the boxes a little.
+  void tremble() {
+    for (auto& [mine, theirs] : proxies_) {
+      if (mine == nullptr || rng_.one_in(2)) continue;
+      const btVector3 shift(rng_.between(-0.03F, 0.03F), rng_.between(-0.03F, 0.03F), 0);
+      ours_.setAabb(mine, mine->m_aabbMin + shift, mine->m_aabbMax + shift, nullptr);
+    }
+  }
+
   void expect_equal() {
     EXPECT_EQ(updated(ours_), overlapping_of(updated(bullets_)));
+    expect_answers();
+  }
+
+  void expect_answers() {
     const btVector3 from(corner(), corner(), corner());
     const btVector3 to(corner(), corner(), corner());
     const btVector3 half(1, 2, 1);
@@ -136,6 +149,20 @@ TEST(BulletBroadphase, TellsOfEnlargedBoxesAndFindsTheBoxesThemselves) {
   move_to(broadphase, a, -4);
   EXPECT_THAT(updated(broadphase), IsEmpty());
   EXPECT_THAT(overlapping(broadphase, {-4, 0, 0}, {-4, 1, 1}), ElementsAre(1U));
+}
+
+TEST(BulletBroadphase, FindsBoxesThatTrembleWhereTheyAre) {
+  BulletBroadphase ours;
+  btDbvtBroadphase bullets;
+  TwoBroadphases both(ours, bullets);
+  both.step();
+  ours.calculateOverlappingPairs(nullptr);
+  for (int step = 0; step < 200 && !testing::Test::HasFailure(); ++step) {
+    both.tremble();
+    both.expect_answers();
+    if (step % 2 == 0) ours.calculateOverlappingPairs(nullptr);
+    if (step % 20 == 0) ours.world();  // is told of all boxes
+  }
 }
 
 TEST(BulletBroadphase, MakesAnEnlargedBoxSmallerWhoseBoxHasShrunk) {

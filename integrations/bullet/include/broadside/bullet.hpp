@@ -5,11 +5,9 @@
 //   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -96,8 +94,10 @@ class BulletBroadphase final : public btBroadphaseInterface {
   /// A line on standard output: boxes, pairs, what the last update did.
   void printStats() override;
 
-  /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above.
-  const World& world() const { return current(); }
+  /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above. The
+  /// first call after boxes were set tells the world of those that stayed in their enlarged boxes, O(boxes);
+  /// no other thread may use the broad phase meanwhile.
+  const World& world();
   Handle handle(const btBroadphaseProxy* proxy) const { return used(proxy, "handle()").handle; }
   btBroadphaseProxy* proxy(Handle handle) const;
 
@@ -124,8 +124,12 @@ class BulletBroadphase final : public btBroadphaseInterface {
 
   Proxy& used(const btBroadphaseProxy* proxy, const char* function) const;
   void move(Proxy& proxy, const bullet_detail::Box& box);
-  World& current() const;
+  void tell(Proxy& proxy, const bullet_detail::Box& box);
+  void note_enlarged(Proxy& proxy, const bullet_detail::Box& box);
+  btScalar reach() const noexcept { return has_untold_ ? reach_ : 0; }
   Found found(Handle handle) const { return {handle, &bullet_detail::proxy_in(world_.user_data(handle))}; }
+  std::vector<Found> overlapping(const bullet_detail::Box& box, const Filter* filter = nullptr,
+                                 const Handle& except = {}) const;
   template <typename Callback>
   static void process(const std::vector<Found>& all, Callback& callback);
   bool is_ghost(const Proxy& proxy) const;
@@ -135,12 +139,7 @@ class BulletBroadphase final : public btBroadphaseInterface {
   void check_filters();
 
   WorldOptions options_;
-  // While enlarged boxes make the pairs, a box that stays inside is told to the world when it is asked: the
-  // first reader does so, and there may be several.
-  mutable World world_;
-  mutable std::vector<Proxy*> untold_;  // with some that were told or destroyed since
-  mutable std::atomic<bool> has_untold_ = false;
-  mutable std::mutex telling_;
+  World world_;
   bullet_detail::ProxyPool proxies_;
   std::unique_ptr<PairCache> own_cache_;  // null where the cache is the caller's
   btOverlappingPairCache* pair_cache_;
@@ -151,6 +150,11 @@ class BulletBroadphase final : public btBroadphaseInterface {
   bool is_callback_deciding_ =
       false;  // the pair cache has an overlap filter callback: the world filters nothing
   bool is_calculating_ = false;
+
+  // While enlarged boxes make the pairs, the world is not told of a box that moves inside its enlarged one:
+  // queries are widened by what that may have moved, and look at the box itself.
+  bool has_untold_ = false;
+  btScalar reach_ = 0;  // the most by which an enlarged box reaches beyond the box that was told
 };
 
 }  // namespace broadside
