@@ -2,6 +2,7 @@
 // are taken, and a ray finds the top of what is left. The broad phase is the one line that differs from any
 // program with Bullet.
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -22,7 +23,9 @@ class Game {
 
   void rain(int bodies) {
     for (int i = 0; i < bodies; ++i) {
-      const btVector3 place(btScalar(i % 6) * 1.3F, btScalar(1 + i / 30) * 1.3F, btScalar(i / 6 % 5) * 1.4F);
+      const int row = i / 6;
+      const int layer = row / 5;
+      const btVector3 place(btScalar(i % 6) * 1.3F, btScalar(1 + layer) * 1.3F, btScalar(row % 5) * 1.4F);
       const btVector3 shift(btScalar(i % 7) / 20, 0, btScalar(i % 11) / 30);
       add(i % 3 == 0 ? static_cast<btCollisionShape&>(ball_) : crate_, 1, place + shift);
     }
@@ -80,9 +83,7 @@ class Game {
   std::vector<std::unique_ptr<btRigidBody>> bodies_;  // the floor first
 };
 
-}  // namespace
-
-int main() {
+void play() {
   Game game;
   game.rain(300);
   game.step(600);
@@ -95,4 +96,15 @@ int main() {
   std::printf("%zu bodies %s in a heap, whose middle is %s\n", game.bodies(),
               game.is_at_rest() ? "lie still" : "move",
               after < before && after > 0 ? "lower than before" : "no lower than before");
+}
+
+}  // namespace
+
+int main() {
+  try {
+    play();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

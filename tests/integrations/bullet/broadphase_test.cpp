@@ -26,6 +26,14 @@ class TwoBroadphases {
   TwoBroadphases(btBroadphaseInterface& ours, btBroadphaseInterface& bullets)
       : ours_(ours), bullets_(bullets), proxies_(100) {}
 
+  ~TwoBroadphases() {
+    for (const auto& [mine, theirs] : proxies_) {
+      if (theirs != nullptr) bullets_.destroyProxy(theirs, nullptr);  // which it would leak
+    }
+  }
+  TwoBroadphases(const TwoBroadphases&) = delete;
+  TwoBroadphases& operator=(const TwoBroadphases&) = delete;
+
   void step() {
     for (std::size_t i = 0; i < proxies_.size(); ++i) {
       auto& [mine, theirs] = proxies_[i];
