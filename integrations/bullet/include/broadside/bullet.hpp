@@ -1,4 +1,4 @@
-// BulletBroadphase: a World as the broad phase of the physics engine Bullet (2.8x and 3.x), in place of
+// BulletBroadphase: a World as the broad phase of the physics engine Bullet 3, in place of
 // btDbvtBroadphase.
 //
 //   broadside::BulletBroadphase broadphase;
