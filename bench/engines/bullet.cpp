@@ -28,7 +28,7 @@ struct Wishes {
   std::size_t bodies = 5000;
   std::size_t steps = 600;
   std::size_t rounds = 3;
-  WorldOptions options;
+  WorldOptions options = BulletBroadphase::standard_options();
 };
 
 std::unique_ptr<btBroadphaseInterface> bullets() { return std::make_unique<btDbvtBroadphase>(); }
@@ -229,7 +229,11 @@ int run(int count, char** arguments) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   program.add_option("--algorithm", wishes.options.algorithm, "The world's")->capture_default_str();
-  program.add_option("--margin", wishes.options.margin, "The world's, in metres")->capture_default_str();
+  program.add_option("--margin", wishes.options.margin, "By how much boxes are enlarged, in metres")
+      ->capture_default_str();
+  program.add_flag_callback(
+      "--exact", [&] { wishes.options = {.algorithm = wishes.options.algorithm}; },
+      "Pairs of the boxes themselves instead of enlarged ones");
   CLI11_PARSE(program, count, arguments);
   for (const auto& [name, part] : parts) {
     if (wanted.empty() || std::ranges::find(wanted, name) != wanted.end()) part(wishes);

@@ -2,6 +2,7 @@
 // are taken, and a ray finds the top of what is left. The broad phase is the one line that differs from any
 // program with Bullet.
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -22,7 +23,9 @@ class Game {
 
   void rain(int bodies) {
     for (int i = 0; i < bodies; ++i) {
-      const btVector3 place(btScalar(i % 6) - 3, btScalar(1 + i / 30), btScalar(i / 6 % 5) - 2);
+      const int row = i / 6;
+      const int layer = row / 5;
+      const btVector3 place(btScalar(i % 6) * 1.3F, btScalar(1 + layer) * 1.3F, btScalar(row % 5) * 1.4F);
       const btVector3 shift(btScalar(i % 7) / 20, 0, btScalar(i % 11) / 30);
       add(i % 3 == 0 ? static_cast<btCollisionShape&>(ball_) : crate_, 1, place + shift);
     }
@@ -64,11 +67,12 @@ class Game {
     if (mass > 0) shape.calculateLocalInertia(mass, inertia);
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
     info.m_startWorldTransform.setOrigin(place);
+    info.m_rollingFriction = info.m_spinningFriction = btScalar(0.1);
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     world_.addRigidBody(bodies_.back().get());
   }
 
-  btBoxShape floor_{btVector3(20, 1, 20)};
+  btBoxShape floor_{btVector3(60, 1, 60)};
   btBoxShape crate_{btVector3(0.4F, 0.5F, 0.6F)};
   btSphereShape ball_{0.5F};
   btDefaultCollisionConfiguration configuration_;
@@ -79,19 +83,28 @@ class Game {
   std::vector<std::unique_ptr<btRigidBody>> bodies_;  // the floor first
 };
 
-}  // namespace
-
-int main() {
+void play() {
   Game game;
   game.rain(300);
   game.step(600);
-  const btScalar before = game.height(0, 0);
+  const btScalar before = game.height(3, 3);
   game.print();
   game.take_out_every_fourth();
-  game.step(300);
-  const btScalar after = game.height(0, 0);
+  game.step(900);
+  const btScalar after = game.height(3, 3);
   game.print();
   std::printf("%zu bodies %s in a heap, whose middle is %s\n", game.bodies(),
               game.is_at_rest() ? "lie still" : "move",
               after < before && after > 0 ? "lower than before" : "no lower than before");
+}
+
+}  // namespace
+
+int main() {
+  try {
+    play();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

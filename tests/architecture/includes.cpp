@@ -66,6 +66,7 @@ const std::vector<Rule>& rules() {
       {"examples/fcl_", standard + R"(|<broadside/[a-z_]+\.hpp>|<fcl/.*>)"},
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
       {"tests/integrations/fcl/", library + "|<fcl/.*>|<gtest/.*>|<gmock/.*>"},
+      {"tests/consumer/bullet/", standard + R"(|<broadside/bullet\.hpp>)" + engines},
       {"tests/integrations/", library + engines + R"(|<(gmock|gtest)/.*>|"[a-z_]+\.hpp"|"tests/support/.*")"},
       // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
       // CGAL is their oracle.

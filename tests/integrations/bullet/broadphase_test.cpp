@@ -1,6 +1,9 @@
-// BulletBroadphase alone: proxies, pairs, queries, errors.
-#include <limits>
-#include <memory>
+// BulletBroadphase alone: its pairs, and who decides about them.
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,19 +15,23 @@
 namespace broadside::bullet_tests {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::UnorderedElementsAre;
-
-constexpr btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
 
 /// A hundred boxes with filters that come, move and go by chance, the same in both broad phases.
 class TwoBroadphases {
  public:
   TwoBroadphases(btBroadphaseInterface& ours, btBroadphaseInterface& bullets)
       : ours_(ours), bullets_(bullets), proxies_(100) {}
+
+  ~TwoBroadphases() {
+    for (const auto& [mine, theirs] : proxies_) {
+      if (theirs != nullptr) bullets_.destroyProxy(theirs, nullptr);  // which it would leak
+    }
+  }
+  TwoBroadphases(const TwoBroadphases&) = delete;
+  TwoBroadphases& operator=(const TwoBroadphases&) = delete;
 
   void step() {
     for (std::size_t i = 0; i < proxies_.size(); ++i) {
@@ -46,8 +53,21 @@ class TwoBroadphases {
     }
   }
 
+  /// Moves half of the boxes a little.
+  void tremble() {
+    for (auto& [mine, theirs] : proxies_) {
+      if (mine == nullptr || rng_.one_in(2)) continue;
+      const btVector3 shift(rng_.between(-0.03F, 0.03F), rng_.between(-0.03F, 0.03F), 0);
+      ours_.setAabb(mine, mine->m_aabbMin + shift, mine->m_aabbMax + shift, nullptr);
+    }
+  }
+
   void expect_equal() {
     EXPECT_EQ(updated(ours_), overlapping_of(updated(bullets_)));
+    expect_answers();
+  }
+
+  void expect_answers() {
     const btVector3 from(corner(), corner(), corner());
     const btVector3 to(corner(), corner(), corner());
     const btVector3 half(1, 2, 1);
@@ -110,13 +130,65 @@ TEST(BulletBroadphase, HasThePairsAndAnswersOfBulletsOwn) {
 TEST(BulletBroadphase, KeepsACacheThatDefersRemovals) {
   btSortedOverlappingPairCache cache;
   ASSERT_TRUE(cache.hasDeferredRemoval());
-  BulletBroadphase ours(&cache);
+  BulletBroadphase ours(&cache, {});
   btDbvtBroadphase bullets;
   TwoBroadphases both(ours, bullets);
   for (int step = 0; step < 30 && !testing::Test::HasFailure(); ++step) {
     both.step();
     both.expect_equal();
   }
+}
+
+TEST(BulletBroadphase, TellsOfEnlargedBoxesAndFindsTheBoxesThemselves) {
+  BulletBroadphase broadphase({.margin = 1, .events = WorldEvents::enlarged});
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, btScalar(2.5));
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+  for (int step = 0; step < 40; ++step) {
+    const btScalar x = step % 2 == 0 ? btScalar(0.5) : 0;
+    move_to(broadphase, a, x);
+    EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
+    if (step % 3 != 0) continue;
+    const btVector3 gap(btScalar(0.4), btScalar(0.5), btScalar(0.5));
+    EXPECT_EQ(overlapping(broadphase, gap, gap).count(1), step % 2 == 0 ? 0U : 1U);
+    EXPECT_EQ(broadphase.world().box(broadphase.handle(a)).min[0], x);
+  }
+  move_to(broadphase, a, -4);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  EXPECT_THAT(overlapping(broadphase, {-4, 0, 0}, {-4, 1, 1}), ElementsAre(1U));
+}
+
+TEST(BulletBroadphase, FindsBoxesThatTrembleWhereTheyAre) {
+  BulletBroadphase ours;
+  btDbvtBroadphase bullets;
+  TwoBroadphases both(ours, bullets);
+  both.step();
+  ours.calculateOverlappingPairs(nullptr);
+  for (int step = 0; step < 200 && !testing::Test::HasFailure(); ++step) {
+    both.tremble();
+    both.expect_answers();
+    if (step % 2 == 0) ours.calculateOverlappingPairs(nullptr);
+    if (step % 20 == 0) ours.world();  // is told of all boxes
+  }
+}
+
+TEST(BulletBroadphase, MakesAnEnlargedBoxSmallerWhoseBoxHasShrunk) {
+  BulletBroadphase broadphase;
+  btBroadphaseProxy* const a =
+      broadphase.createProxy({0, 0, 0}, {9, 9, 9}, BOX_SHAPE_PROXYTYPE, client(1), 1, -1, nullptr);
+  cube(broadphase, 2, 8);
+  move_to(broadphase, a, 0);
+  for (int step = 0; step < 16; ++step) updated(broadphase);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+}
+
+TEST(BulletBroadphase, SeesAheadWhereABoxIsGoing) {
+  BulletBroadphase broadphase({.margin = 0.1, .predicted_frames = 4, .events = WorldEvents::enlarged});
+  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
+  cube(broadphase, 2, 4);
+  EXPECT_THAT(updated(broadphase), IsEmpty());
+  move_to(broadphase, a, 1);
+  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
 }
 
 TEST(BulletBroadphase, ServesACacheThatHoldsNothing) {
@@ -248,135 +320,6 @@ TEST(BulletBroadphase, RefusesToCalculateInsideACallbackOfItself) {
   broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&whim);
   EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
   EXPECT_THAT(message, HasSubstr("callback of its own"));
-}
-
-TEST(BulletBroadphase, LetsAQuerysCallbackCreateMoveAndDestroyProxies) {
-  BulletBroadphase broadphase;
-  std::vector<btBroadphaseProxy*> proxies;
-  for (std::uintptr_t i = 0; i < 200; ++i) proxies.push_back(cube(broadphase, i, btScalar(i) / 100));
-  bool is_first = true;
-  const auto disturb = [&](const btBroadphaseProxy* found) {
-    if (!std::exchange(is_first, false)) return;
-    for (std::uintptr_t i = 0; i < 200; ++i) {
-      if (proxies[i] != found) broadphase.destroyProxy(proxies[i], nullptr);
-      cube(broadphase, 200 + i, 0);
-    }
-  };
-  Lists<btBroadphaseAabbCallback, decltype(disturb)> list(disturb);
-  broadphase.aabbTest({0, 0, 0}, {9, 9, 9}, list);
-  EXPECT_EQ(list.numbers.size(), 1U) << "the others were destroyed before their turn";
-  EXPECT_EQ(overlapping(broadphase, {0, 0, 0}, {9, 9, 9}).size(), 201U);
-}
-
-TEST(BulletBroadphase, ShowsQueriesABoxAsItWasLastSet) {
-  BulletBroadphase broadphase;
-  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
-  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), ElementsAre(1U));
-  move_to(broadphase, a, 5);
-  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), IsEmpty());
-  EXPECT_THAT(ray(broadphase, {btScalar(5.5), 9, 0}, {btScalar(5.5), -9, 0}), ElementsAre(1U));
-  const btVector3 point(5, 1, 1);
-  EXPECT_THAT(ray(broadphase, point, point), ElementsAre(1U)) << "a line without length";
-  btVector3 min;
-  btVector3 max;
-  broadphase.getAabb(a, min, max);
-  EXPECT_EQ(min, btVector3(5, 0, 0));
-  EXPECT_EQ(max, btVector3(6, 1, 1));
-}
-
-TEST(BulletBroadphase, RefusesWhatIsNoBoxAndChangesNothing) {
-  BulletBroadphase broadphase;
-  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
-  EXPECT_THAT(message_of<InvalidInput>([&] { cube(broadphase, 2, nan); }), HasSubstr("nan"));
-  EXPECT_THAT(message_of<InvalidInput>([&] {
-                broadphase.setAabb(a, {0, 0, 0}, {1, -1, 1}, nullptr);
-              }),
-              HasSubstr("expected numbers with min <= max"));
-  EXPECT_THROW(overlapping(broadphase, {nan, 0, 0}, {1, 1, 1}), InvalidQuery);
-  EXPECT_THROW(ray(broadphase, {0, 0, 0}, {nan, 1, 1}), InvalidQuery);
-  EXPECT_THAT(overlapping(broadphase, {0, 0, 0}, {1, 1, 1}), ElementsAre(1U));
-  EXPECT_EQ(cube(broadphase, 3, 0)->m_uniqueId, 2);
-}
-
-TEST(BulletBroadphase, TakesInNoBoxWhereToldTo) {
-  BulletBroadphase broadphase({.bad_input = BadInput::quarantine});
-  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
-  cube(broadphase, 2, 0);
-  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
-  move_to(broadphase, a, nan);
-  EXPECT_THAT(updated(broadphase), IsEmpty());
-  EXPECT_THAT(broadphase.world().quarantined(), ElementsAre(broadphase.handle(a)));
-  move_to(broadphase, a, 0);
-  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2)));
-}
-
-TEST(BulletBroadphase, RefusesAProxyThatWasDestroyedOrIsNotItsOwn) {
-  BulletBroadphase broadphase;
-  BulletBroadphase other;
-  btSimpleBroadphase simple;
-  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
-  broadphase.destroyProxy(a, nullptr);
-  btVector3 corner;
-  EXPECT_THAT(
-      message_of<InvalidHandle>([&] { broadphase.destroyProxy(a, nullptr); }),
-      AllOf(HasSubstr("destroyProxy(): the proxy at 0x"), HasSubstr("was destroyed; expected one of")));
-  EXPECT_THROW(move_to(broadphase, a, 0), InvalidHandle);
-  EXPECT_THROW(broadphase.getAabb(a, corner, corner), InvalidHandle);
-  for (btBroadphaseProxy* const foreign :
-       {cube(other, 2, 0), cube(simple, 3, 0), (btBroadphaseProxy*)nullptr}) {
-    EXPECT_THAT(message_of<InvalidHandle>([&] { broadphase.destroyProxy(foreign, nullptr); }),
-                HasSubstr("was never made by this broad phase"));
-    EXPECT_THROW(move_to(broadphase, foreign, 0), InvalidHandle);
-  }
-  EXPECT_THAT(overlapping(other, {0, 0, 0}, {1, 1, 1}), ElementsAre(2U));
-}
-
-TEST(BulletBroadphase, RefusesAWorldThatDoesNotKnowItsPairs) {
-  EXPECT_THAT(message_of<std::invalid_argument>([] { BulletBroadphase({.keep_pairs = false}); }),
-              HasSubstr("keep_pairs is false; expected true"));
-}
-
-TEST(BulletBroadphase, StartsOverWhenItsPoolIsReset) {
-  BulletBroadphase broadphase;
-  btBroadphaseProxy* const a = cube(broadphase, 1, 0);
-  btBroadphaseProxy* const b = cube(broadphase, 2, 0);
-  broadphase.resetPool(nullptr);
-  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(1, 2))) << "not while there are proxies";
-  broadphase.destroyProxy(a, nullptr);
-  broadphase.destroyProxy(b, nullptr);
-  EXPECT_THAT(cached(broadphase), IsEmpty());
-  broadphase.resetPool(nullptr);
-  EXPECT_EQ(cube(broadphase, 3, 0), a);
-  EXPECT_EQ(a->m_uniqueId, 1);
-  cube(broadphase, 4, 0);
-  EXPECT_THAT(updated(broadphase), ElementsAre(Numbers(3, 4)));
-}
-
-TEST(BulletBroadphase, EnclosesAllBoxes) {
-  BulletBroadphase broadphase;
-  btVector3 min;
-  btVector3 max;
-  broadphase.getBroadphaseAabb(min, max);
-  EXPECT_EQ(min, btVector3(0, 0, 0));
-  EXPECT_EQ(max, btVector3(0, 0, 0));
-  cube(broadphase, 1, 3, -2);
-  cube(broadphase, 2, 7, 4);
-  broadphase.getBroadphaseAabb(min, max);
-  EXPECT_EQ(min, btVector3(3, -2, 0));
-  EXPECT_EQ(max, btVector3(8, 5, 1));
-}
-
-TEST(BulletBroadphase, LeadsFromProxiesToTheWorldAndBack) {
-  BulletBroadphase broadphase;
-  btBroadphaseProxy* const a = cube(broadphase, 1, 3);
-  cube(broadphase, 2, 7);
-  std::vector<HandleNeighbour<btScalar>> nearest;
-  broadphase.world().nearest({0, 0, 0}, 1, nearest);
-  ASSERT_EQ(nearest.size(), 1U);
-  EXPECT_EQ(nearest[0].handle, broadphase.handle(a));
-  EXPECT_EQ(broadphase.proxy(nearest[0].handle), a);
-  broadphase.destroyProxy(a, nullptr);
-  EXPECT_THROW(broadphase.proxy(nearest[0].handle), InvalidHandle);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// BulletBroadphase: a World as the broad phase of the physics engine Bullet (2.8x and 3.x), in place of
+// BulletBroadphase: a World as the broad phase of the physics engine Bullet 3, in place of
 // btDbvtBroadphase.
 //
 //   broadside::BulletBroadphase broadphase;
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include "broadside/bullet/cached_pairs.hpp"
@@ -41,9 +42,15 @@ class BulletBroadphase final : public btBroadphaseInterface {
  public:
   using World = broadside::World<3, btScalar>;
 
+  /// Pairs of boxes enlarged as btDbvtBroadphase enlarges them, by gDbvtMargin (0.05), which bodies that
+  /// tremble in a heap hardly ever leave. With WorldOptions{}, pairs are those of the boxes themselves.
+  static WorldOptions standard_options() { return {.margin = gDbvtMargin, .events = WorldEvents::enlarged}; }
+
   /// With a pair cache of the caller's, which must outlive the broad phase, or with one of its own. Throws
-  /// what World does, and std::invalid_argument if options.keep_pairs is false.
-  explicit BulletBroadphase(btOverlappingPairCache* pair_cache = nullptr, const WorldOptions& options = {});
+  /// what World does, and std::invalid_argument if options.keep_pairs is false. With predicted_frames, a
+  /// box's velocity is taken from its last two places.
+  explicit BulletBroadphase(btOverlappingPairCache* pair_cache = nullptr,
+                            const WorldOptions& options = standard_options());
   explicit BulletBroadphase(const WorldOptions& options) : BulletBroadphase(nullptr, options) {}
 
   BulletBroadphase(const BulletBroadphase&) = delete;
@@ -87,8 +94,10 @@ class BulletBroadphase final : public btBroadphaseInterface {
   /// A line on standard output: boxes, pairs, what the last update did.
   void printStats() override;
 
-  /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above.
-  const World& world() const noexcept { return world_; }
+  /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above. The
+  /// first call after boxes were set tells the world of those that stayed in their enlarged boxes, O(boxes);
+  /// no other thread may use the broad phase meanwhile.
+  const World& world();
   Handle handle(const btBroadphaseProxy* proxy) const { return used(proxy, "handle()").handle; }
   btBroadphaseProxy* proxy(Handle handle) const;
 
@@ -114,7 +123,13 @@ class BulletBroadphase final : public btBroadphaseInterface {
   };
 
   Proxy& used(const btBroadphaseProxy* proxy, const char* function) const;
+  void move(Proxy& proxy, const bullet_detail::Box& box);
+  void tell(Proxy& proxy, const bullet_detail::Box& box);
+  void note_enlarged(Proxy& proxy, const bullet_detail::Box& box);
+  btScalar reach() const noexcept { return has_untold_ ? reach_ : 0; }
   Found found(Handle handle) const { return {handle, &bullet_detail::proxy_in(world_.user_data(handle))}; }
+  std::vector<Found> overlapping(const bullet_detail::Box& box, const Filter* filter = nullptr,
+                                 const Handle& except = {}) const;
   template <typename Callback>
   static void process(const std::vector<Found>& all, Callback& callback);
   bool is_ghost(const Proxy& proxy) const;
@@ -135,6 +150,11 @@ class BulletBroadphase final : public btBroadphaseInterface {
   bool is_callback_deciding_ =
       false;  // the pair cache has an overlap filter callback: the world filters nothing
   bool is_calculating_ = false;
+
+  // While enlarged boxes make the pairs, the world is not told of a box that moves inside its enlarged one:
+  // queries are widened by what that may have moved, and look at the box itself.
+  bool has_untold_ = false;
+  btScalar reach_ = 0;  // the most by which an enlarged box reaches beyond the box that was told
 };
 
 }  // namespace broadside

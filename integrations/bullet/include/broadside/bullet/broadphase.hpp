@@ -64,6 +64,7 @@ inline btBroadphaseProxy* BulletBroadphase::createProxy(const btVector3& min, co
   proxy.m_uniqueId = ++last_id_;
   proxy.m_aabbMin = min;
   proxy.m_aabbMax = max;
+  note_enlarged(proxy, bullet_detail::box_of(min, max));
   proxy.moved = proxy.checked = step_;
   ++checked_;
   if (is_ghost(proxy)) offer_overlaps_of(proxy);
@@ -83,13 +84,55 @@ inline void BulletBroadphase::setAabb(btBroadphaseProxy* moved, const btVector3&
   Proxy& proxy = used(moved, "setAabb()");
   const bullet_detail::Box box = bullet_detail::box_of(min, max);
   if (box != bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax)) {
-    world_.move(proxy.handle, box);
+    move(proxy, box);
     proxy.m_aabbMin = min;
     proxy.m_aabbMax = max;
     proxy.moved = step_;
   }
   check_filter(proxy);
   if (is_ghost(proxy)) offer_overlaps_of(proxy);
+}
+
+/// Moves the proxy's box in the world, unless that would change nothing but what queries find.
+inline void BulletBroadphase::move(Proxy& proxy, const bullet_detail::Box& box) {
+  // The world makes the enlarged box smaller of a box that has shrunk.
+  const bool stays =
+      options_.events == WorldEvents::enlarged && bullet_detail::encloses(proxy.enlarged, box) &&
+      bullet_detail::sides_of(proxy.enlarged) - bullet_detail::sides_of(box) <= 2 * proxy.spare;
+  if (stays)
+    proxy.is_untold = has_untold_ = true;
+  else
+    tell(proxy, box);
+}
+
+inline void BulletBroadphase::tell(Proxy& proxy, const bullet_detail::Box& box) {
+  if (options_.predicted_frames > 0) {
+    const bullet_detail::Box before = bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax);
+    world_.move(proxy.handle, box,
+                {box.min[0] - before.min[0], box.min[1] - before.min[1], box.min[2] - before.min[2]});
+  } else {
+    world_.move(proxy.handle, box);
+  }
+  note_enlarged(proxy, box);
+}
+
+/// Takes the proxy's enlarged box from the world, which was told `box`.
+inline void BulletBroadphase::note_enlarged(Proxy& proxy, const bullet_detail::Box& box) {
+  proxy.is_untold = false;
+  if (options_.events != WorldEvents::enlarged) return;
+  proxy.enlarged = world_.enlarged_box(proxy.handle);
+  proxy.spare = bullet_detail::sides_of(proxy.enlarged) - bullet_detail::sides_of(box);
+  reach_ = std::max(reach_, bullet_detail::reach_beyond(proxy.enlarged, box));
+}
+
+inline const BulletBroadphase::World& BulletBroadphase::world() {
+  if (has_untold_) {
+    proxies_.for_each_used([this](Proxy& proxy) {
+      if (proxy.is_untold) tell(proxy, bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax));
+    });
+    has_untold_ = false;
+  }
+  return world_;
 }
 
 inline void BulletBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& min, btVector3& max) const {
@@ -106,9 +149,13 @@ inline void BulletBroadphase::rayTest(const btVector3& from, const btVector3& to
   const btScalar end = 1 + 4 * std::numeric_limits<btScalar>::epsilon();
   const BoxCast<3, btScalar> cast = {
       bullet_detail::box_of(from + min, from + max), {way.x(), way.y(), way.z()}, end};
+  BoxCast<3, btScalar> wide = cast;
+  wide.box = bullet_detail::widened(cast.box, reach());
   std::vector<Found> all;
-  world_.hits(cast, [&](Handle handle, btScalar) {
-    all.push_back(found(handle));
+  world_.hits(wide, [&](Handle handle, btScalar) {
+    const Found one = found(handle);
+    if (reach() == 0 || t_enter(cast, bullet_detail::box_of(one.proxy->m_aabbMin, one.proxy->m_aabbMax)))
+      all.push_back(one);
     return true;
   });
   process(all, callback);
@@ -116,12 +163,24 @@ inline void BulletBroadphase::rayTest(const btVector3& from, const btVector3& to
 
 inline void BulletBroadphase::aabbTest(const btVector3& min, const btVector3& max,
                                        btBroadphaseAabbCallback& callback) {
+  process(overlapping(bullet_detail::box_of(min, max)), callback);
+}
+
+/// The proxies whose boxes overlap the given one.
+inline std::vector<BulletBroadphase::Found> BulletBroadphase::overlapping(const bullet_detail::Box& box,
+                                                                          const Filter* filter,
+                                                                          const Handle& except) const {
   std::vector<Found> all;
-  world_.overlapping(bullet_detail::box_of(min, max), [&](Handle handle) {
-    all.push_back(found(handle));
-    return true;
-  });
-  process(all, callback);
+  world_.overlapping(
+      bullet_detail::widened(box, reach()),
+      [&](Handle handle) {
+        const Found one = found(handle);
+        if (reach() == 0 || overlap(box, bullet_detail::box_of(one.proxy->m_aabbMin, one.proxy->m_aabbMax)))
+          all.push_back(one);
+        return true;
+      },
+      filter, except);
+  return all;
 }
 
 template <typename Callback>
@@ -168,6 +227,8 @@ inline void BulletBroadphase::resetPool(btDispatcher*) {
   world_ = std::move(fresh);
   proxies_.reset();
   cached_pairs_.reset();
+  has_untold_ = false;
+  reach_ = 0;
   last_id_ = 0;
   checked_ = 0;
 }
@@ -213,15 +274,8 @@ inline bool BulletBroadphase::is_ghost(const Proxy& proxy) const {
 inline void BulletBroadphase::offer_overlaps_of(Proxy& proxy) {
   const bullet_detail::Box box = bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax);
   if (!is_present(box)) return;
-  std::vector<Found> all;
   const Filter filter = world_.filter(proxy.handle);
-  world_.overlapping(
-      box,
-      [&](Handle handle) {
-        all.push_back(found(handle));
-        return true;
-      },
-      &filter, proxy.handle);
+  const std::vector<Found> all = overlapping(box, &filter, proxy.handle);
   const Handle handle = proxy.handle;
   for (const Found& one : all) {
     if (one.proxy->handle == one.handle && proxy.handle == handle)

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -23,6 +25,44 @@ inline Box box_of(const btVector3& min, const btVector3& max) {
   return {{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}};
 }
 
+/// Whether a box lies in another; not if one of them has a NaN.
+inline bool encloses(const Box& outer, const Box& inner) {
+  bool is_inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    is_inside &= outer.min[axis] <= inner.min[axis];
+    is_inside &= inner.min[axis] <= inner.max[axis];
+    is_inside &= inner.max[axis] <= outer.max[axis];
+  }
+  return is_inside;
+}
+
+/// The lengths of a box's sides, in all.
+inline btScalar sides_of(const Box& box) {
+  return box.max[0] - box.min[0] + box.max[1] - box.min[1] + box.max[2] - box.min[2];
+}
+
+/// At least by how much `outer` reaches beyond `inner` on any side.
+inline btScalar reach_beyond(const Box& outer, const Box& inner) {
+  btScalar reach = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const btScalar beyond : {inner.min[axis] - outer.min[axis], outer.max[axis] - inner.max[axis]}) {
+      if (beyond > reach) reach = std::nextafter(beyond, std::numeric_limits<btScalar>::max());
+    }
+  }
+  return reach;
+}
+
+/// The box with at least `reach` on every side.
+inline Box widened(Box box, btScalar reach) {
+  constexpr btScalar infinity = std::numeric_limits<btScalar>::infinity();
+  if (reach == 0) return box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::nextafter(box.min[axis] - reach, -infinity);
+    box.max[axis] = std::nextafter(box.max[axis] + reach, infinity);
+  }
+  return box;
+}
+
 /// A box of the world's, as Bullet sees it.
 struct Proxy : btBroadphaseProxy {
   Handle handle{};            ///< Handle{} unless the proxy is in use
@@ -30,6 +70,9 @@ struct Proxy : btBroadphaseProxy {
   std::uint32_t checked = 0;  ///< the step in which `filter_group` and `filter_mask` were last compared
   int filter_group = 0;       ///< what the world was told; the members of the base may be changed by anyone
   int filter_mask = 0;
+  Box enlarged{};          ///< the world's, in which the box may move without the world being told
+  btScalar spare = 0;      ///< by how much the enlarged box's sides exceed the told one's, in all
+  bool is_untold = false;  ///< the box has moved since the world was last told
 
   bool is_used() const noexcept { return handle != Handle{}; }
 };
