@@ -31,6 +31,12 @@ void RecordedFrame::apply(const RecordedPairs& changes, std::size_t slots, std::
   }
 }
 
+std::size_t RecordedFrame::times_reported(Pair pair) const {
+  // Not std::ranges' version: clang 14 cannot compile what it returns.
+  const auto [from, to] = std::equal_range(reported_.begin(), reported_.end(), pair);
+  return static_cast<std::size_t>(to - from);
+}
+
 Filter RecordedFrame::filter(BoxId slot) const {
   const auto found = filters_.find(index(slot));
   return found == filters_.end() ? Filter{} : found->second;

@@ -34,6 +34,8 @@ class RecordedFrame {
   /// Sorted; a pair stands as often as it is reported.
   const std::vector<Pair>& reported() const noexcept { return reported_; }
 
+  std::size_t times_reported(Pair pair) const;
+
   /// Pairs that need not be reported; sorted, each once.
   const std::vector<Pair>& ignored() const noexcept { return ignored_; }
 

@@ -1,4 +1,5 @@
 // The smallest recording in which an engine's pair is wrong.
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -23,8 +24,7 @@ struct Moment {
       if (index(ids[i]) < playback.boxes().size()) boxes[i] = playback.boxes()[index(ids[i])];
       filters[i] = playback.pairs().filter(ids[i]);
     }
-    const auto [from, to] = std::ranges::equal_range(playback.pairs().reported(), pair);
-    reported = static_cast<std::size_t>(to - from);
+    reported = playback.pairs().times_reported(pair);
     is_ignored = std::ranges::binary_search(playback.pairs().ignored(), pair);
   }
 

@@ -176,8 +176,7 @@ class RecordedCheck {
                           distance_text(boxes[index(pair.first)], boxes[index(pair.second)]), margin_,
                           2 * margin_);
     } else {
-      const auto [from, to] = std::ranges::equal_range(playback.pairs().reported(), pair);
-      text += fmt::format(": {} times", to - from);
+      text += fmt::format(": {} times", playback.pairs().times_reported(pair));
     }
     return explained<D, Real>({Divergence::Kind::missing, pair, fault.first_frame, text}, recorded_pairs_name,
                               "pair", fault.first_frame, boxes)
