@@ -62,11 +62,9 @@ void AdaptiveTracker<D, Real>::update_valid(const Change<D, Real>& change, PairS
     follow(change, begun, ended);
   } else {
     rebuild(change, begun, ended);
-    // After a first frame come others, most often with few changes: what follows them is chosen and made ready
-    // with it, so that the second frame does not take longer than those after it. Where there is no choice, it
-    // can wait until it is known to pay: a tree takes several times as long to fill as to search.
-    if (change.rebuild && policy_.update() == Update::automatic && followers_.size() > 1)
-      start_following(change.now);
+    // After a first frame come others, most often with few changes: what follows them is made ready with it,
+    // so that the second frame does not take longer than those after it.
+    if (change.rebuild && policy_.update() == Update::automatic) start_following(change.now);
   }
 }
 
