@@ -93,15 +93,15 @@ void jumps_in(const Wishes& wishes) {
 
 /// Boxes that move, first, and boxes that rest.
 template <int D>
-struct World {
+struct Population {
   std::vector<Box<D>> boxes;
   std::vector<Box<D>> movers;
 };
 
 /// `movers` boxes within the middle of a scene, where about `around` of its boxes are; and those alone.
 template <int D>
-std::array<World<D>, 2> worlds(const std::string& scene, std::size_t resting, std::size_t around,
-                               std::size_t movers, std::uint64_t seed) {
+std::array<Population<D>, 2> populations(const std::string& scene, std::size_t resting, std::size_t around,
+                                         std::size_t movers, std::uint64_t seed) {
   const std::vector<Box<D>> still = boxes_of<D>(scene, resting, seed);
   Box<D> bounds = still.front();
   for (const Box<D>& box : still) {
@@ -119,7 +119,7 @@ std::array<World<D>, 2> worlds(const std::string& scene, std::size_t resting, st
     middle.min[axis] = static_cast<float>(centre - half);
     middle.max[axis] = static_cast<float>(centre + half);
   }
-  std::array<World<D>, 2> made;
+  std::array<Population<D>, 2> made;
   const auto inside = [&middle](const Box<D>& box) {
     for (int axis = 0; axis < D; ++axis) {
       if (box.min[axis] < middle.min[axis] || box.max[axis] > middle.max[axis]) return false;
@@ -130,7 +130,7 @@ std::array<World<D>, 2> worlds(const std::string& scene, std::size_t resting, st
     if (made[0].movers.size() < movers && inside(box)) made[0].movers.push_back(box);
   }
   made[1].movers = made[0].movers;
-  for (World<D>& world : made) world.boxes = world.movers;
+  for (Population<D>& world : made) world.boxes = world.movers;
   for (const Box<D>& box : still) {
     made[0].boxes.push_back(box);
     if (overlap(box, middle)) made[1].boxes.push_back(box);
@@ -144,7 +144,7 @@ void rest_in(const Wishes& wishes) {
   constexpr std::size_t movers = 2'000;
   const std::size_t resting = wishes.boxes_or(1'000'000);
   Turns turns = wishes.turns(50, 5);
-  const auto both = worlds<D>(scene_of(wishes), resting, around, movers, wishes.seed);
+  const auto both = populations<D>(scene_of(wishes), resting, around, movers, wishes.seed);
   const lab::Catalogue catalogue;
   const std::vector<lab::Entry> entries = catalogue.select(wishes.algorithms_or("auto"));
   print_heading(fmt::format("boxes that rest, {}, {} and {} movers", scene_of(wishes),
