@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -60,26 +61,48 @@ void print_times_heading() {
       "p99", "mean", "median", "p99", "mean", "median");
 }
 
+/// A simulation over Bullet's own broad phase that has run to its end, and what it told that.
+struct Recorded {
+  Recorded(const std::string& scene, const Wishes& wishes)
+      : Recorded(scene, wishes, std::make_unique<Recording>()) {}
+
+  const Recording& recording;
+  Simulation simulation;
+
+ private:
+  Recorded(const std::string& scene, const Wishes& wishes, std::unique_ptr<Recording> broadphase)
+      : recording(*broadphase), simulation(scene, wishes.bodies, std::move(broadphase)) {
+    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
+  }
+};
+
+/// Throws unless both hold the same pairs of boxes that overlap; what they hold of enlarged boxes may differ.
+void check_pairs(Replay& one, Replay& other, std::size_t step) {
+  const auto pairs = one.overlapping_pairs();
+  const auto others = other.overlapping_pairs();
+  if (pairs == others) return;
+  throw std::runtime_error(
+      fmt::format("step {}: {} pairs overlap by Bullet and {} by ours; expected the same", step, pairs.size(),
+                  others.size()));
+}
+
 void stage(const Wishes& wishes) {
   print_times_heading();
   for (const std::string& scene : wishes.scenes) {
-    auto broadphase = std::make_unique<Recording>();
-    const Recording& recording = *broadphase;
-    Simulation simulation(scene, wishes.bodies, std::move(broadphase));
-    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
-
+    const Recorded recorded(scene, wishes);
     std::vector<double> bullets_us(wishes.steps, 1e30);
     std::vector<double> ours_us(wishes.steps, 1e30);
     for (std::size_t round = 0; round < wishes.rounds; ++round) {
-      Replay one(recording, bullets());
-      Replay other(recording, ours(wishes));
+      Replay one(recorded.recording, bullets());
+      Replay other(recorded.recording, ours(wishes));
       for (std::size_t step = 0; step < wishes.steps; ++step) {
         bullets_us[step] = std::min(bullets_us[step], one.step(step));
         ours_us[step] = std::min(ours_us[step], other.step(step));
+        if (round == 0) check_pairs(one, other, step);
       }
       if (round + 1 == wishes.rounds)
-        fmt::print("{}: {} boxes, {} and {} pairs at the end\n", scene, simulation.size(), one.pairs(),
-                   other.pairs());
+        fmt::print("{}: {} boxes, {} and {} pairs at the end\n", scene, recorded.simulation.size(),
+                   one.pairs(), other.pairs());
     }
     const auto part = [&](const std::vector<double>& all, std::size_t third) {
       const std::size_t size = all.size() / 3;
@@ -115,16 +138,13 @@ double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::ui
 void rays(const Wishes& wishes) {
   print_times_heading();
   for (const std::string& scene : wishes.scenes) {
-    auto broadphase = std::make_unique<Recording>();
-    const Recording& recording = *broadphase;
-    Simulation simulation(scene, wishes.bodies, std::move(broadphase));
-    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
-    Replay one(recording, bullets());
-    Replay other(recording, ours(wishes));
+    const Recorded recorded(scene, wishes);
+    Replay one(recorded.recording, bullets());
+    Replay other(recorded.recording, ours(wishes));
     std::vector<double> rays_us[2];
     std::vector<double> both_us[2];
     std::size_t met[2] = {0, 0};
-    const btScalar half_width = recording.created[0].call.max.x();  // the floor's
+    const btScalar half_width = recorded.recording.created[0].call.max.x();  // the floor's
     for (std::size_t step = 0; step < wishes.steps; ++step) {
       for (const int turn : {0, 1}) {
         Replay& replay = turn == 0 ? one : other;
@@ -134,7 +154,7 @@ void rays(const Wishes& wishes) {
       }
     }
     fmt::print("{}: {} boxes; a ray meets {:.0f} boxes of Bullet's and {:.0f} of ours\n", scene,
-               simulation.size(), double(met[0]) / double(100 * wishes.steps),
+               recorded.simulation.size(), double(met[0]) / double(100 * wishes.steps),
                double(met[1]) / double(100 * wishes.steps));
     print_times(scene, "100 rays", rays_us[0], rays_us[1]);
     print_times(scene, "with the stage", both_us[0], both_us[1]);

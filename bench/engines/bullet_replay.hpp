@@ -1,6 +1,7 @@
 // What a simulation tells its broad phase, recorded and played to others.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -78,6 +79,20 @@ class Replay {
   }
 
   btBroadphaseInterface& broadphase() { return *broadphase_; }
+  /// The unique ids of the pairs in the cache whose boxes overlap, sorted.
+  std::vector<std::pair<int, int>> overlapping_pairs() {
+    std::vector<std::pair<int, int>> pairs;
+    const btBroadphasePairArray& cached = broadphase_->getOverlappingPairCache()->getOverlappingPairArray();
+    for (int i = 0; i < cached.size(); ++i) {
+      const btBroadphaseProxy& a = *cached[i].m_pProxy0;
+      const btBroadphaseProxy& b = *cached[i].m_pProxy1;
+      if (TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax))
+        pairs.push_back(std::minmax(a.m_uniqueId, b.m_uniqueId));
+    }
+    std::ranges::sort(pairs);
+    return pairs;
+  }
+
   int pairs() const { return broadphase_->getOverlappingPairCache()->getNumOverlappingPairs(); }
 
  private:

@@ -18,12 +18,7 @@ template <int D>
 Outcome race_in(const Wishes& wishes, const std::string& algorithms, const std::string& scene,
                 std::size_t boxes, double moving, const Turns& turns) {
   const lab::Catalogue catalogue;
-  return race<D>(catalogue.select(algorithms),
-                 motion_of<D>(scene, {.boxes = boxes,
-                                      .seed = wishes.seed,
-                                      .frames = turns.frames,
-                                      .moving = moving,
-                                      .drift = wishes.drift}),
+  return race<D>(catalogue.select(algorithms), motion_of<D>(scene, wishes.request(boxes, turns, moving)),
                  turns);
 }
 

@@ -36,13 +36,9 @@ void spikes_in(const Wishes& wishes) {
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(1'000, 5);
   const lab::Catalogue catalogue;
-  const Outcome outcome = race<D>(catalogue.select(wishes.algorithms_or("auto")),
-                                  motion_of<D>(scene_of(wishes), {.boxes = boxes,
-                                                                  .seed = wishes.seed,
-                                                                  .frames = turns.frames,
-                                                                  .moving = moving_of(wishes),
-                                                                  .drift = wishes.drift}),
-                                  turns);
+  const Outcome outcome =
+      race<D>(catalogue.select(wishes.algorithms_or("auto")),
+              motion_of<D>(scene_of(wishes), wishes.request(boxes, turns, moving_of(wishes))), turns);
   print_heading(fmt::format("spikes, {}, {:.3g} % moving", scene_of(wishes), moving_of(wishes) * 100), D,
                 boxes, turns);
   print_table(outcome);

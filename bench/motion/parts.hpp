@@ -27,6 +27,10 @@ struct Wishes {
   bool is_cold = false;
   double budget_seconds = Turns{}.budget_seconds;
 
+  /// What a scene is asked for.
+  lab::SceneRequest request(std::size_t its_boxes, const Turns& turns, double its_moving) const {
+    return {.boxes = its_boxes, .seed = seed, .frames = turns.frames, .moving = its_moving, .drift = drift};
+  }
   Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;
   std::string algorithms_or(const std::string& standard) const {
     return algorithms.empty() ? standard : algorithms;

@@ -34,21 +34,10 @@ History<D> record(World& world, std::size_t warm_up, std::size_t frames) {
   };
   for (std::size_t i = 0; i < warm_up; ++i) world.step();
 
-  History<D> history{boxes_at(warm_up), {}};
-  std::vector<Box<D>> before = history.boxes;
-  for (std::size_t frame = 1; frame <= frames; ++frame) {
-    world.step();
-    std::vector<Box<D>> now = boxes_at(warm_up + frame);
-    Step<D> step{now.size(), {}, {}};
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      if (now[i] == before[i]) continue;
-      step.changed.push_back(BoxId(i));
-      step.boxes.push_back(now[i]);
-    }
-    history.steps.push_back(std::move(step));
-    before = std::move(now);
-  }
-  return history;
+  return history_of_frames<D>(frames, [&](std::size_t frame) {
+    if (frame > 0) world.step();
+    return boxes_at(warm_up + frame);
+  });
 }
 
 }  // namespace broadside::lab::recordings

@@ -124,20 +124,7 @@ class Pile {
 template <int D>
 History<D> make_pile(const Settings& settings, const SceneRequest& request) {
   Pile<D> pile(request.boxes, request.seed, settings.number("speed"));
-  History<D> history{pile.boxes(0), {}};
-  std::vector<Box<D>> before = history.boxes;
-  for (std::size_t frame = 1; frame <= request.frames; ++frame) {
-    std::vector<Box<D>> now = pile.boxes(frame);
-    Step<D> step{now.size(), {}, {}};
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      if (now[i] == before[i]) continue;
-      step.changed.push_back(BoxId(i));
-      step.boxes.push_back(now[i]);
-    }
-    history.steps.push_back(std::move(step));
-    before = std::move(now);
-  }
-  return history;
+  return history_of_frames<D>(request.frames, [&pile](std::size_t frame) { return pile.boxes(frame); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -24,6 +25,26 @@ using broadside::apply;
 using broadside::History;
 using broadside::places_of;
 using broadside::Step;
+
+/// The history of the arrays that `boxes_of(frame)` gives, asked for frame 0 and then for each of `frames`
+/// more.
+template <int D, typename BoxesOf>
+History<D> history_of_frames(std::size_t frames, BoxesOf boxes_of) {
+  History<D> history{boxes_of(std::size_t{0}), {}};
+  std::vector<Box<D>> before = history.boxes;
+  for (std::size_t frame = 1; frame <= frames; ++frame) {
+    std::vector<Box<D>> now = boxes_of(frame);
+    Step<D> step{now.size(), {}, {}};
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (i < before.size() && now[i] == before[i]) continue;
+      step.changed.push_back(BoxId(i));
+      step.boxes.push_back(now[i]);
+    }
+    history.steps.push_back(std::move(step));
+    before = std::move(now);
+  }
+  return history;
+}
 
 /// How many boxes, from which seed, and how they move; the last three concern only scenes that do not move on
 /// their own.

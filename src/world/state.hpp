@@ -87,7 +87,6 @@ struct World<D, Real>::State {
   void set_box(std::uint32_t slot, const Box<D, Real>& box,
                const Point<D, Real>* velocity = nullptr) noexcept;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
-  void set_within(std::uint32_t slot, const Box<D, Real>& box) noexcept;
   void reserve_removals(std::size_t boxes, std::size_t ignored);
   void remove_valid(std::uint32_t slot) noexcept;
   void mark_changed(std::uint32_t slot) noexcept;

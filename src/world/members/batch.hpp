@@ -64,18 +64,8 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
     if (!velocities.empty()) state_->check_velocity(velocities[i], i, "of the box number", i);
   }
   state_->reserve_moves(boxes.size());
-  const bool has_margin = state_->has_margin();
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const std::uint32_t slot = handles[i].slot;
-    const Box<D, Real>& box = boxes[i];
-    const Point<D, Real>* const velocity = velocities.empty() ? nullptr : &velocities[i];
-    if (!has_margin || !is_present(box))
-      state_->set_box(slot, box, velocity);
-    else if (state_->margins.keeps(state_->enlarged[slot], box, velocity))
-      state_->set_within(slot, box);
-    else
-      state_->set_outside(slot, box, velocity);
-  }
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    state_->set_box(handles[i].slot, boxes[i], velocities.empty() ? nullptr : &velocities[i]);
 }
 
 template <int D, typename Real>
@@ -124,7 +114,7 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   };
   for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
     if (state.slots[slot].state != State::SlotState::live) continue;
-    // So that it is enlarged anew.
+    // So that it is enlarged anew, and not kept where it was.
     if (state.has_margin()) state.enlarged[slot] = absent_box<D, Real>();
     state.set_box(slot, shifted(state.boxes[slot]));
   }

@@ -211,24 +211,8 @@ void World<D, Real>::State::reserve_moves(std::size_t count) {
   if (queried != nullptr) make_room(unindexed, count);
 }
 
-/// In the default environment, and with room for what it lists, as set_within().
-template <int D, typename Real>
-void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given,
-                                    const Point<D, Real>* velocity) noexcept {
-  // Where invalid ones are not quarantined, it has been checked.
-  const Box<D, Real> box =
-      options.bad_input == BadInput::quarantine && !is_present(given) ? absent_box<D, Real>() : given;
-  if (!has_margin()) {
-    boxes[slot] = box;
-    mark_changed(slot);
-  } else if (margins.keeps(enlarged[slot], box, velocity)) {
-    set_within(slot, box);
-  } else {
-    set_outside(slot, box, velocity);
-  }
-}
-
-/// Moves a box out of its enlarged one, to where it gets another.
+/// Moves a box out of its enlarged one, and enlarges it anew. Apart from set_box(), which is then small enough
+/// for the compiler to inline it.
 template <int D, typename Real>
 void World<D, Real>::State::set_outside(std::uint32_t slot, const Box<D, Real>& box,
                                         const Point<D, Real>* velocity) noexcept {
@@ -238,12 +222,17 @@ void World<D, Real>::State::set_outside(std::uint32_t slot, const Box<D, Real>& 
   enlarged[slot] = margins.enlarged(box, velocity);
 }
 
-/// Moves a box within its enlarged one. Where only enlarged boxes make pairs, that concerns nothing but
-/// queries.
+/// In the default environment, and with room for what it lists. Where only enlarged boxes make pairs, a move
+/// within one concerns nothing but queries.
 template <int D, typename Real>
-inline void World<D, Real>::State::set_within(std::uint32_t slot, const Box<D, Real>& box) noexcept {
+inline void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given,
+                                           const Point<D, Real>* velocity) noexcept {
+  // Where invalid ones are not quarantined, it has been checked.
+  const Box<D, Real> box =
+      options.bad_input == BadInput::quarantine && !is_present(given) ? absent_box<D, Real>() : given;
+  if (has_margin() && !margins.keeps(enlarged[slot], box, velocity)) return set_outside(slot, box, velocity);
   boxes[slot] = box;
-  if (refines_by_boxes()) {
+  if (!has_margin() || refines_by_boxes()) {
     mark_changed(slot);
   } else if (queried != nullptr) {
     unindexed.push_back(BoxId{slot});

@@ -1,4 +1,4 @@
-// BulletBroadphase alone: its pairs, and who decides about them.
+// BulletBroadphase alone: its pairs, and what decides about them.
 #include <functional>
 #include <stdexcept>
 #include <string>
