@@ -155,6 +155,12 @@ class PairTracker {
   }
 
  private:
+  template <int, typename>
+  friend class World;
+
+  /// For worlds, as update(): each box that `changed` lists is listed once, and is valid or absent.
+  void update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+
   /// What an algorithm writes: the events of `change`, in any order. One may be written more than once.
   virtual void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) = 0;
 

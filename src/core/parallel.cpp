@@ -281,12 +281,17 @@ void Parallel::run_workers(const std::function<void(std::size_t)>& body) {
   // oneTBB's threads have the environment in which it was called first, and in a task this one has as well.
   const FloatControl control = CallersEnvironment::control();
   const CallersEnvironment callers;
-  executor_->run(workers_, [&](std::size_t worker) {
-    const DefaultEnvironment environment(control);
-    static_cast<void>(begun.load(std::memory_order_acquire));
-    body(worker);
-    ended.fetch_add(1, std::memory_order_release);
-  });
+  try {
+    executor_->run(workers_, [&](std::size_t worker) {
+      const DefaultEnvironment environment(control);
+      static_cast<void>(begun.load(std::memory_order_acquire));
+      body(worker);
+      ended.fetch_add(1, std::memory_order_release);
+    });
+  } catch (...) {
+    static_cast<void>(ended.load(std::memory_order_acquire));
+    throw;
+  }
   if (const std::size_t count = ended.load(std::memory_order_acquire); count != workers_)
     throw std::logic_error("the executor returned after " + std::to_string(count) + " of " +
                            std::to_string(workers_) + " tasks; expected all of them");

@@ -128,7 +128,7 @@ void AdaptiveTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& 
   };
   if (change.rebuild || !has_pairs_) find(change.before, pairs_);
   find(change.now, found_);
-  report_differences<D, Real>(change, found_, pairs_, begun, ended);
+  report_differences<D, Real>(change, found_, pairs_, this->workers(), parallel_, begun, ended);
   std::swap(pairs_, found_);
   has_pairs_ = true;
   this->count(finder_->statistics());

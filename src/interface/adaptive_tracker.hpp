@@ -13,6 +13,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/parallel.hpp"
 #include "interface/follow_policy.hpp"
 
 namespace broadside::core {
@@ -63,6 +64,7 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
   std::size_t changed_ = 0;    // of the last update
   std::vector<Pair> pairs_;    // those of the frame before, if has_pairs_
   std::vector<Pair> found_;
+  Parallel parallel_;
   bool has_pairs_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/parallel.hpp"
 #include "interface/pair_difference.hpp"
 
 namespace broadside {
@@ -24,7 +25,8 @@ void DiffTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
   };
   if (change.rebuild) find(change.before, pairs_);
   find(change.now, found_);
-  core::report_differences<D, Real>(change, found_, pairs_, begun, ended);
+  core::Parallel parallel;
+  core::report_differences<D, Real>(change, found_, pairs_, this->workers(), parallel, begun, ended);
   std::swap(pairs_, found_);
   this->count(finder_->statistics());
 }

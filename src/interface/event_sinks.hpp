@@ -28,15 +28,18 @@ class CandidateSink final : public PairSink {
   PairSink& ended_;
 };
 
-/// Without filters, what overlaps a box at rest is all there is to ask; else every pair is a candidate.
+/// Without filters, what overlaps a box at rest is all there is to ask; else every pair is a candidate. Where
+/// the caller judges `every_pair`, all are written to `begun` as they are found.
 template <int D>
 class EventSinks {
  public:
-  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended)
+  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair = false)
       : candidates_(change, begun, ended),
-        sinks_{.begun = change.filters_now.empty() ? begun : candidates_,
-               .ended = change.filters_now.empty() ? ended : candidates_,
-               .candidates = candidates_,
+        sinks_{.begun = every_pair || change.filters_now.empty() ? begun : candidates_,
+               .ended = every_pair                   ? begun
+                        : change.filters_now.empty() ? ended
+                                                     : candidates_,
+               .candidates = every_pair ? begun : candidates_,
                .moves = change.flags.data()} {}
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;

@@ -11,6 +11,12 @@
 namespace broadside::core {
 namespace {
 
+/// Pairs that one of several threads compares at a time.
+constexpr std::size_t pairs_at_once = 4096;
+
+/// Pairs that take as long as one box of a search.
+constexpr std::size_t pairs_a_box = 8;
+
 /// Whether a filter has changed: then a pair may differ whose boxes overlap in both frames.
 template <int D, typename Real>
 bool has_changed_filter(const Change<D, Real>& change) {
@@ -44,25 +50,40 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
 
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
-                        std::span<const Pair> kept, PairSink& begun, PairSink& ended) {
+                        std::span<const Pair> kept, const Workers& workers, Parallel& parallel,
+                        PairSink& begun, PairSink& ended) {
   const bool by_boxes = !has_changed_filter(change);
-  for_differing<D, Real>(change, found, change.before, by_boxes, [&](Pair pair) {
-    if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
-      begun.add(pair.first, pair.second);
+  parallel.start(workers, (found.size() + kept.size()) / pairs_a_box);
+  const auto parts_of = [](std::span<const Pair> pairs) {
+    return (pairs.size() + pairs_at_once - 1) / pairs_at_once;
+  };
+  const auto part = [](std::span<const Pair> pairs, Range parts) {
+    const std::size_t begin = parts.begin * pairs_at_once;
+    return pairs.subspan(begin, std::min(parts.end * pairs_at_once, pairs.size()) - begin);
+  };
+  parallel.search(parts_of(found), begun, [&](Range parts, std::size_t, PairSink& sink) {
+    for_differing<D, Real>(change, part(found, parts), change.before, by_boxes, [&](Pair pair) {
+      if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
+        sink.add(pair.first, pair.second);
+    });
+    return Statistics{};
   });
-  for_differing<D, Real>(change, kept, change.now, by_boxes, [&](Pair pair) {
-    if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
-      ended.add(pair.first, pair.second);
+  parallel.search(parts_of(kept), ended, [&](Range parts, std::size_t, PairSink& sink) {
+    for_differing<D, Real>(change, part(kept, parts), change.now, by_boxes, [&](Pair pair) {
+      if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
+        sink.add(pair.first, pair.second);
+    });
+    return Statistics{};
   });
 }
 
-template void report_differences(const Change<2>&, std::span<const Pair>, std::span<const Pair>, PairSink&,
-                                 PairSink&);
-template void report_differences(const Change<3>&, std::span<const Pair>, std::span<const Pair>, PairSink&,
-                                 PairSink&);
+template void report_differences(const Change<2>&, std::span<const Pair>, std::span<const Pair>,
+                                 const Workers&, Parallel&, PairSink&, PairSink&);
+template void report_differences(const Change<3>&, std::span<const Pair>, std::span<const Pair>,
+                                 const Workers&, Parallel&, PairSink&, PairSink&);
 template void report_differences(const Change<2, double>&, std::span<const Pair>, std::span<const Pair>,
-                                 PairSink&, PairSink&);
+                                 const Workers&, Parallel&, PairSink&, PairSink&);
 template void report_differences(const Change<3, double>&, std::span<const Pair>, std::span<const Pair>,
-                                 PairSink&, PairSink&);
+                                 const Workers&, Parallel&, PairSink&, PairSink&);
 
 }  // namespace broadside::core

@@ -6,6 +6,8 @@
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/parallel.hpp"
+
 namespace broadside::core {
 
 /// Writes what began and what ended, given `found`, all pairs that overlap now, and `kept`, all those that
@@ -15,6 +17,7 @@ namespace broadside::core {
 /// boxes at rest need no test. Most pairs go on, so that is tested first.
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
-                        std::span<const Pair> kept, PairSink& begun, PairSink& ended);
+                        std::span<const Pair> kept, const Workers& workers, Parallel& parallel,
+                        PairSink& begun, PairSink& ended);
 
 }  // namespace broadside::core

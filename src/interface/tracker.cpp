@@ -13,15 +13,24 @@
 
 #include "core/float_environment.hpp"
 #include "core/grow.hpp"
+#include "core/parallel.hpp"
 #include "core/sort_pairs.hpp"
 #include "interface/input_check.hpp"
 
 namespace broadside {
+namespace {
+
+/// Changes whose boxes are copied in the time that a search takes for a box.
+constexpr std::size_t changes_a_box = 8;
+
+}  // namespace
 
 template <int D, typename Real>
 class PairTracker<D, Real>::State {
  public:
-  void update(PairTracker& tracker, const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+  void check(const Frame<D, Real>& frame) const;
+  void update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once, PairSink& begun,
+              PairSink& ended);
   Frame<D, Real> last_frame() const noexcept;
   std::size_t bytes() const noexcept;
   bool is_whole() const noexcept { return !dirty_; }
@@ -32,8 +41,7 @@ class PairTracker<D, Real>::State {
   Workers workers;
 
  private:
-  void check(const Frame<D, Real>& frame) const;
-  void take(const Frame<D, Real>& frame, bool rebuild);
+  void take(const Frame<D, Real>& frame, bool rebuild, bool lists_once);
   void take_ignored(const Frame<D, Real>& frame, bool rebuild);
   void drop_ignored(const Change<D, Real>& change);
   void keep(const Frame<D, Real>& frame) noexcept;
@@ -53,16 +61,17 @@ class PairTracker<D, Real>::State {
   std::vector<Pair> begun_;
   std::vector<Pair> ended_;
   std::vector<Pair> sorting_;
+  core::Parallel parallel_;
   bool dirty_ = true;  // the last update did not end, or there was none
 };
 
+/// `lists_once`: no box is listed twice.
 template <int D, typename Real>
-void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Real>& frame, PairSink& begun,
-                                         PairSink& ended) {
-  const core::DefaultEnvironment environment;
-  check(frame);
+void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once,
+                                         PairSink& begun, PairSink& ended) {
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
-  take(frame, rebuild);
+  parallel_.start(workers, frame.changed.size() / changes_a_box);
+  take(frame, rebuild, lists_once);
   take_ignored(frame, rebuild);
 
   begun_.clear();
@@ -128,7 +137,7 @@ void PairTracker<D, Real>::State::check(const Frame<D, Real>& frame) const {
 
 /// Sets now_, changed_, invalid_ and flags_, and makes everything as long as the longer frame.
 template <int D, typename Real>
-void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild) {
+void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild, bool lists_once) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), taken_);
   const bool had_filters = !filters_before_.empty();
@@ -143,23 +152,33 @@ void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild
   core::resize_by_eighths(flags_, size);
   changed_.clear();
   invalid_.clear();
+  const auto copy = [&](std::size_t i) {
+    flags_[i] = 1;
+    now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
+    if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
+  };
   const auto take = [&](std::size_t i) {
     if (flags_[i] != 0) return;
-    flags_[i] = 1;
+    copy(i);
     changed_.push_back(BoxId(i));
-    now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
     if (core::is_invalid(now_[i])) {
       now_[i] = absent_box<D, Real>();
       invalid_.push_back(BoxId(i));
     }
-    if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
   };
   if (rebuild || frame.filters.empty() == had_filters) {
     for (std::size_t i = 0; i < size; ++i) take(i);
+    return;
+  }
+  if (lists_once) {
+    changed_.assign(frame.changed.begin(), frame.changed.end());
+    parallel_.for_ranges(changed_.size(), [&](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) copy(index(changed_[i]));
+    });
   } else {
     for (const BoxId id : frame.changed) take(index(id));
-    for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
   }
+  for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
 }
 
 /// Sets toggled_.
@@ -210,9 +229,16 @@ void PairTracker<D, Real>::State::keep(const Frame<D, Real>& frame) noexcept {
     quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
     std::ranges::sort(quarantined_);
   }
-  for (const BoxId id : changed_) {
-    before_[index(id)] = now_[index(id)];
-    flags_[index(id)] = 0;
+  const auto keep_changed = [this](core::Range range, std::size_t) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      before_[index(changed_[i])] = now_[index(changed_[i])];
+      flags_[index(changed_[i])] = 0;
+    }
+  };
+  try {
+    parallel_.for_ranges(changed_.size(), keep_changed);
+  } catch (...) {  // the executor's, after some of its tasks
+    keep_changed({0, changed_.size()}, 0);
   }
   if (!filters_now_.empty()) {
     for (const BoxId id : changed_) filters_before_[index(id)] = filters_now_[index(id)];
@@ -255,7 +281,15 @@ PairTracker<D, Real>::~PairTracker() = default;
 
 template <int D, typename Real>
 void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
-  state_->update(*this, frame, begun, ended);
+  const core::DefaultEnvironment environment;
+  state_->check(frame);
+  state_->update(*this, frame, false, begun, ended);
+}
+
+template <int D, typename Real>
+void PairTracker<D, Real>::update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  const core::DefaultEnvironment environment;
+  state_->update(*this, frame, true, begun, ended);
 }
 
 template <int D, typename Real>

@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "kernels/block.hpp"
+#include "kernels/shared_bits.hpp"
 
 namespace broadside::kernels {
 
@@ -98,6 +99,13 @@ class BlockPool {
   }
   void unmark(std::uint32_t slot) {
     heads_[slot / width].moving = static_cast<std::uint16_t>(heads_[slot / width].moving & ~bit(slot));
+  }
+  /// The same, while other threads mark and unmark other slots.
+  void mark_beside_others(std::uint32_t slot) {
+    set_shared(heads_[slot / width].moving, static_cast<std::uint16_t>(bit(slot)));
+  }
+  void unmark_beside_others(std::uint32_t slot) {
+    clear_shared(heads_[slot / width].moving, static_cast<std::uint16_t>(bit(slot)));
   }
   bool is_marked(std::uint32_t slot) const { return (heads_[slot / width].moving & bit(slot)) != 0; }
 

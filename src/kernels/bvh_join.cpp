@@ -55,32 +55,37 @@ HWY_INLINE NumberVector all_lanes(std::size_t number) {
 template <int D>
 class Join {
  public:
-  Join(const PackedBvh<D>& tree, const JoinLimit& limit, PairSink& sink)
-      : tree_(tree), limit_(limit), pairs_(sink) {}
+  Join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, PairSink& sink)
+      : tree_(tree), leaves_(leaves), limit_(limit), pairs_(sink), next_leaf_(leaves.begin) {}
 
-  JoinWork run() {
+  JoinWork run(std::uint32_t* scratch) {
     const std::uint32_t root = 0;
-    const bool is_done = children_of(0, tree_.level_count - 1, &root, 1);
-    return {tests_, is_done ? tree_.levels[0].size : next_leaf_ * fan_out};
+    if (children_of(0, tree_.level_count - 1, &root, 1, scratch)) next_leaf_ = leaves_.end;
+    const std::uint64_t allowed = limit_.tests + limit_.tests_per_pair * pairs_.written();
+    return {tests_, allowed - std::min(allowed, work()), next_leaf_};
   }
 
  private:
+  std::uint64_t work() const { return tests_ + fan_out * bounds_; }
+
   /// Joins what lies below `node`, whose children stand on `level`, with what lies below the nodes of `list`:
   /// those that touch it and do not stand before it. False where it gave up.
-  bool children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count) {
+  bool children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count,
+                   std::uint32_t* touched) {
     if (level == 0) {
       leaf(node, list, count);
       next_leaf_ = node + 1;
       bounds_ += count;
-      const std::uint64_t work = tests_ + fan_out * bounds_;
-      return HWY_LIKELY(work <= limit_.tests) ||
-             work - limit_.tests <= limit_.tests_per_pair * pairs_.written();
+      return HWY_LIKELY(work() <= limit_.tests) ||
+             work() - limit_.tests <= limit_.tests_per_pair * pairs_.written();
     }
     const TreeLevel<D>& children = tree_.levels[level];
-    std::uint32_t* const touched = tree_.candidates[level];
     const std::size_t border = tree_.left_size >> (4 * level);
-    const std::size_t end = std::min((node + 1) * fan_out, children.size);
-    for (std::size_t child = node * fan_out; child < end; ++child) {
+    // Of the children, those that have leaves in the range.
+    const std::size_t to_leaves = 4 * (level - 1);
+    const std::size_t begin_child = std::max(node * fan_out, leaves_.begin >> to_leaves);
+    const std::size_t end_child = std::min((node + 1) * fan_out, ((leaves_.end - 1) >> to_leaves) + 1);
+    for (std::size_t child = begin_child; child < end_child; ++child) {
       if (tree_.left_size != 0 && child << (4 * level) >= tree_.left_size) break;  // no box of the left set
       const BroadcastBox<D> query = broadcast(children, child);
       const NumberVector first = all_lanes(std::max(child, border));
@@ -95,7 +100,7 @@ class Join {
         }
       }
       bounds_ += count;
-      if (!children_of(child, level - 1, touched, touched_count)) return false;
+      if (!children_of(child, level - 1, touched, touched_count, touched + touched_count)) return false;
     }
     return true;
   }
@@ -162,22 +167,23 @@ class Join {
   static constexpr std::size_t most_queries = 1024;
 
   const PackedBvh<D>& tree_;
+  NodeRange leaves_;
   JoinLimit limit_;
   Writer pairs_;
   std::uint64_t tests_ = 0;
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
-  std::size_t next_leaf_ = 0;
+  std::size_t next_leaf_;
   std::uint32_t
       queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
 };
 
 template <int D>
-void bound_level(const PackedBvh<D>& tree, std::size_t parent) {
+void bound_level(const PackedBvh<D>& tree, std::size_t parent, NodeRange nodes) {
   const Floats floats;
   const TreeLevel<D>& below = tree.levels[parent - 1];
   const TreeLevel<D>& level = tree.levels[parent];
   for (int axis = 0; axis < D; ++axis) {
-    for (std::size_t node = 0; node < level.size; ++node) {
+    for (std::size_t node = nodes.begin; node < nodes.end; ++node) {
       const float* const mins = below.min[axis] + node * fan_out;
       const float* const maxs = below.max[axis] + node * fan_out;
       auto min = hn::LoadU(floats, mins);
@@ -195,14 +201,20 @@ void bound_level(const PackedBvh<D>& tree, std::size_t parent) {
 }  // namespace
 
 // What the dispatch below can name: no templates.
-JoinWork join_2(const PackedBvh<2>& tree, const JoinLimit& limit, PairSink& pairs) {
-  return Join<2>(tree, limit, pairs).run();
+JoinWork join_2(const PackedBvh<2>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
+                PairSink& pairs) {
+  return Join<2>(tree, leaves, limit, pairs).run(scratch);
 }
-JoinWork join_3(const PackedBvh<3>& tree, const JoinLimit& limit, PairSink& pairs) {
-  return Join<3>(tree, limit, pairs).run();
+JoinWork join_3(const PackedBvh<3>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
+                PairSink& pairs) {
+  return Join<3>(tree, leaves, limit, pairs).run(scratch);
 }
-void set_bounds_2(const PackedBvh<2>& tree, std::size_t parent) { bound_level(tree, parent); }
-void set_bounds_3(const PackedBvh<3>& tree, std::size_t parent) { bound_level(tree, parent); }
+void set_bounds_2(const PackedBvh<2>& tree, std::size_t parent, NodeRange nodes) {
+  bound_level(tree, parent, nodes);
+}
+void set_bounds_3(const PackedBvh<3>& tree, std::size_t parent, NodeRange nodes) {
+  bound_level(tree, parent, nodes);
+}
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -216,23 +228,25 @@ HWY_EXPORT(set_bounds_2);
 HWY_EXPORT(set_bounds_3);
 
 template <>
-JoinWork join(const PackedBvh<2>& tree, const JoinLimit& limit, PairSink& pairs) {
-  return HWY_DYNAMIC_DISPATCH(join_2)(tree, limit, pairs);
+JoinWork join(const PackedBvh<2>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
+              PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_2)(tree, leaves, limit, scratch, pairs);
 }
 
 template <>
-JoinWork join(const PackedBvh<3>& tree, const JoinLimit& limit, PairSink& pairs) {
-  return HWY_DYNAMIC_DISPATCH(join_3)(tree, limit, pairs);
+JoinWork join(const PackedBvh<3>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
+              PairSink& pairs) {
+  return HWY_DYNAMIC_DISPATCH(join_3)(tree, leaves, limit, scratch, pairs);
 }
 
 template <>
-void set_bounds(const PackedBvh<2>& tree, std::size_t parent) {
-  HWY_DYNAMIC_DISPATCH(set_bounds_2)(tree, parent);
+void set_bounds(const PackedBvh<2>& tree, std::size_t parent, NodeRange nodes) {
+  HWY_DYNAMIC_DISPATCH(set_bounds_2)(tree, parent, nodes);
 }
 
 template <>
-void set_bounds(const PackedBvh<3>& tree, std::size_t parent) {
-  HWY_DYNAMIC_DISPATCH(set_bounds_3)(tree, parent);
+void set_bounds(const PackedBvh<3>& tree, std::size_t parent, NodeRange nodes) {
+  HWY_DYNAMIC_DISPATCH(set_bounds_3)(tree, parent, nodes);
 }
 
 }  // namespace broadside::kernels

@@ -36,15 +36,27 @@ struct PackedBvh {
   /// In a search between two sets, how many places of level 0 hold the left one: a multiple of `fan_out`.
   /// Else 0.
   std::size_t left_size;
-
-  /// Scratch memory: for each level but 0, as many elements as the level's arrays have and `fan_out` more.
-  std::array<std::uint32_t*, most_levels> candidates;
 };
 
-/// Sets the bounds on level `parent` > 0 from those on the level below, whose places beyond its size and
-/// without a box must be absent boxes (not yet NaN).
+/// Elements of a level from one to before another; those of level 1 are the leaves.
+struct NodeRange {
+  std::size_t begin;
+  std::size_t end;
+};
+
+/// Sets the bounds of these nodes of level `parent` > 0 from those on the level below, whose places beyond
+/// its size and without a box must be absent boxes (not yet NaN). Several threads may do so at once.
 template <int D>
-void set_bounds(const PackedBvh<D>& tree, std::size_t parent);
+void set_bounds(const PackedBvh<D>& tree, std::size_t parent, NodeRange nodes);
+
+/// How many numbers of scratch memory a join of the tree takes.
+template <int D>
+std::size_t join_scratch(const PackedBvh<D>& tree) {
+  std::size_t size = 0;
+  for (std::size_t level = 1; level < tree.level_count; ++level)
+    size += tree.levels[level].size + 2 * fan_out;
+  return size;
+}
 
 /// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
 /// Comparing bounds counts as comparing boxes.
@@ -55,12 +67,16 @@ struct JoinLimit {
 
 /// The work that a join did.
 struct JoinWork {
-  std::uint64_t tests;  ///< pairs of boxes compared, where a leaf counts as full
-  std::size_t places;   ///< the places of level 0 before this one were joined with all behind them
+  std::uint64_t tests;    ///< pairs of boxes compared, where a leaf counts as full
+  std::uint64_t unused;   ///< how many tests more it might have made
+  std::size_t next_leaf;  ///< those before it were joined; the end of the range unless it gave up
 };
 
-/// Reports the pairs of overlapping boxes, or those between the two sets, leaf by leaf.
+/// Joins each of these leaves with itself and all behind it, whatever the range: reports the pairs of
+/// overlapping boxes, or those between the two sets, leaf by leaf. `scratch` has room for join_scratch()
+/// numbers. Several threads may join leaves of one tree at once.
 template <int D>
-JoinWork join(const PackedBvh<D>& tree, const JoinLimit& limit, PairSink& pairs);
+JoinWork join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
+              PairSink& pairs);
 
 }  // namespace broadside::kernels

@@ -19,15 +19,14 @@ struct Margins {
   /// Whether boxes are enlarged at all.
   bool any() const noexcept { return margin > 0 || relative > 0 || frames > 0; }
 
-  /// The box with its margin on every side, and extended along its velocity.
+  /// The box with its margin on every side, and extended along its velocity. Sums of infinities that are no
+  /// number add nothing, so that an absent box stays absent.
   Box<D, Real> enlarged(Box<D, Real> box, const Point<D, Real>* velocity) const noexcept {
     const Real its_margin = margin_of(box);
     for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] -= its_margin;
-      box.max[axis] += its_margin;
-      if (velocity == nullptr) continue;
-      const Real way = frames * (*velocity)[axis];
-      (way < 0 ? box.min[axis] : box.max[axis]) += way;
+      const Real way = velocity == nullptr ? 0 : frames * (*velocity)[axis];
+      box.min[axis] = std::min(box.min[axis], box.min[axis] - its_margin + std::min<Real>(way, 0));
+      box.max[axis] = std::max(box.max[axis], box.max[axis] + its_margin + std::max<Real>(way, 0));
     }
     return box;
   }
@@ -40,9 +39,10 @@ struct Margins {
     unsigned keeps = 1;
     for (int axis = 0; axis < D; ++axis) {
       const Real way = velocity == nullptr ? 0 : std::abs(frames * (*velocity)[axis]);
-      const bool is_long = kept.max[axis] - kept.min[axis] > box.max[axis] - box.min[axis] + slack + way;
+      // False for what is no number.
+      const bool fits = kept.max[axis] - kept.min[axis] <= box.max[axis] - box.min[axis] + slack + way;
       keeps &= static_cast<unsigned>(kept.min[axis] <= box.min[axis]) &
-               static_cast<unsigned>(box.max[axis] <= kept.max[axis]) & static_cast<unsigned>(!is_long);
+               static_cast<unsigned>(box.max[axis] <= kept.max[axis]) & static_cast<unsigned>(fits);
     }
     return keeps != 0;
   }

@@ -44,7 +44,7 @@ Filter any_filter(lab::Random& random) {
 
 /// Boxes that come, move, jump and go, and pairs that become ignored and no longer are.
 template <int D>
-History<D> history_of(bool has_filters) {
+History<D> moving_history(bool has_filters) {
   History<D> history =
       lab::random_history<D>({.boxes = 400, .frames = 60, .seed = 5, .infinite_boxes = false});
   if (!has_filters) return history;
@@ -66,7 +66,7 @@ TEST_P(GoldenHistories, HaveTheSameEventsInTheSameOrder) {
   in_dimension([&]<int D>() {
     for (const GoldenHistory& golden : golden_histories) {
       if (golden.dimension != D) continue;
-      const History<D> history = history_of<D>(golden.has_filters);
+      const History<D> history = moving_history<D>(golden.has_filters);
       for (const std::size_t threads : {1, 2, 8}) {
         const auto tracker = make_tracker<D>(algorithm(), spec());
         tracker->set_workers({.threads = threads, .executor = nullptr, .boxes_per_thread = 1});

@@ -1,12 +1,16 @@
 // The law of threads: the same pairs in the same order, whoever does the work and however many.
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "broadside/debug/history.hpp"
+#include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
@@ -203,6 +207,73 @@ TEST_P(ThreadLaw, LetsThroughWhatAnExecutorThrowsAndATrackerDeliversThatFrameAft
     tracker->update({boxes, {}}, begun_pairs, ended);
     EXPECT_EQ(begun, pairs_of(WholeFrame<D>{.boxes = boxes}));
     EXPECT_EQ(ended.count(), 0u);
+  });
+}
+
+/// Frames in which few boxes move, then all, then few again; each mover goes some way, or far.
+template <int D>
+std::vector<Step<D>> frames_of(std::vector<Box<D>> boxes, std::size_t few) {
+  Rng rng(7);
+  std::vector<Step<D>> steps;
+  for (const std::size_t movers : {few, few, boxes.size(), few, few}) {
+    Step<D> step{boxes.size(), {}, {}};
+    for (std::size_t i = 0; i < movers; ++i) {
+      const std::size_t place = i * (boxes.size() / movers);
+      for (int axis = 0; axis < D; ++axis) {
+        const auto way = static_cast<float>(rng.one_in(8) ? rng.between(-20, 20) : rng.between(-0.5, 0.5));
+        boxes[place].min[axis] += way;
+        boxes[place].max[axis] += way;
+      }
+      step.changed.push_back(BoxId(place));
+      step.boxes.push_back(boxes[place]);
+    }
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+TEST_P(ThreadLaw, FollowsBoxesToTheSameEventsByTheSameTests) {
+  in_dimension([&]<int D>() {
+    const std::vector<Box<D>> first = scattered_boxes<D>(reduced(12'000, 1), D == 2 ? 200 : 40);
+    for (const Crew& crew : crews()) {
+      const auto alone = make_tracker<D>(algorithm(), spec());
+      const auto shared = make_tracker<D>(algorithm(), spec());
+      shared->set_workers(crew.workers);
+      std::vector<Box<D>> boxes = first;
+      const auto update = [&](std::span<const BoxId> changed) {
+        std::array<std::vector<Pair>, 4> events;
+        PairCollector begun(events[0]);
+        PairCollector ended(events[1]);
+        PairCollector shared_begun(events[2]);
+        PairCollector shared_ended(events[3]);
+        alone->update({boxes, changed}, begun, ended);
+        shared->update({boxes, changed}, shared_begun, shared_ended);
+        EXPECT_EQ(events[2], events[0]) << crew.name;
+        EXPECT_EQ(events[3], events[1]) << crew.name;
+        EXPECT_EQ(shared->statistics()->tests, alone->statistics()->tests) << crew.name;
+        EXPECT_EQ(shared->explanation(), alone->explanation()) << crew.name;
+      };
+      update({});
+      for (const Step<D>& step : frames_of(first, first.size() / 6)) {
+        apply(step, boxes);
+        update(step.changed);
+      }
+    }
+  });
+}
+
+TEST_P(ThreadLaw, LaysOutByTheWorkersOfNow) {
+  in_dimension([&]<int D>() {
+    const std::vector<Box<D>> boxes = scattered_boxes<D>(2000, D == 2 ? 40 : 12);
+    const auto finder = make_finder<D>(algorithm(), spec());
+    if (finder->outlined() == nullptr) return;
+    ReverseExecutor executor;
+    finder->set_workers(workers(3, &executor));
+    found(*finder, boxes);
+    finder->set_workers({});
+    const std::size_t runs = executor.runs;
+    outline(*finder, std::span<const Box<D>>(boxes));
+    EXPECT_EQ(executor.runs, runs);
   });
 }
 

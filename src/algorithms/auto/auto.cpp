@@ -116,7 +116,9 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
-    Outline<D> outline = broadside::outline(chosen_for(boxes), boxes);
+    PairFinder<D>& chosen = chosen_for(boxes);
+    chosen.set_workers(this->workers());
+    Outline<D> outline = broadside::outline(chosen, boxes);
     const std::string_view name = chosen_algorithm[static_cast<std::size_t>(choice_)];
     outline.caption.insert(0, std::string(name) + (outline.caption.empty() ? "" : ": "));
     return outline;

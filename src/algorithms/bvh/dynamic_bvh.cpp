@@ -41,7 +41,8 @@ Box<D> united(const Box<D>& a, const Box<D>& b) {
 }  // namespace
 
 template <int D>
-void DynamicBvh<D>::build(std::span<const Box<D>> boxes) {
+void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers) {
+  parallel_.start(workers, boxes.size());
   nodes_.clear();
   info_.clear();
   free_.clear();
@@ -70,7 +71,7 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes) {
 /// Puts the boxes into leaves as they are packed.
 template <int D>
 void DynamicBvh<D>::add_leaves() {
-  packer_.pack(packed_);
+  packer_.pack(packed_, parallel_);
   const kernels::TreeLevel<D>& packed = packer_.tree().levels[0];
   children_.clear();
   for (std::size_t begin = 0; begin < packed.size; begin += fan_out) {

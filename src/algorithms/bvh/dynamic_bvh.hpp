@@ -22,7 +22,7 @@ template <int D>
 class DynamicBvh {
  public:
   /// Starts over with these boxes, some of which may be absent; ids are places in the array.
-  void build(std::span<const Box<D>> boxes);
+  void build(std::span<const Box<D>> boxes, const Workers& workers = {});
 
   /// Moves a box, inserts one, or removes it if `box` is absent. Cost: a path from the root, a few times.
   void set(BoxId id, const Box<D>& box);
@@ -85,6 +85,7 @@ class DynamicBvh {
   void refit_above(std::uint32_t node);
 
   BvhPacker<D> packer_;
+  core::Parallel parallel_;
   // For building: the boxes and their ids, and what the next level's nodes hold.
   std::vector<Box<D>> packed_;
   std::vector<std::uint32_t> ids_;

@@ -30,14 +30,16 @@ void PackedLevels<D>::start(std::size_t places) {
 }
 
 template <int D>
-void PackedLevels<D>::build() {
+void PackedLevels<D>::build(core::Parallel& parallel) {
   for (const Gap gap : gaps_) fill(0, gap, none<D>);
   tree_.id = ids_.data();
   tree_.level_count = 1;
   do {
     const std::size_t level = tree_.level_count++;
     resize(level, whole_leaves(tree_.levels[level - 1].size) / fan_out);
-    kernels::set_bounds(tree_, level);
+    parallel.for_ranges(tree_.levels[level].size, [&](core::Range nodes, std::size_t) {
+      kernels::set_bounds(tree_, level, {nodes.begin, nodes.end});
+    });
     fill(level, gap_behind(level), none<D>);
   } while (tree_.levels[tree_.level_count - 1].size > fan_out);
   for (const Gap gap : gaps_) fill(0, gap, core::nan_box<D>());
@@ -71,7 +73,6 @@ void PackedLevels<D>::resize(std::size_t level, std::size_t size) {
     tree_.levels[level].max[axis] = grown(memory.max[axis], whole_leaves(size));
   }
   tree_.levels[level].size = size;
-  if (level != 0) tree_.candidates[level] = grown(memory.candidates, whole_leaves(size) + fan_out);
 }
 
 template <int D>
@@ -79,7 +80,6 @@ std::size_t PackedLevels<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
   std::size_t bytes = held(gaps_) + held(ids_);
   for (const LevelMemory& level : memory_) {
-    bytes += held(level.candidates);
     for (int axis = 0; axis < D; ++axis) bytes += held(level.min[axis]) + held(level.max[axis]);
   }
   return bytes;

@@ -11,6 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/parallel.hpp"
 #include "kernels/bvh_join.hpp"
 
 namespace broadside::algorithm {
@@ -20,7 +21,7 @@ constexpr std::size_t whole_leaves(std::size_t size) {
   return (size + kernels::fan_out - 1) / kernels::fan_out * kernels::fan_out;
 }
 
-/// Between start() and build() each place gets a box or is left.
+/// Between start() and build() each place gets a box or is left. Several threads may put boxes at once.
 template <int D>
 class PackedLevels {
  public:
@@ -46,7 +47,7 @@ class PackedLevels {
   void set_left_size(std::size_t places) { tree_.left_size = places; }
 
   /// Sets the bounds over the leaves, level by level.
-  void build();
+  void build(core::Parallel& parallel);
 
   const kernels::PackedBvh<D>& tree() const noexcept { return tree_; }
   std::span<BoxId> ids() noexcept { return {ids_.data(), tree_.levels[0].size}; }
@@ -62,7 +63,6 @@ class PackedLevels {
   struct LevelMemory {
     std::array<std::vector<float>, D> min;
     std::array<std::vector<float>, D> max;
-    std::vector<std::uint32_t> candidates;
   };
 
   Gap gap_behind(std::size_t level) const;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "algorithms/bvh/buckets.hpp"
+#include "core/prefix_sum.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -28,16 +29,16 @@ constexpr std::size_t classes = class_borders.size() + 1;
 }  // namespace
 
 template <int D>
-void BvhPacker<D>::pack(std::span<const Box<D>> boxes, std::size_t left_count) {
+void BvhPacker<D>::pack(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left_count) {
   sample_.take(boxes);
-  partition(boxes, left_count);
-  place_all();
-  levels_.build();
+  partition(boxes, parallel, left_count);
+  place_all(parallel);
+  levels_.build(parallel);
 }
 
 /// Sorts the boxes into entries_: by set and class, and in these roughly along the first axis.
 template <int D>
-void BvhPacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
+void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left) {
   std::array<float, D> inverse;
   for (int axis = 0; axis < D; ++axis) {
     typical_[axis] = std::max(sample_[axis].extent, spacing(boxes.size(), axis) / 2);
@@ -48,31 +49,37 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, std::size_t left) {
   const int first = axes_[0];
   const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
   const std::size_t groups = left == 0 ? classes : 2 * classes;
-  counts_.assign(groups * buckets.count, 0);
+  const std::size_t keys = groups * buckets.count;
+  counts_.assign(parallel.range_count() * keys, 0);
   keys_.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box<D>& box = boxes[i];
-    float size = 0;
-    for (int axis = 0; axis < D; ++axis)
-      size = std::max(size, (box.max[axis] - box.min[axis]) * inverse[axis]);
-    std::uint32_t group = 0;
-    if (size > class_borders[0]) {
-      for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
+  parallel.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+    std::uint32_t* const counts = counts_.data() + number * keys;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const Box<D>& box = boxes[i];
+      float size = 0;
+      for (int axis = 0; axis < D; ++axis)
+        size = std::max(size, (box.max[axis] - box.min[axis]) * inverse[axis]);
+      std::uint32_t group = 0;
+      if (size > class_borders[0]) {
+        for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
+      }
+      if (left != 0 && i >= left) group += classes;
+      const std::uint32_t key = group * buckets.count + buckets(box.min[first]);
+      keys_[i] = static_cast<std::uint16_t>(key);
+      ++counts[key];
     }
-    if (left != 0 && i >= left) group += classes;
-    const std::uint32_t key = group * buckets.count + buckets(box.min[first]);
-    keys_[i] = static_cast<std::uint16_t>(key);
-    ++counts_[key];
-  }
-  std::uint32_t begin = 0;
-  group_ends_.clear();
-  for (std::size_t key = 0; key < counts_.size(); ++key) {
-    begin += std::exchange(counts_[key], begin);
-    if ((key + 1) % buckets.count == 0) group_ends_.push_back(begin);
-  }
+  });
+  core::prefix_sum(std::span(counts_), keys);
   entries_.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) entries_[counts_[keys_[i]]++] = {boxes[i], BoxId(i)};
-  sort_heavy_buckets();
+  parallel.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
+    std::uint32_t* const places = counts_.data() + number * keys;
+    for (std::size_t i = range.begin; i < range.end; ++i) entries_[places[keys_[i]]++] = {boxes[i], BoxId(i)};
+  });
+  const std::span<const std::uint32_t> ends = std::span(counts_).last(keys);
+  group_ends_.clear();
+  for (std::size_t group = 1; group <= groups; ++group)
+    group_ends_.push_back(ends[group * buckets.count - 1]);
+  sort_heavy_buckets(ends, parallel);
 }
 
 /// The axis with the most cuts comes last, where order is finest.
@@ -87,18 +94,18 @@ void BvhPacker<D>::choose_axes(std::size_t boxes) {
 /// Sorts the boxes within heavy buckets: where a few buckets hold most boxes, buckets alone hardly put them
 /// in order.
 template <int D>
-void BvhPacker<D>::sort_heavy_buckets() {
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : counts_) {
-    if (end - begin > std::max<std::size_t>(1024, entries_.size() / 64)) {
-      std::sort(entries_.begin() + begin, entries_.begin() + end,
-                [first = axes_[0]](const Entry& a, const Entry& b) {
-                  return a.box.min[first] != b.box.min[first] ? a.box.min[first] < b.box.min[first]
-                                                              : a.id < b.id;
-                });
+void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core::Parallel& parallel) {
+  const std::size_t most = std::max<std::size_t>(1024, entries_.size() / 64);
+  const auto is_before = [first = axes_[0]](const Entry& a, const Entry& b) {
+    return a.box.min[first] != b.box.min[first] ? a.box.min[first] < b.box.min[first] : a.id < b.id;
+  };
+  parallel.for_ranges(ends.size(), [&](core::Range range, std::size_t) {
+    for (std::size_t bucket = range.begin; bucket < range.end; ++bucket) {
+      const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
+      if (ends[bucket] - begin > most)
+        std::sort(entries_.begin() + begin, entries_.begin() + ends[bucket], is_before);
     }
-    begin = end;
-  }
+  });
 }
 
 /// The distance of neighbours on an axis, were `count` boxes spread evenly.
@@ -111,7 +118,7 @@ float BvhPacker<D>::spacing(std::size_t count, int axis) const {
 
 /// Puts all boxes from entries_ into the tree's leaves.
 template <int D>
-void BvhPacker<D>::place_all() {
+void BvhPacker<D>::place_all(core::Parallel& parallel) {
   std::size_t size = 0;
   std::size_t begin = 0;
   for (const std::size_t end : group_ends_) {
@@ -119,11 +126,13 @@ void BvhPacker<D>::place_all() {
     begin = end;
   }
   levels_.start(size);
+  scratch_.resize(std::max(scratch_.size(), parallel.workers()));
   size = 0;
   begin = 0;
   for (std::size_t group = 0; group < group_ends_.size(); ++group) {
     const std::size_t end = group_ends_[group];
-    place_group(begin, end, size, group % classes);
+    place_group(std::span<const Entry>(entries_).subspan(begin, end - begin), size, group % classes,
+                parallel);
     levels_.leave(size + (end - begin), size + whole_leaves(end - begin));
     size += whole_leaves(end - begin);
     begin = end;
@@ -133,10 +142,10 @@ void BvhPacker<D>::place_all() {
 
 /// Puts the boxes of one class into leaves, from `place` on.
 template <int D>
-void BvhPacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t place,
-                               std::size_t size_class) {
-  if (begin == end) return;
-  const std::size_t leaves = whole_leaves(end - begin) / fan_out;
+void BvhPacker<D>::place_group(std::span<const Entry> entries, std::size_t place, std::size_t size_class,
+                               core::Parallel& parallel) {
+  if (entries.empty()) return;
+  const std::size_t leaves = whole_leaves(entries.size()) / fan_out;
   const float size = size_class == 0 ? 1 : class_borders[size_class - 1];
   std::array<double, D> parts = parts_of(leaves, size);
   const auto share = [](std::size_t count, double part) {
@@ -144,22 +153,31 @@ void BvhPacker<D>::place_group(std::size_t begin, std::size_t end, std::size_t p
   };
   const std::size_t slab = share(leaves, parts[axes_[0]]) * fan_out;
   const std::size_t strip = D == 2 ? slab : share(slab / fan_out, parts[axes_[1]]) * fan_out;
-  for (std::size_t at = begin; at < end; at += slab, place += slab) {
-    const std::size_t count = std::min(slab, end - at);
-    const auto entry = [this, at](std::size_t i) -> const Entry& { return entries_[at + i]; };
-    if constexpr (D == 2) {
-      order(count, axes_[1], entry,
-            [&](std::size_t i, std::size_t to) { levels_.put(place + to, entry(i).box, entry(i).id); });
-    } else {
-      order_.resize(std::max(order_.size(), count));
-      order(count, axes_[1], entry,
-            [this](std::size_t i, std::size_t to) { order_[to] = static_cast<std::uint32_t>(i); });
-      for (std::size_t from = 0; from < count; from += strip) {
-        const auto in_strip = [&](std::size_t i) -> const Entry& { return entry(order_[from + i]); };
-        order(std::min(strip, count - from), axes_[2], in_strip, [&](std::size_t i, std::size_t to) {
-          levels_.put(place + from + to, in_strip(i).box, in_strip(i).id);
-        });
-      }
+  parallel.for_ranges((entries.size() + slab - 1) / slab, [&](core::Range slabs, std::size_t worker) {
+    for (std::size_t at = slabs.begin * slab; at < std::min(slabs.end * slab, entries.size()); at += slab)
+      place_slab(entries.subspan(at, std::min(slab, entries.size() - at)), place + at, strip,
+                 scratch_[worker]);
+  });
+}
+
+/// Puts the boxes of one slab into leaves, from `place` on.
+template <int D>
+void BvhPacker<D>::place_slab(std::span<const Entry> slab, std::size_t place, std::size_t strip,
+                              Scratch& scratch) {
+  const auto entry = [slab](std::size_t i) -> const Entry& { return slab[i]; };
+  if constexpr (D == 2) {
+    order(slab.size(), axes_[1], scratch, entry,
+          [&](std::size_t i, std::size_t to) { levels_.put(place + to, slab[i].box, slab[i].id); });
+  } else {
+    scratch.order.resize(std::max(scratch.order.size(), slab.size()));
+    order(slab.size(), axes_[1], scratch, entry,
+          [&](std::size_t i, std::size_t to) { scratch.order[to] = static_cast<std::uint32_t>(i); });
+    for (std::size_t from = 0; from < slab.size(); from += strip) {
+      const auto in_strip = [&](std::size_t i) -> const Entry& { return slab[scratch.order[from + i]]; };
+      order(std::min(strip, slab.size() - from), axes_[2], scratch, in_strip,
+            [&](std::size_t i, std::size_t to) {
+              levels_.put(place + from + to, in_strip(i).box, in_strip(i).id);
+            });
     }
   }
 }
@@ -205,7 +223,7 @@ std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) con
 /// order along an axis.
 template <int D>
 template <typename EntryOf, typename Put>
-void BvhPacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
+void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf entry, Put put) const {
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
   for (std::size_t i = 0; i < count; ++i) {
@@ -216,9 +234,10 @@ void BvhPacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
                         std::min(count / 2, most_bvh_buckets));
   std::array<std::uint32_t, most_bvh_buckets> places;
   std::fill_n(places.begin(), buckets.count, 0);
+  scratch.buckets.resize(std::max(scratch.buckets.size(), count));
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t bucket = buckets(entry(i).box.min[axis]);
-    keys_[i] = static_cast<std::uint16_t>(bucket);
+    scratch.buckets[i] = static_cast<std::uint16_t>(bucket);
     ++places[bucket];
   }
   std::uint32_t begin = 0;
@@ -228,20 +247,23 @@ void BvhPacker<D>::order(std::size_t count, int axis, EntryOf entry, Put put) {
     begin += std::exchange(places[bucket], begin);
   }
   if (heaviest > 2 * fan_out && low < high) {
-    const std::span<core::KeyedPlace> keyed = radix_.places(count);
+    const std::span<core::KeyedPlace> keyed = scratch.radix.places(count);
     for (std::uint32_t i = 0; i < count; ++i) keyed[i] = {core::sort_key(entry(i).box.min[axis]), i};
     std::size_t to = 0;
-    for (const core::KeyedPlace& place : radix_.sort()) put(place.place, to++);
+    for (const core::KeyedPlace& place : scratch.radix.sort()) put(place.place, to++);
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) put(i, places[keys_[i]]++);
+  for (std::size_t i = 0; i < count; ++i) put(i, places[scratch.buckets[i]]++);
 }
 
 template <int D>
 std::size_t BvhPacker<D>::bytes() const noexcept {
   const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
-  return held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(order_) + radix_.bytes() +
-         levels_.bytes();
+  std::size_t bytes =
+      held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(scratch_) + levels_.bytes();
+  for (const Scratch& scratch : scratch_)
+    bytes += held(scratch.buckets) + held(scratch.order) + scratch.radix.bytes();
+  return bytes;
 }
 
 template class BvhPacker<2>;

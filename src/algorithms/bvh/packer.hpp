@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/bvh/packed_levels.hpp"
+#include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -32,9 +33,9 @@ class BvhPacker {
 
   /// Builds the tree over `boxes`, all of which are present; there is at least one. A box's id is its place
   /// in the array. Where `left_count` is not 0, the boxes before it have leaves and nodes' children of their
-  /// own, before the others. What was built before is gone. Cost: some passes over the boxes, no allocation
-  /// beyond growth.
-  void pack(std::span<const Box<D>> boxes, std::size_t left_count = 0);
+  /// own, before the others. What was built before is gone. The tree does not depend on the number of
+  /// workers. Cost: some passes over the boxes, no allocation beyond growth.
+  void pack(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left_count = 0);
 
   /// The tree built last. A caller that changes its levels must keep what PackedBvh promises.
   const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
@@ -48,25 +49,33 @@ class BvhPacker {
  private:
   using Entry = core::SortedBox<D>;
 
-  void partition(std::span<const Box<D>> boxes, std::size_t left);
+  /// What a worker orders boxes with.
+  struct Scratch {
+    std::vector<std::uint16_t> buckets;
+    std::vector<std::uint32_t> order;
+    core::RadixSort radix;
+  };
+
+  void partition(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left);
   void choose_axes(std::size_t boxes);
-  void sort_heavy_buckets();
+  void sort_heavy_buckets(std::span<const std::uint32_t> ends, core::Parallel& parallel);
   float spacing(std::size_t count, int axis) const;
-  void place_all();
-  void place_group(std::size_t begin, std::size_t end, std::size_t place, std::size_t size_class);
+  void place_all(core::Parallel& parallel);
+  void place_group(std::span<const Entry> entries, std::size_t place, std::size_t size_class,
+                   core::Parallel& parallel);
+  void place_slab(std::span<const Entry> slab, std::size_t place, std::size_t strip, Scratch& scratch);
   std::array<double, D> parts_of(std::size_t leaves, float size) const;
   template <typename EntryOf, typename Put>
-  void order(std::size_t count, int axis, EntryOf entry, Put put);
+  void order(std::size_t count, int axis, Scratch& scratch, EntryOf entry, Put put) const;
 
   core::Sample<D> sample_;
-  std::array<int, D> axes_{};        // slabs are cut along the first one, and leaves along the last one
-  std::array<float, D> typical_{};   // a box's usual extents, or more where boxes are sparse
-  std::vector<std::uint16_t> keys_;  // a box's bucket
-  std::vector<std::uint32_t> counts_;
+  std::array<int, D> axes_{};              // slabs are cut along the first one, and leaves along the last one
+  std::array<float, D> typical_{};         // a box's usual extents, or more where boxes are sparse
+  std::vector<std::uint16_t> keys_;        // a box's bucket
+  std::vector<std::uint32_t> counts_;      // by range and bucket
   std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> order_;
-  core::RadixSort radix_;
+  std::vector<Scratch> scratch_;  // by worker
   PackedLevels<D> levels_;
 };
 

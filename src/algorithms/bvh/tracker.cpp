@@ -97,7 +97,7 @@ class BvhTracker final : public PairTracker<D> {
     for (const BoxId id : change.changed) {
       if (!is_present(packed_[index(id)])) packed_[index(id)] = change.now[index(id)];
     }
-    tree_.build(packed_);
+    tree_.build(packed_, this->workers());
     judged_tests_ = judged_movers_ = usual_tests_ = usual_movers_ = moves_ = 0;
     is_worse_ = false;
   }

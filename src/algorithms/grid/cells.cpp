@@ -77,8 +77,8 @@ void HierarchicalCells<D>::move(core::MovedBox<D>& box) {
     return;
   }
   const std::size_t level = levels_.level_of(box.now);
-  const std::uint32_t slot = box.was_present ? slot_[index(box.id)] : no_slot;
-  if (box.was_present && levels_[level].cell(box.now.min) == pool_.head(slot / block_size).owner) {
+  if (stays(box, level)) {
+    const std::uint32_t slot = slot_[index(box.id)];
     pool_.mark(slot);
     levels_.widen(level, box.now);
     pool_.set(slot, box.bounds);
@@ -88,11 +88,36 @@ void HierarchicalCells<D>::move(core::MovedBox<D>& box) {
     pool_.mark(slot_[index(box.id)]);
   }
   box.slot = slot_[index(box.id)];
+  box.is_far = is_far(box);
+}
+
+template <int D>
+void HierarchicalCells<D>::move_within_cell(core::MovedBox<D>& box) {
+  if (!box.is_present) return;
+  const std::size_t level = levels_.level_of(box.now);
+  if (!stays(box, level) || levels_.is_widened(level, box.now)) return;
+  box.slot = slot_[index(box.id)];
+  pool_.mark_beside_others(box.slot);
+  pool_.set(box.slot, box.bounds);
+  box.is_far = is_far(box);
+}
+
+/// Whether a box that is there belongs to the cell that it is in.
+template <int D>
+bool HierarchicalCells<D>::stays(const core::MovedBox<D>& box, std::size_t level) const {
+  return box.was_present &&
+         levels_[level].cell(box.now.min) == pool_.head(slot_[index(box.id)] / block_size).owner;
+}
+
+template <int D>
+bool HierarchicalCells<D>::is_far(const core::MovedBox<D>& box) const {
+  bool is_far = false;
   for (int axis = 0; axis < D && box.was_present; ++axis) {
     const float extents =
         box.before.max[axis] - box.before.min[axis] + (box.now.max[axis] - box.now.min[axis]);
-    box.is_far |= box.bounds.max[axis] - box.bounds.min[axis] - extents > levels_.smallest_cell()[axis];
+    is_far |= box.bounds.max[axis] - box.bounds.min[axis] - extents > levels_.smallest_cell()[axis];
   }
+  return is_far;
 }
 
 /// The box is gone from here, but is found until drop_stale().
@@ -106,7 +131,7 @@ void HierarchicalCells<D>::remove(BoxId id, const Box<D>& before) {
 
 template <int D>
 void HierarchicalCells<D>::settle(BoxId id, const Box<D>& box) {
-  pool_.unmark(slot_[index(id)]);
+  pool_.unmark_beside_others(slot_[index(id)]);
   pool_.set(slot_[index(id)], box);
 }
 

@@ -34,7 +34,11 @@ class HierarchicalCells {
   /// is, so a query for either finds it. What is left where it was goes with drop_stale(). O(1).
   void move(core::MovedBox<D>& box);
 
-  /// Says that the box, which has moved before, is at rest here.
+  /// The same for a box that stays in its cell, while other threads move and settle others like it; else
+  /// nothing is done, and the box's `slot` stays unset.
+  void move_within_cell(core::MovedBox<D>& box);
+
+  /// Says that the box, which has moved before, is at rest here. Other threads may settle others.
   void settle(BoxId id, const Box<D>& box);
 
   /// Removes entries of boxes that have moved elsewhere or are gone. O(their number).
@@ -50,6 +54,8 @@ class HierarchicalCells {
   void fill(std::span<const Box<D>> boxes);
   void insert(BoxId id, const Box<D>& box, std::size_t level);
   void remove(BoxId id, const Box<D>& before);
+  bool stays(const core::MovedBox<D>& box, std::size_t level) const;
+  bool is_far(const core::MovedBox<D>& box) const;
   void close_hole(std::uint32_t slot);
 
   CellLevels<D> levels_;

@@ -55,9 +55,17 @@ class CellLevels {
     return level;
   }
 
+  /// Whether widen() would change the level.
+  bool is_widened(std::size_t index, const Box<D>& box) const {
+    bool is_widened = false;
+    for (int axis = 0; axis < D; ++axis)
+      is_widened |= box.max[axis] - box.min[axis] >= levels_[index].extent[axis];
+    return is_widened && index + 1 < count_;
+  }
+
   /// Says that the level has a box as long as this one. The last one is searched whole, whatever is on it.
   void widen(std::size_t index, const Box<D>& box) {
-    if (index + 1 == count_) return;
+    if (!is_widened(index, box)) return;
     Level& level = levels_[index];
     for (int axis = 0; axis < D; ++axis) {
       const float extent = box.max[axis] - box.min[axis];
@@ -67,6 +75,7 @@ class CellLevels {
   }
 
   Level& operator[](std::size_t level) { return levels_[level]; }
+  const Level& operator[](std::size_t level) const { return levels_[level]; }
   std::size_t count() const { return count_; }
   std::span<const Level> all() const { return {levels_.data(), count_}; }
 

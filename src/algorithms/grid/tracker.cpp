@@ -1,13 +1,16 @@
 // The grid's tracker.
 //
-// Boxes are taken one after the other: each is moved to its new cell, its entry made to cover where it was
-// and where it is, and then compared with what is near. So of two that move, the later one sees all of the
-// earlier one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and
-// only a difference is written.
+// Boxes are taken batch after batch: each is moved to its new cell, its entry made to cover where it was and
+// where it is, and then compared with what is near. So of two that move, the later one sees all of the earlier
+// one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and only a
+// difference is written. Several threads share a batch: first they move its boxes, then they search for them,
+// so that no entry changes while it is read.
 #include "algorithms/grid/tracker.hpp"
 
 #include <algorithm>
 #include <utility>
+
+#include "broadside/sinks.hpp"
 
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
@@ -15,9 +18,13 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Boxes that are moved before the kernel searches for them: enough to make up for the call, and few enough
-/// that what was written is still in the cache.
-constexpr std::size_t batch = 64;
+/// Boxes that are moved before the kernel searches for them: few enough that what was written is still in the
+/// cache, and enough that several threads can share them and that their cache misses overlap. Not by the
+/// number of threads, which may not decide how many tests there are.
+constexpr std::size_t batch = 2048;
+
+/// How many boxes of a search take as long as one that moves.
+constexpr std::size_t boxes_a_mover = 2;
 
 /// Queries to average over before the cells are judged too slow.
 constexpr std::uint64_t telling_queries = 1024;
@@ -26,44 +33,95 @@ constexpr std::uint64_t telling_queries = 1024;
 
 template <int D>
 void GridTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  core::EventSinks<D> events(change, begun, ended);
-  const Statistics statistics = follow(change, events.sinks(), false);
-  events.flush();
-  this->count(statistics);
+  this->count(follow(change, begun, ended, false));
 }
 
 template <int D>
 Statistics GridTracker<D>::candidates(const Change<D>& change, PairSink& pairs) {
-  return follow(change, {.begun = pairs, .ended = pairs, .candidates = pairs, .moves = change.flags.data()},
-                true);
+  return follow(change, pairs, pairs, true);
 }
 
 template <int D>
-Statistics GridTracker<D>::follow(const Change<D>& change, const core::ChangeSinks& sinks, bool every_pair) {
+Statistics GridTracker<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended,
+                                  bool every_pair) {
   if (change.rebuild || needs_rebuild(change)) build(change);
   cells_.reserve(change.now.size());
-  moving_.clear();
-  for (const BoxId id : moved_) {
-    const Box<D>& box = change.now[index(id)];
-    if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
-  }
+  parallel_.start(this->workers(), change.changed.size() * boxes_a_mover);
+  if (parts_.size() < parallel_.range_count()) parts_.resize(parallel_.range_count());
+  settle(change);
   core::ChangeWork work;
   std::size_t queries = 0;
   for (std::size_t at = 0; at < change.changed.size(); at += batch) {
-    boxes_.clear();
-    core::append_moved(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)),
-                       boxes_, every_pair);
-    for (core::MovedBox<D>& box : boxes_) {
-      cells_.move(box);
-      if (box.is_present) moving_.push_back(box.id);
+    move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)), every_pair);
+    search(change, begun, ended, every_pair);
+    for (const Part& part : parts()) {
+      work += part.work;
+      queries += part.boxes.size();
     }
-    work += kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(boxes_), sinks);
-    queries += boxes_.size();
   }
   cells_.drop_stale();
   std::swap(moved_, moving_);
   weigh(work, queries);
   return {.tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells()};
+}
+
+/// Sets the boxes that moved before and do not now to where they are at rest.
+template <int D>
+void GridTracker<D>::settle(const Change<D>& change) {
+  parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const BoxId id = moved_[i];
+      const Box<D>& box = change.now[index(id)];
+      if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
+    }
+  });
+  moving_.clear();
+}
+
+/// Lists these boxes in parts_ and moves them, each to its cell: several threads those that stay in theirs,
+/// and then one the others.
+template <int D>
+void GridTracker<D>::move(const Change<D>& change, std::span<const BoxId> ids, bool every_pair) {
+  parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
+    std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
+    boxes.clear();
+    core::append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes, every_pair);
+    if (parallel_.workers() == 1) return;
+    for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
+  });
+  for (Part& part : parts()) {
+    for (core::MovedBox<D>& box : part.boxes) {
+      if (box.slot == kernels::no_slot) cells_.move(box);
+      if (box.is_present) moving_.push_back(box.id);
+    }
+  }
+}
+
+/// Finds what the boxes in parts_ meet.
+template <int D>
+void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
+  const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended) {
+    core::EventSinks<D> events(change, its_begun, its_ended, every_pair);
+    part.work =
+        kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
+    events.flush();
+  };
+  if (parallel_.workers() == 1) return search(parts_.front(), begun, ended);
+  parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t) {
+    for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {
+      part.begun.clear();
+      part.ended.clear();
+      PairCollector its_begun(part.begun);
+      PairCollector its_ended(part.ended);
+      search(part, its_begun, its_ended);
+      its_begun.flush();
+      its_ended.flush();
+    }
+  });
+  for (const Part& part : parts()) {
+    begun.put(part.begun);
+    ended.put(part.ended);
+  }
 }
 
 /// Whether the cells were laid out for far more or fewer boxes than there are, or are found to be slow.
@@ -108,8 +166,11 @@ void GridTracker<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
 
 template <int D>
 std::size_t GridTracker<D>::algorithm_bytes() const noexcept {
-  return cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId) +
-         boxes_.capacity() * sizeof(core::MovedBox<D>);
+  std::size_t bytes = cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId);
+  for (const Part& part : parts_)
+    bytes += part.boxes.capacity() * sizeof(core::MovedBox<D>) +
+             (part.begun.capacity() + part.ended.capacity()) * sizeof(Pair);
+  return bytes;
 }
 
 template class GridTracker<2>;

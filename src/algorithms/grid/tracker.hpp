@@ -11,6 +11,7 @@
 
 #include "algorithms/grid/cells.hpp"
 #include "core/moved_box.hpp"
+#include "core/parallel.hpp"
 #include "interface/candidate_tracker.hpp"
 
 namespace broadside::algorithm {
@@ -29,7 +30,18 @@ class GridTracker final : public core::CandidateTracker<D> {
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
   std::size_t algorithm_bytes() const noexcept override;
 
-  Statistics follow(const Change<D>& change, const core::ChangeSinks& sinks, bool every_pair);
+  /// What each of several threads moves and finds.
+  struct Part {
+    std::vector<core::MovedBox<D>> boxes;
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    core::ChangeWork work;
+  };
+
+  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair);
+  void settle(const Change<D>& change);
+  void move(const Change<D>& change, std::span<const BoxId> ids, bool every_pair);
+  void search(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair);
   bool needs_rebuild(const Change<D>& change) const;
   void build(const Change<D>& change);
   void weigh(const core::ChangeWork& work, std::size_t queries);
@@ -37,7 +49,10 @@ class GridTracker final : public core::CandidateTracker<D> {
   HierarchicalCells<D> cells_;
   std::vector<BoxId> moved_;  // whose entries cover more than where they are
   std::vector<BoxId> moving_;
-  std::vector<core::MovedBox<D>> boxes_;  // a batch of those that moved
+  std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
+
+  core::Parallel parallel_;
+  std::vector<Part> parts_;  // of those that move, by range
   std::size_t built_for_ = 0;
   double usual_blocks_ = 0;  // a query, since the cells were laid out
   std::uint64_t first_queries_ = 0;

@@ -89,7 +89,7 @@ void World<D, Real>::State::ask_tracker() {
   try {
     PairCollector begun_pairs(candidates.begun);
     PairCollector ended_pairs(candidates.ended);
-    tracker->update(frame(), begun_pairs, ended_pairs);
+    tracker->update_checked(frame(), begun_pairs, ended_pairs);
   } catch (...) {
     // It will tell these again.
     candidates.begun.resize(begun_before);

@@ -174,7 +174,8 @@ void on_packed_trees(Body body) {
         levels.leave(left_count, left_places);
         levels.leave(end, algorithm::whole_leaves(end));
         levels.set_left_size(left_places);
-        levels.build();
+        core::Parallel parallel;
+        levels.build(parallel);
         body(boxes, left_count, levels.tree());
       }
     }
@@ -184,23 +185,52 @@ void on_packed_trees(Body body) {
 TEST(BvhJoin, FindsThePairsOfTheDefinitionOnce) {
   on_packed_trees(
       []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {
-        EXPECT_EQ(sorted_pairs([&](PairSink& sink) { join(tree, {}, sink); }),
+        std::vector<std::uint32_t> scratch(join_scratch(tree));
+        const NodeRange all = {0, tree.levels[1].size};
+        EXPECT_EQ(sorted_pairs([&](PairSink& sink) { join(tree, all, {}, scratch.data(), sink); }),
                   overlapping_pairs(boxes, left_count));
       });
 }
 
-TEST(BvhJoin, SaysWhichPlacesItHasJoinedWhenItGivesUp) {
+TEST(BvhJoin, FindsTheSamePairsInTheSameOrderInAnyRangesOfLeaves) {
+  Rng rng(11);
+  on_packed_trees([&]<int D>(const std::vector<Box<D>>&, std::size_t, const PackedBvh<D>& tree) {
+    std::vector<std::uint32_t> scratch(join_scratch(tree));
+    const std::size_t leaves = tree.levels[1].size;
+    std::vector<Pair> whole;
+    PairCollector whole_pairs(whole);
+    const JoinWork work = join(tree, {0, leaves}, {}, scratch.data(), whole_pairs);
+    whole_pairs.flush();
+    std::vector<Pair> in_ranges;
+    PairCollector range_pairs(in_ranges);
+    std::uint64_t tests = 0;
+    for (std::size_t begin = 0, end = 0; begin < leaves; begin = end) {
+      end = std::min(leaves, begin + 1 + rng.below(20));
+      const JoinWork part = join(tree, {begin, end}, {}, scratch.data(), range_pairs);
+      EXPECT_EQ(part.next_leaf, end);
+      tests += part.tests;
+    }
+    range_pairs.flush();
+    EXPECT_EQ(in_ranges, whole);
+    EXPECT_EQ(tests, work.tests);
+  });
+}
+
+TEST(BvhJoin, SaysWhichLeavesItHasJoinedWhenItGivesUp) {
   on_packed_trees(
       []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {
         if (left_count != 0) return;
         JoinWork work{};
-        const std::vector<Pair> found =
-            sorted_pairs([&](PairSink& sink) { work = join(tree, {.tests = boxes.size()}, sink); });
+        std::vector<std::uint32_t> scratch(join_scratch(tree));
+        const NodeRange all = {0, tree.levels[1].size};
+        const std::vector<Pair> found = sorted_pairs(
+            [&](PairSink& sink) { work = join(tree, all, {.tests = boxes.size()}, scratch.data(), sink); });
         std::vector<Pair> expected = overlapping_pairs(boxes);
-        std::erase_if(expected, [&](Pair pair) { return index(pair.first) >= work.places; });
+        std::erase_if(expected, [&](Pair pair) { return index(pair.first) >= work.next_leaf * fan_out; });
         EXPECT_EQ(found, expected);
         if (boxes.size() > 200) {
-          EXPECT_LT(work.places, boxes.size());
+          EXPECT_LT(work.next_leaf, all.end);
+          EXPECT_EQ(work.unused, 0U);
         }
       });
 }
