@@ -86,6 +86,7 @@ struct World<D, Real>::State {
   void reserve_moves(std::size_t boxes);
   void set_box(std::uint32_t slot, const Box<D, Real>& box,
                const Point<D, Real>* velocity = nullptr) noexcept;
+  void set_boxes(std::span<const Handle> handles, BoxView<D, Real> given) noexcept;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
   void reserve_removals(std::size_t boxes, std::size_t ignored);
   void remove_valid(std::uint32_t slot) noexcept;

@@ -64,6 +64,8 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
     if (!velocities.empty()) state_->check_velocity(velocities[i], i, "of the box number", i);
   }
   state_->reserve_moves(boxes.size());
+  if (!state_->has_margin() && state_->options.bad_input == BadInput::reject)
+    return state_->set_boxes(handles, boxes);
   for (std::size_t i = 0; i < boxes.size(); ++i)
     state_->set_box(handles[i].slot, boxes[i], velocities.empty() ? nullptr : &velocities[i]);
 }

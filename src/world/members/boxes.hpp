@@ -211,8 +211,8 @@ void World<D, Real>::State::reserve_moves(std::size_t count) {
   if (queried != nullptr) make_room(unindexed, count);
 }
 
-/// Moves a box out of its enlarged one, and enlarges it anew. Apart from set_box(), which is then small enough
-/// for the compiler to inline it.
+/// Moves a box out of its enlarged one, and enlarges it anew. Apart from set_box(), which is then small
+/// enough for the compiler to inline it.
 template <int D, typename Real>
 void World<D, Real>::State::set_outside(std::uint32_t slot, const Box<D, Real>& box,
                                         const Point<D, Real>* velocity) noexcept {
@@ -238,6 +238,25 @@ inline void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real
     unindexed.push_back(BoxId{slot});
     is_indexed.store(false, std::memory_order_relaxed);
   }
+}
+
+/// set_box() for many, where each is valid and there is no margin: lists them without a branch.
+template <int D, typename Real>
+void World<D, Real>::State::set_boxes(std::span<const Handle> handles, BoxView<D, Real> given) noexcept {
+  if (given.empty()) return;
+  is_settled = false;
+  is_indexed.store(false, std::memory_order_relaxed);
+  const std::size_t listed = changed.size();
+  changed.resize(listed + given.size());
+  BoxId* next = changed.data() + listed;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::uint32_t slot = handles[i].slot;
+    boxes[slot] = given[i];
+    *next = BoxId{slot};
+    next += static_cast<std::size_t>(!slots[slot].is_changed);
+    slots[slot].is_changed = true;
+  }
+  changed.resize(static_cast<std::size_t>(next - changed.data()));
 }
 
 /// Makes all the room that removing `count` boxes takes, which may be part of `ignored_count` ignored pairs.
