@@ -1,4 +1,5 @@
 // World with a margin: the tracker sees enlarged boxes, and the pairs are those of the boxes themselves.
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -165,6 +166,31 @@ TEST(WorldMargin, CoversTheWayAheadWhereAVelocityIsGiven) {
   EXPECT_EQ(world.enlarged_box(a).max[0], 4.25F) << "kept while the box is within";
   world.move(a, at(1.5F));
   EXPECT_EQ(world.enlarged_box(a), (Box2{{1.25F, -0.25F}, {2.75F, 1.25F}})) << "it has stopped";
+}
+
+TEST(WorldMargin, StaysABoxWhereInfinitiesAreAdded) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  WorldOptions options = with_margin(0.5);
+  options.predicted_frames = 1e30;
+  options.bad_input = BadInput::quarantine;
+  World2 world(options);
+  const std::array<float, 2> fast = {1e30F, 0};
+  const Box2 far_left = {{-infinity, 0}, {-infinity, 1}};
+  const Handle a = world.add(at(0));
+  const Handle b = world.add(far_left);
+  const Handle c = world.add(at(0));
+  world.update();
+  world.move(a, far_left, fast);
+  world.move(c, at(0), fast);
+  EXPECT_TRUE(is_present(world.enlarged_box(a)));
+  const Events events = world.update();
+  EXPECT_EQ(listed(events.begun), (HandlePairs{{a, b}}));
+  EXPECT_EQ(listed(events.ended), (HandlePairs{{a, c}}));
+  world.move(c, {{0, 0}, {-1, 1}}, fast);
+  EXPECT_TRUE(is_absent(world.enlarged_box(c)));
+  world.update();
+  World2 restored(options);
+  EXPECT_NO_THROW(restored.restore(world.snapshot()));
 }
 
 TEST(WorldMargin, RefusesAVelocityThatIsNone) {
