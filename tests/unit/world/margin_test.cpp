@@ -169,7 +169,6 @@ TEST(WorldMargin, CoversTheWayAheadWhereAVelocityIsGiven) {
 }
 
 TEST(WorldMargin, StaysABoxWhereInfinitiesAreAdded) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   WorldOptions options = with_margin(0.5);
   options.predicted_frames = 1e30;
   options.bad_input = BadInput::quarantine;
