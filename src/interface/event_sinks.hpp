@@ -1,12 +1,17 @@
 // EventSinks: where a structure writes the events of an update, and the pairs that may be events.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
 
 #include "core/moved_box.hpp"
+#include "kernels/overlap_flags.hpp"
 
 namespace broadside::core {
 
@@ -20,7 +25,22 @@ class CandidateSink final : public PairSink {
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    for (const Pair pair : pairs) change_.report(pair.first, pair.second, begun_, ended_);
+    constexpr std::size_t at_once = 256;
+    std::array<std::uint8_t, at_once> did;
+    std::array<std::uint8_t, at_once> does;
+    const bool has_filters = !change_.filters_now.empty();
+    while (!pairs.empty()) {
+      const std::span<const Pair> some = pairs.first(std::min(at_once, pairs.size()));
+      kernels::set_overlap_flags(change_.before, some, did.data());
+      kernels::set_overlap_flags(change_.now, some, does.data());
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (has_filters && (did[i] | does[i]) != 0)
+          change_.report(some[i].first, some[i].second, begun_, ended_);
+        else if (did[i] != does[i])
+          (does[i] != 0 ? begun_ : ended_).add(some[i].first, some[i].second);
+      }
+      pairs = pairs.subspan(some.size());
+    }
   }
 
   const Change<D>& change_;
