@@ -1,10 +1,10 @@
 // The grid's tracker.
 //
 // Boxes are taken batch after batch: each is moved to its new cell, its entry made to cover where it was and
-// where it is, and then compared with what is near. So of two that move, the later one sees all of the earlier
-// one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and only a
-// difference is written. Several threads share a batch: first they move its boxes, then they search for them,
-// so that no entry changes while it is read.
+// where it is, and then compared with what is near. So of two that move, the later one sees all of the
+// earlier one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and
+// only a difference is written. Several threads share a batch: first they move its boxes, then they search
+// for them, so that no entry changes while it is read.
 #include "algorithms/grid/tracker.hpp"
 
 #include <algorithm>
