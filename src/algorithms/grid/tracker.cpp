@@ -21,7 +21,7 @@ namespace {
 /// Boxes that are moved before the kernel searches for them: few enough that what was written is still in the
 /// cache, and enough that several threads can share them and that their cache misses overlap. Not by the
 /// number of threads, which may not decide how many tests there are.
-constexpr std::size_t batch = 2048;
+constexpr std::size_t batch = 8192;
 
 /// How many boxes of a search take as long as one that moves.
 constexpr std::size_t boxes_a_mover = 2;
