@@ -54,26 +54,24 @@ void report_differences(const Change<D, Real>& change, std::span<const Pair> fou
                         PairSink& begun, PairSink& ended) {
   const bool by_boxes = !has_changed_filter(change);
   parallel.start(workers, (found.size() + kept.size()) / pairs_a_box);
-  const auto parts_of = [](std::span<const Pair> pairs) {
-    return (pairs.size() + pairs_at_once - 1) / pairs_at_once;
-  };
-  const auto part = [](std::span<const Pair> pairs, Range parts) {
-    const std::size_t begin = parts.begin * pairs_at_once;
-    return pairs.subspan(begin, std::min(parts.end * pairs_at_once, pairs.size()) - begin);
-  };
-  parallel.search(parts_of(found), begun, [&](Range parts, std::size_t, PairSink& sink) {
-    for_differing<D, Real>(change, part(found, parts), change.before, by_boxes, [&](Pair pair) {
-      if (!change.held(pair.first, pair.second) && change.holds(pair.first, pair.second))
-        sink.add(pair.first, pair.second);
+  const auto report = [&](std::span<const Pair> pairs, std::span<const Box<D, Real>> other_frame,
+                          PairSink& sink, auto is_event) {
+    const std::size_t all_parts = (pairs.size() + pairs_at_once - 1) / pairs_at_once;
+    parallel.search(all_parts, sink, [&](Range parts, std::size_t, PairSink& events) {
+      const std::size_t begin = parts.begin * pairs_at_once;
+      const std::size_t end = std::min(parts.end * pairs_at_once, pairs.size());
+      for_differing<D, Real>(change, pairs.subspan(begin, end - begin), other_frame, by_boxes,
+                             [&](Pair pair) {
+                               if (is_event(pair)) events.add(pair.first, pair.second);
+                             });
+      return Statistics{};
     });
-    return Statistics{};
+  };
+  report(found, change.before, begun, [&change](Pair pair) {
+    return !change.held(pair.first, pair.second) && change.holds(pair.first, pair.second);
   });
-  parallel.search(parts_of(kept), ended, [&](Range parts, std::size_t, PairSink& sink) {
-    for_differing<D, Real>(change, part(kept, parts), change.now, by_boxes, [&](Pair pair) {
-      if (!change.holds(pair.first, pair.second) && change.held(pair.first, pair.second))
-        sink.add(pair.first, pair.second);
-    });
-    return Statistics{};
+  report(kept, change.now, ended, [&change](Pair pair) {
+    return !change.holds(pair.first, pair.second) && change.held(pair.first, pair.second);
   });
 }
 
