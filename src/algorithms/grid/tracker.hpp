@@ -46,11 +46,12 @@ class GridTracker final : public core::CandidateTracker<D> {
   void build(const Change<D>& change);
   void weigh(const core::ChangeWork& work, std::size_t queries);
 
+  /// Those of this update.
+  std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
+
   HierarchicalCells<D> cells_;
   std::vector<BoxId> moved_;  // whose entries cover more than where they are
   std::vector<BoxId> moving_;
-  std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
-
   core::Parallel parallel_;
   std::vector<Part> parts_;  // of those that move, by range
   std::size_t built_for_ = 0;
