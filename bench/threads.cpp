@@ -212,8 +212,8 @@ void compare_all(const Wishes& wishes, lab::Columns& columns) {
 
 void run(const Wishes& wishes) {
   if (wishes.rounds < 2)
-    throw std::invalid_argument(
-        fmt::format("{} rounds; expected 2 or more, the first of which does not count", wishes.rounds));
+    throw std::invalid_argument(fmt::format(
+        "the number of rounds is {}; expected 2 or more, the first of which does not count", wishes.rounds));
   const lab::Machine machine = lab::this_machine();
   const lab::Build build = lab::this_build();
   fmt::print("{}, medians of {} rounds; {}, {} cores; {}, {}\n", wishes.scene, wishes.rounds - 1, machine.cpu,
