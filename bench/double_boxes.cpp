@@ -1,4 +1,4 @@
-// What boxes of doubles cost over the same boxes as floats: double_boxes [BOXES [ROUNDS]].
+// What boxes of doubles cost over the same boxes as floats: double_boxes [BOXES [ROUNDS [ALGORITHM]]].
 //
 // Every way of asking for pairs is timed with floats and with doubles in turns, round by round, and after
 // each call its pairs are compared, as a set, with those of all other calls.
@@ -142,12 +142,12 @@ std::vector<Box<D, double>> scaled(std::span<const Box<D>> boxes) {
 /// Times the calls in one dimension and prints a line for each. Throws std::runtime_error if two sets of
 /// pairs differ that should not.
 template <int D>
-void compare_precisions(std::size_t count, std::size_t rounds) {
+void compare_precisions(std::span<const std::string_view> algorithms, std::size_t count, std::size_t rounds) {
   const std::vector<Box<D>> floats = uniform_boxes<D>(count);
   const std::vector<Box<D, double>> doubles = scaled<D>(floats);
   for (const Call call : calls) {
     std::optional<PairSet> expected;
-    for (const std::string_view algorithm : own_algorithms) {
+    for (const std::string_view algorithm : algorithms) {
       Side<D, float> in_float(floats, algorithm, call);
       Side<D, double> in_double(doubles, algorithm, call);
       // Round 0 warms up.
@@ -171,14 +171,14 @@ void compare_precisions(std::size_t count, std::size_t rounds) {
   }
 }
 
-void run(std::size_t count, std::size_t rounds) {
+void run(std::span<const std::string_view> algorithms, std::size_t count, std::size_t rounds) {
   const lab::Machine machine = lab::this_machine();
   fmt::print("uniform, {} boxes, {} rounds; {}, {} cores; {}\n", lab::grouped(count), rounds, machine.cpu,
              machine.cores, lab::this_build().compiler);
   fmt::print("{:<4}{:<17}{:<12}{:>10}{:>10}{:>11}{:>7}{:>10}\n", "", "algorithm", "call", "pairs", "float ms",
              "double ms", "ratio", "CPU ratio");
-  compare_precisions<2>(count, rounds);
-  compare_precisions<3>(count, rounds);
+  compare_precisions<2>(algorithms, count, rounds);
+  compare_precisions<3>(algorithms, count, rounds);
 }
 
 }  // namespace
@@ -187,7 +187,10 @@ void run(std::size_t count, std::size_t rounds) {
 int main(int count, char** arguments) {
   using namespace broadside::bench;
   return guarded("double_boxes", 1, [&] {
-    run(number_at(count, arguments, 1, 1'000'000), number_at(count, arguments, 2, 9));
+    const std::string_view chosen = count > 3 ? arguments[3] : "";
+    std::span<const std::string_view> algorithms = own_algorithms;
+    if (!chosen.empty()) algorithms = {&chosen, 1};
+    run(algorithms, number_at(count, arguments, 1, 1'000'000), number_at(count, arguments, 2, 9));
     return 0;
   });
 }

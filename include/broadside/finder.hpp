@@ -35,6 +35,8 @@ struct Statistics {
 namespace core {
 template <int D>
 class Yielding;
+template <int D>
+class LastTest;
 }  // namespace core
 
 template <int D, typename Real = float>
@@ -101,22 +103,39 @@ class PairFinder {
   /// For the library: this finder, if its searches can give up.
   virtual core::Yielding<D>* yielding() noexcept { return nullptr; }
 
+  /// For the library: this finder, if its kernels do the last test of boxes of doubles.
+  virtual core::LastTest<D>* last_test() noexcept { return nullptr; }
+
  protected:
   /// For find_valid: what this search did.
   void count(const Statistics& statistics) { statistics_ = statistics; }
 
   /// For find_valid: lets another finder do this search, with the same workers. Its statistics are then this
   /// finder's.
-  void search_with(PairFinder& other, std::span<const Box<D, Real>> boxes, PairSink& pairs);
+  template <typename OtherReal>
+  void search_with(PairFinder<D, OtherReal>& other, std::span<const Box<D, OtherReal>> boxes,
+                   PairSink& pairs) {
+    other.left_count_ = left_count_;
+    other.set_workers(workers_);
+    other.statistics_.reset();
+    other.find_valid(boxes, pairs);
+    statistics_ = other.statistics_;
+  }
 
   /// For find_valid: 0 if every overlapping pair is asked for. Else the boxes before this place are the left
   /// set and the others the right one, and pairs within a set need not be written: they will be dropped.
   std::size_t left_count() const noexcept { return left_count_; }
 
  private:
+  template <int, typename>
+  friend class PairFinder;
+
   /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
   /// places in `boxes`. No need to flush.
   virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
+
+  /// find_between() for boxes that are all present.
+  void find_valid_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
 
   /// Where a finder works through another one, it hands workers() on.
   virtual void workers_changed() {}

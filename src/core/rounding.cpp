@@ -27,19 +27,8 @@ constexpr double most_false_pairs = 8;
 constexpr double compared_share = 0.75;
 constexpr std::size_t least_compared = 64;
 
-/// Shifts a sample: it depends on all boxes and their order, so that no pattern of the array can evade it. A
-/// weak hash is enough for that.
-template <int D>
-std::uint32_t sample_shift(std::span<const Box<D, double>> boxes) {
-  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
-  std::uint64_t hash = boxes.size();
-  for (const Box<D, double>& box : boxes) {
-    // -0.0 and 0.0 are the same.
-    hash = (hash ^ std::bit_cast<std::uint64_t>(box.max[0] + 0.0)) * golden;
-    hash ^= hash >> 32;
-  }
-  return static_cast<std::uint32_t>(hash);
-}
+/// Shifts a sample.
+std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
 
 double median(std::vector<double>& values) {
   if (values.empty()) return 0;
@@ -168,8 +157,44 @@ std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes) {
 }
 
 template <int D>
-std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes) {
-  const std::uint32_t shift = sample_shift(boxes);
+void round_linear(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                  std::span<Box<D>> floats) {
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    floats[i] = rounded(
+        boxes[i], [&](int axis) -> const auto& { return fit[axis].rounding; });
+}
+
+template <int D>
+bool is_lossless(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                 std::span<const Box<D>> floats) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      const LinearRounding& rounding = fit[axis].rounding;
+      if (rounding.back(floats[i].min[axis]) != boxes[i].min[axis] ||
+          rounding.back(floats[i].max[axis]) != boxes[i].max[axis])
+        return false;
+    }
+  }
+  return true;
+}
+
+template <int D>
+std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place) {
+  // A weak hash is enough, and a sum can be made by several threads.
+  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    // -0.0 and 0.0 are the same.
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(boxes[i].max[0] + 0.0);
+    const std::uint64_t mixed = (bits ^ (bits >> 32) ^ (first_place + i)) * golden;
+    hash += mixed ^ (mixed >> 32);
+  }
+  return hash * golden;
+}
+
+template <int D>
+std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes, std::uint64_t hash) {
+  const std::uint32_t shift = shift_by(hash);
   const std::size_t count = std::min(boxes.size() / boxes_per_knot + 1, most_knots / 2);
   std::array<QuantileRounding, D> fit;
   for (int axis = 0; axis < D; ++axis) {
@@ -189,10 +214,10 @@ std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> bo
 
 template <int D>
 bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
-                       std::size_t left_count) {
+                       std::size_t left_count, std::uint64_t hash) {
   const auto size = static_cast<double>(boxes.size());
   const auto most = std::max(least_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
-  const std::uint32_t shift = sample_shift(boxes);
+  const std::uint32_t shift = shift_by(hash);
   Columns<D> columns;
   const auto take = [&](std::span<const Box<D, double>> from) {
     const std::size_t count = std::min(from.size(), most);
@@ -225,9 +250,21 @@ bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<
 
 template std::array<LinearFit, 2> fit_linear<2>(std::span<const DoubleBox2>);
 template std::array<LinearFit, 3> fit_linear<3>(std::span<const DoubleBox3>);
-template std::array<QuantileRounding, 2> fit_quantiles<2>(std::span<const DoubleBox2>);
-template std::array<QuantileRounding, 3> fit_quantiles<3>(std::span<const DoubleBox3>);
-template bool makes_false_pairs<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>, std::size_t);
-template bool makes_false_pairs<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>, std::size_t);
+template void round_linear<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>,
+                              std::span<Box<2>>);
+template bool is_lossless<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>,
+                             std::span<const Box<2>>);
+template std::uint64_t hash_of<2>(std::span<const DoubleBox2>, std::size_t);
+template std::array<QuantileRounding, 2> fit_quantiles<2>(std::span<const DoubleBox2>, std::uint64_t);
+template bool makes_false_pairs<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>, std::size_t,
+                                   std::uint64_t);
+template void round_linear<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>,
+                              std::span<Box<3>>);
+template bool is_lossless<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>,
+                             std::span<const Box<3>>);
+template std::uint64_t hash_of<3>(std::span<const DoubleBox3>, std::size_t);
+template std::array<QuantileRounding, 3> fit_quantiles<3>(std::span<const DoubleBox3>, std::uint64_t);
+template bool makes_false_pairs<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>, std::size_t,
+                                   std::uint64_t);
 
 }  // namespace broadside::core

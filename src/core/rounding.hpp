@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -72,16 +73,32 @@ struct LinearFit {
 template <int D>
 std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes);
 
-/// A rounding for each axis whose knots are from one in sixteen of the boxes. O(n log n).
+/// Sets floats[i] to boxes[i], rounded by a fit.
 template <int D>
-std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes);
+void round_linear(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                  std::span<Box<D>> floats);
+
+/// Whether that kept every coordinate that differs from another apart from it, as far as `back` can tell.
+template <int D>
+bool is_lossless(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+                 std::span<const Box<D>> floats);
+
+/// A number that depends on all boxes and their order: the sum of what parts give, each with the place of its
+/// first box.
+template <int D>
+std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place = 0);
+
+/// A rounding for each axis whose knots are from one in sixteen of the boxes, a sample by their hash: no
+/// pattern of the array can evade it. O(n log n).
+template <int D>
+std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes, std::uint64_t hash);
 
 /// Whether this rounding makes enough false pairs (they overlap in float, not in double) that another pays.
 /// Where `left_count` is not 0, only pairs between the boxes before that place and the others matter.
-/// Compares a sample of about sqrt(n) boxes with each other: O(n).
+/// Compares a sample of about sqrt(n) boxes, by their hash, with each other: O(n).
 template <int D>
 bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
-                       std::size_t left_count);
+                       std::size_t left_count, std::uint64_t hash);
 
 /// The box, rounded on each axis by what `rounding_of(axis)` gives; the absent box stays absent.
 template <int D, typename RoundingOf>

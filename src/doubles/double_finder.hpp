@@ -1,8 +1,6 @@
 // Pairs of boxes of doubles, by a finder of floats and a last test in double.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,10 +8,8 @@
 
 #include "broadside/debug/outline.hpp"
 #include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
 #include "core/parallel.hpp"
-#include "core/rounding.hpp"
 
 namespace broadside::core {
 
@@ -34,28 +30,17 @@ class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, doub
   std::string explanation() const override { return finder_->explanation(); }
 
  private:
-  using Fit = std::array<LinearFit, D>;
-
   void find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) override;
+
+  /// Sets floats_. Returns whether coordinates that differ do so as floats.
+  bool round(std::span<const Box<D, double>> boxes);
 
   /// As if a linear rounding did.
   Outline<D, double> lay_out(std::span<const Box<D, double>> boxes) override;
-  void workers_changed() override { finder_->set_workers(this->workers()); }
-
-  /// Puts each box into a bucket of near ones. Returns whether coordinates that differ do so as floats.
-  bool measure(std::span<const Box<D, double>> boxes, const Fit& fit);
-
-  /// Sets ids_ and floats_, bucket by bucket. Returns how many boxes are of the left set.
-  template <typename RoundingOf>
-  std::size_t gather(std::span<const Box<D, double>> boxes, RoundingOf rounding_of);
 
   std::unique_ptr<PairFinder<D>> finder_;
   Parallel parallel_;
-  std::vector<std::uint32_t> ids_;  // places of the boxes, bucket by bucket,
-  std::vector<Box<D>> floats_;      // and these as floats
-  std::vector<std::uint16_t> bucket_of_;
-  std::vector<std::uint32_t> bucket_ends_;  // by range and bucket
-  std::size_t bucket_count_ = 1;            // for each of the two sets
+  std::vector<Box<D>> floats_;
 };
 
 }  // namespace broadside::core

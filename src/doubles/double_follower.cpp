@@ -65,8 +65,10 @@ template <int D>
 void DoubleFollower<D>::start(const Change<D, double>& change) {
   false_candidates_ = 0;
   fit_ = core::fit_linear<D>(change.now);
-  by_quantiles_ = core::makes_false_pairs<D>(fit_, change.now, 0);
-  quantiles_ = by_quantiles_ ? core::fit_quantiles<D>(change.now) : std::array<core::QuantileRounding, D>{};
+  const std::uint64_t hash = core::hash_of<D>(change.now);
+  by_quantiles_ = core::makes_false_pairs<D>(fit_, change.now, 0, hash);
+  quantiles_ =
+      by_quantiles_ ? core::fit_quantiles<D>(change.now, hash) : std::array<core::QuantileRounding, D>{};
   before_.resize(change.before.size());
   for (std::size_t i = 0; i < before_.size(); ++i) before_[i] = rounded(change.before[i]);
   now_ = before_;

@@ -217,6 +217,13 @@ void PairFinder<D, Real>::find_between(BoxView<D, Real> left_view, BoxView<D, Re
   if (absent_right > 0) list_invalid(right, left.size());
   statistics_.reset();
   present_.clear();
+  if (absent_left + absent_right == 0) {
+    present_.reserve(left.size() + right.size());
+    present_.insert(present_.end(), left.begin(), left.end());
+    present_.insert(present_.end(), right.begin(), right.end());
+    find_valid_between(present_, left.size(), pairs);
+    return;
+  }
   ids_.clear();
   take_present(left);
   left_count_ = present_.size();
@@ -245,9 +252,15 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std:
   }
   quarantined_.clear();
   statistics_.reset();
+  find_valid_between(boxes, left_count, pairs);
+}
+
+template <int D, typename Real>
+void PairFinder<D, Real>::find_valid_between(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                             PairSink& pairs) {
   left_count_ = left_count;
   deliver(pairs, [&] {
-    if (left.empty() || right.empty()) return;
+    if (left_count == 0 || left_count == boxes.size()) return;
     CrossingSink crossing(left_count, pairs);
     find_valid(boxes, crossing);
     crossing.flush();
@@ -273,16 +286,6 @@ void PairFinder<D, Real>::list_invalid(std::span<const Box<D, Real>> boxes, std:
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
   }
-}
-
-template <int D, typename Real>
-void PairFinder<D, Real>::search_with(PairFinder& other, std::span<const Box<D, Real>> boxes,
-                                      PairSink& pairs) {
-  other.left_count_ = left_count_;
-  other.set_workers(workers_);
-  other.statistics_.reset();
-  other.find_valid(boxes, pairs);
-  statistics_ = other.statistics_;
 }
 
 template <int D, typename Real>

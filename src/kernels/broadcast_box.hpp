@@ -79,6 +79,36 @@ struct BroadcastBox {
   FloatVector max[D];
 };
 
+/// Boxes that follow each other, one a lane.
+template <int D>
+struct LoadedBoxes {
+  // Not defaulted: it must be compiled for the instruction set of the vectors' constructors.
+  HWY_INLINE LoadedBoxes() {}  // NOLINT(modernize-use-equals-default)
+
+  /// `boxes` as in BroadcastBox::overlaps().
+  template <typename Boxes>
+  HWY_INLINE LoadedBoxes(const Boxes& boxes, std::size_t at) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = load(boxes.min[axis], at);
+      max[axis] = load(boxes.max[axis], at);
+    }
+  }
+
+  FloatVector min[D];
+  FloatVector max[D];
+};
+
+/// In which lanes boxes that overlap do no more than touch. Each side is a BroadcastBox or LoadedBoxes.
+template <int D, template <int> typename A>
+HWY_INLINE FloatMask touch(const A<D>& a, const LoadedBoxes<D>& b) {
+  FloatMask touching = hn::Or(hn::Eq(a.min[0], b.max[0]), hn::Eq(b.min[0], a.max[0]));
+  for (int axis = 1; axis < D; ++axis) {
+    touching = hn::Or(touching, hn::Eq(a.min[axis], b.max[axis]));
+    touching = hn::Or(touching, hn::Eq(b.min[axis], a.max[axis]));
+  }
+  return touching;
+}
+
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -23,8 +23,7 @@ namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
 using Hits = NumberMask;
-using Writer = PairWriter<Numbers>;
-static_assert(fan_out == Writer::at_once);
+static_assert(fan_out == PairWriter<Numbers>::at_once);
 
 /// One box or the bounds of one node, in every lane.
 template <int D>
@@ -52,11 +51,11 @@ HWY_INLINE NumberVector all_lanes(std::size_t number) {
   return hn::Set(Numbers(), static_cast<std::uint32_t>(number));
 }
 
-template <int D>
+template <int D, typename LastTest>
 class Join {
  public:
-  Join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, PairSink& sink)
-      : tree_(tree), leaves_(leaves), limit_(limit), pairs_(sink), next_leaf_(leaves.begin) {}
+  Join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, LastTest last_test, PairSink& sink)
+      : tree_(tree), leaves_(leaves), limit_(limit), pairs_(sink, last_test), next_leaf_(leaves.begin) {}
 
   JoinWork run(std::uint32_t* scratch) {
     const std::uint32_t root = 0;
@@ -141,7 +140,8 @@ class Join {
       for (std::size_t at = (i + 1) / lanes * lanes; at < fan_out; at += lanes) {
         const Hits later = hn::Gt(numbers_from(at), all_lanes(i));
         pairs_.room();
-        pairs_.write_of(id, ids(begin + at), hn::And(touching(query, tree_.levels[0], begin + at), later));
+        pairs_.write_of(id, ids_beside(query, begin + at),
+                        hn::And(touching(query, tree_.levels[0], begin + at), later));
       }
     }
     tests_ += fan_out * (fan_out - 1) / 2;
@@ -156,20 +156,26 @@ class Join {
       const NumberVector id = all_lanes(index(tree_.id[place]));
       for (std::size_t at = other; at < other + fan_out; at += lanes) {
         pairs_.room();
-        pairs_.write_of(id, ids(at), touching(query, tree_.levels[0], at));
+        pairs_.write_of(id, ids_beside(query, at), touching(query, tree_.levels[0], at));
       }
     }
     tests_ += count * fan_out;
   }
 
-  HWY_INLINE NumberVector ids(std::size_t at) const { return load_ids(Numbers(), tree_.id + at); }
+  /// The ids from `at` on, marked for the last test in double of the pairs with the query.
+  HWY_INLINE NumberVector ids_beside(const BroadcastBox<D>& query, std::size_t at) const {
+    const NumberVector ids = load_ids(Numbers(), tree_.id + at);
+    if constexpr (!LastTest::marks_touching) return ids;
+    return marked(Numbers(), ids,
+                  hn::RebindMask(Numbers(), touch(query, LoadedBoxes<D>(tree_.levels[0], at))));
+  }
 
   static constexpr std::size_t most_queries = 1024;
 
   const PackedBvh<D>& tree_;
   NodeRange leaves_;
   JoinLimit limit_;
-  Writer pairs_;
+  PairWriter<Numbers, LastTest> pairs_;
   std::uint64_t tests_ = 0;
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
   std::size_t next_leaf_;
@@ -198,16 +204,23 @@ void bound_level(const PackedBvh<D>& tree, std::size_t parent, NodeRange nodes) 
   }
 }
 
+template <int D>
+JoinWork join_leaves(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit,
+                     std::uint32_t* scratch, PairSink& pairs) {
+  if (tree.doubles == nullptr) return Join(tree, leaves, limit, ByFloats{}, pairs).run(scratch);
+  return Join(tree, leaves, limit, InDouble<D>{tree.doubles}, pairs).run(scratch);
+}
+
 }  // namespace
 
 // What the dispatch below can name: no templates.
 JoinWork join_2(const PackedBvh<2>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
                 PairSink& pairs) {
-  return Join<2>(tree, leaves, limit, pairs).run(scratch);
+  return join_leaves(tree, leaves, limit, scratch, pairs);
 }
 JoinWork join_3(const PackedBvh<3>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
                 PairSink& pairs) {
-  return Join<3>(tree, leaves, limit, pairs).run(scratch);
+  return join_leaves(tree, leaves, limit, scratch, pairs);
 }
 void set_bounds_2(const PackedBvh<2>& tree, std::size_t parent, NodeRange nodes) {
   bound_level(tree, parent, nodes);

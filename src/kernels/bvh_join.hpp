@@ -36,6 +36,9 @@ struct PackedBvh {
   /// In a search between two sets, how many places of level 0 hold the left one: a multiple of `fan_out`.
   /// Else 0.
   std::size_t left_size;
+
+  /// As in a Run.
+  const Box<D, double>* doubles = nullptr;
 };
 
 /// Elements of a level from one to before another; those of level 1 are the leaves.

@@ -18,6 +18,7 @@
 #include "broadside/pair.hpp"
 
 #include "kernels/compress.hpp"
+#include "kernels/last_test.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -34,9 +35,16 @@ HWY_INLINE hn::Vec<Ids> load_ids(Ids tag, const BoxId* ids) {
 #endif
 }
 
-/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
-/// `Ids` is the tag of vectors of ids.
+/// The ids, with a touching_bit where `touching`.
 template <typename Ids>
+HWY_INLINE hn::Vec<Ids> marked(Ids tag, hn::Vec<Ids> ids, hn::Mask<Ids> touching) {
+  return hn::Or(ids, hn::IfThenElseZero(touching, hn::Set(tag, touching_bit)));
+}
+
+/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
+/// `Ids` is the tag of vectors of ids. Where `LastTest` is InDouble, the second ids of pairs that touch are
+/// marked.
+template <typename Ids, typename LastTest = ByFloats>
 class PairWriter {
   using IdVector = hn::Vec<Ids>;
   using Hits = hn::Mask<Ids>;
@@ -45,21 +53,22 @@ class PairWriter {
   /// The room that must be left wherever a vector of pairs is written.
   static constexpr std::size_t at_once = 16;
 
-  explicit PairWriter(PairSink& sink) : sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}
+  explicit PairWriter(PairSink& sink, LastTest last_test = {})
+      : last_test_(last_test), sink_(&sink), begin_(sink.room(PairSink::max_room)), out_(begin_) {}
 
-  ~PairWriter() { sink_->commit(static_cast<std::size_t>(out_ - begin_)); }
+  ~PairWriter() { sink_->commit(static_cast<std::size_t>(last_test_(begin_, out_) - begin_)); }
 
   PairWriter(const PairWriter&) = delete;
   PairWriter& operator=(const PairWriter&) = delete;
 
-  /// How many pairs were written.
+  /// How many pairs were written; of the last ones, some may yet fail the last test.
   std::uint64_t written() const { return handed_on_ + static_cast<std::uint64_t>(out_ - begin_); }
 
   /// How many times `at_once` pairs may be written before room() is called again: at least once.
   HWY_INLINE std::size_t room() {
     if (HWY_UNLIKELY(left() < 1)) {
-      Pair* const end = out_;
       Pair* const begin = begin_;
+      Pair* const end = last_test_(begin, out_);
       handed_on_ += static_cast<std::uint64_t>(end - begin);
       begin_ = out_ = end;  // if the sink throws, this much is committed already
       begin_ = out_ = next_room(*sink_, static_cast<std::size_t>(end - begin));
@@ -111,6 +120,7 @@ class PairWriter {
     out_ += count;
   }
 
+  LastTest last_test_;
   PairSink* sink_;
   Pair* begin_;
   Pair* out_;

@@ -38,6 +38,10 @@ struct Run {
   /// When a run is swept or compared with itself: the number of its first boxes that are, each with all after
   /// it. A multiple of read_ahead, or no fewer than there are.
   std::size_t rows = std::numeric_limits<std::size_t>::max();
+
+  /// Where the boxes are floats of boxes of doubles: these, by id, and pairs must overlap in double. Else
+  /// null.
+  const Box<D, double>* doubles = nullptr;
 };
 
 /// The run from box `begin` on, with the boxes before `end` as rows. Both are multiples of read_ahead, unless
@@ -124,7 +128,7 @@ class RunBuffer {
   }
 
   /// The run; holds until the buffer is changed.
-  Run<D> view(float slack = 0) {
+  Run<D> view(const Box<D, double>* doubles, float slack = 0) {
     reserve(size_);
     for (std::size_t i = 0; i < read_ahead; ++i)
       min_[0][size_ + i] = max_[0][size_ + i] = std::numeric_limits<float>::quiet_NaN();
@@ -137,6 +141,7 @@ class RunBuffer {
     run.dedup_mask = dedup_mask_.data();
     run.size = size_;
     run.slack = slack;
+    run.doubles = doubles;
     return run;
   }
 

@@ -13,115 +13,88 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/broadcast_box.hpp"
 #include "kernels/pair_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-using Floats = hn::CappedTag<float, read_ahead>;
-using Ids = hn::Rebind<std::uint32_t, Floats>;
-using FloatVector = hn::Vec<Floats>;
-using IdVector = hn::Vec<Ids>;
-using Hits = hn::Mask<Ids>;
-using Writer = PairWriter<Ids>;
+using Ids = Numbers;
+using IdVector = NumberVector;
+using Hits = NumberMask;
+
+template <typename LastTest>
+using Writer = PairWriter<Ids, LastTest>;
 
 /// Boxes of a run that are swept together: the same number on every instruction set, since it fixes the
 /// order.
 constexpr std::size_t together = read_ahead;
-static_assert(together == Writer::at_once);
+static_assert(together == Writer<ByFloats>::at_once);
 
 /// One box of a run, in every lane.
 template <int D>
 struct Query {
   HWY_INLINE Query(const Run<D>& run, std::size_t i)
-      : id(hn::Set(Ids(), index(run.id[i]))), dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {
-    for (int axis = 0; axis < D; ++axis) {
-      min[axis] = hn::Set(Floats(), run.min[axis][i]);
-      max[axis] = hn::Set(Floats(), run.max[axis][i]);
-    }
-  }
+      : bounds(box_of(run, i)),
+        id(hn::Set(Ids(), index(run.id[i]))),
+        dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {}
 
-  FloatVector min[D];
-  FloatVector max[D];
+  BroadcastBox<D> bounds;
   IdVector id;
   IdVector dedup_mask;
+
+ private:
+  static HWY_INLINE Box<D> box_of(const Run<D>& run, std::size_t i) {
+    Box<D> box;
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = run.min[axis][i];
+      box.max[axis] = run.max[axis][i];
+    }
+    return box;
+  }
 };
 
-/// Which of the boxes from `at` on begin on axis 0 no later than the query ends.
-template <int D>
-HWY_INLINE hn::Mask<Floats> begins(const Query<D>& query, const Run<D>& run, std::size_t at) {
-  return hn::Le(hn::LoadU(Floats(), run.min[0] + at), query.max[0]);
-}
-
 /// Which of the boxes from `at` on overlap the query and share no bit of its dedup_mask.
-template <bool Apart, int D>
-HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t at,
-                         hn::Mask<Floats> candidates) {
-  const Floats floats;
-  auto touching = hn::And(candidates, hn::Le(query.min[0], hn::LoadU(floats, run.max[0] + at)));
-  for (int axis = 1; axis < D; ++axis) {
-    touching = hn::And(touching, hn::Le(hn::LoadU(floats, run.min[axis] + at), query.max[axis]));
-    touching = hn::And(touching, hn::Le(query.min[axis], hn::LoadU(floats, run.max[axis] + at)));
-  }
-  const Hits hits = hn::RebindMask(Ids(), touching);
-  if constexpr (!Apart) return hits;
+template <int D>
+HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t at) {
+  const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
   const IdVector common = hn::And(query.dedup_mask, hn::LoadU(Ids(), run.dedup_mask + at));
   return hn::And(hits, hn::Eq(common, hn::Zero(Ids())));
 }
 
-template <int D>
-HWY_INLINE IdVector ids(const Run<D>& run, std::size_t at) {
-  return load_ids(Ids(), run.id + at);
+/// The ids from `at` on, marked for the last test in double of the pairs with `bounds`.
+template <typename LastTest, int D, template <int> typename Bounds>
+HWY_INLINE IdVector ids_beside(const Bounds<D>& bounds, const Run<D>& run, std::size_t at) {
+  const IdVector ids = load_ids(Ids(), run.id + at);
+  if constexpr (!LastTest::marks_touching) return ids;
+  return marked(Ids(), ids, hn::RebindMask(Ids(), touch(bounds, LoadedBoxes<D>(run, at))));
 }
 
 /// Compares the query with the boxes from `begin` on that may start on axis 0 no later than it ends. Returns
 /// how many do.
-template <int D>
+template <int D, typename LastTest>
 HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D>& run, std::size_t begin,
-                                  Writer& pairs) {
+                                  Writer<LastTest>& pairs) {
   const Floats floats;
   std::size_t tests = 0;
-  for (std::size_t at = begin; run.min[0][at] <= last; at += hn::Lanes(floats)) {
-    const auto candidates = begins(query, run, at);
-    tests += hn::CountTrue(floats, candidates);
-    const Hits hits = overlaps<true>(query, run, at, candidates);
+  for (std::size_t at = begin; run.min[0][at] <= last; at += lanes) {
+    tests += hn::CountTrue(floats, hn::Le(hn::LoadU(floats, run.min[0] + at), query.bounds.max[0]));
+    const Hits hits = overlaps(query, run, at);
     // Where candidates are many, most vectors of them hold no hit.
     if (hn::AllFalse(Ids(), hits)) continue;
     pairs.room();
-    pairs.write_of(query.id, ids(run, at), hits);
+    pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);
   }
   return tests;
 }
 
-/// Boxes of a run that follow each other, one a lane.
-template <int D>
-struct Group {
-  // Not defaulted: it must be compiled for the instruction set of the vectors' constructors.
-  HWY_INLINE Group() {}  // NOLINT(modernize-use-equals-default)
-
-  HWY_INLINE void load(const Run<D>& run, std::size_t at) {
-    id = ids(run, at);
-    dedup_mask = hn::LoadU(Ids(), run.dedup_mask + at);
-    for (int axis = 0; axis < D; ++axis) {
-      min[axis] = hn::LoadU(Floats(), run.min[axis] + at);
-      max[axis] = hn::LoadU(Floats(), run.max[axis] + at);
-    }
-  }
-
-  FloatVector min[D];
-  FloatVector max[D];
-  IdVector id;
-  IdVector dedup_mask;
-};
-
 /// Compares `together` boxes with the ones `distance` places behind each, then with the next ones, and so on
 /// until no window holds more or few do: `distance` is then how far it came. Windows are too short for the
 /// lanes to be one box's candidates. Returns the number of windows that may hold more.
-template <int D>
+template <int D, typename LastTest>
 HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::size_t& distance,
-                                   std::uint64_t& tests, Writer& pairs) {
-  constexpr std::size_t lanes = hn::MaxLanes(Floats());
+                                   std::uint64_t& tests, Writer<LastTest>& pairs) {
   constexpr std::size_t parts = together / lanes;
   constexpr std::size_t few_windows = 6;
   const Floats floats;
@@ -129,34 +102,43 @@ HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::si
   for (;;) {
     // No call in the loop below: vectors would have to be saved from it.
     const std::size_t stop = distance + pairs.room();
-    Group<D> groups[parts];
-    for (std::size_t part = 0; part < parts; ++part) groups[part].load(run, begin + part * lanes);
+    LoadedBoxes<D> groups[parts];
+    IdVector group_ids[parts];
+    IdVector dedup_masks[parts];
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::size_t at = begin + part * lanes;
+      groups[part] = LoadedBoxes<D>(run, at);
+      group_ids[part] = load_ids(Ids(), run.id + at);
+      dedup_masks[part] = hn::LoadU(Ids(), run.dedup_mask + at);
+    }
     std::size_t open = together;
     for (; distance < stop; ++distance) {
       open = 0;
       for (std::size_t part = 0; part < parts; ++part) {
-        const Group<D>& group = groups[part];
-        Group<D> other;
-        other.load(run, begin + part * lanes + distance);
+        const LoadedBoxes<D>& group = groups[part];
+        const std::size_t at = begin + part * lanes + distance;
+        const LoadedBoxes<D> other(run, at);
         open += hn::CountTrue(floats, hn::Le(other.min[0], hn::Add(group.max[0], slack)));
         const auto candidates = hn::Le(other.min[0], group.max[0]);
         tests += hn::CountTrue(floats, candidates);
-        auto touching = hn::And(candidates, hn::Le(group.min[0], other.max[0]));
+        auto hits = hn::And(candidates, hn::Le(group.min[0], other.max[0]));
         for (int axis = 1; axis < D; ++axis) {
-          touching = hn::And(touching, hn::Le(other.min[axis], group.max[axis]));
-          touching = hn::And(touching, hn::Le(group.min[axis], other.max[axis]));
+          hits = hn::And(hits, hn::Le(other.min[axis], group.max[axis]));
+          hits = hn::And(hits, hn::Le(group.min[axis], other.max[axis]));
         }
-        const auto together_here = hn::Eq(hn::And(group.dedup_mask, other.dedup_mask), hn::Zero(Ids()));
-        pairs.write(group.id, other.id, hn::And(hn::RebindMask(Ids(), touching), together_here));
+        const IdVector common = hn::And(dedup_masks[part], hn::LoadU(Ids(), run.dedup_mask + at));
+        const Hits together_here = hn::Eq(common, hn::Zero(Ids()));
+        pairs.write(group_ids[part], ids_beside<LastTest>(group, run, at),
+                    hn::And(hn::RebindMask(Ids(), hits), together_here));
       }
       if (open == 0 || (open <= few_windows && distance >= together)) return open;
     }
   }
 }
 
-template <int D>
-std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
-  Writer pairs(sink);
+template <int D, typename LastTest>
+std::uint64_t sweep_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
+  Writer<LastTest> pairs(sink, last_test);
   std::uint64_t tests = 0;
   // After the last box there is nothing.
   const std::size_t rows = run.size == 0 ? 0 : std::min(run.rows, run.size - 1);
@@ -169,10 +151,10 @@ std::uint64_t sweep_run(const Run<D>& run, PairSink& sink) {
   return tests;
 }
 
-template <int D>
-std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
+template <int D, typename LastTest>
+std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, PairSink& sink) {
   // Each pair has a box that is taken first; the other one is then still to come in its run.
-  Writer pairs(sink);
+  Writer<LastTest> pairs(sink, last_test);
   std::uint64_t tests = 0;
   std::size_t i = 0;
   std::size_t j = 0;
@@ -189,27 +171,28 @@ std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
 }
 
 /// Compares the query with all boxes from `begin` on.
-template <int D>
-HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin, Writer& pairs) {
-  for (std::size_t at = begin; at < run.size; at += hn::Lanes(Floats())) {
-    const Hits hits = overlaps<false>(query, run, at, begins(query, run, at));
+template <int D, typename LastTest>
+HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin,
+                             Writer<LastTest>& pairs) {
+  for (std::size_t at = begin; at < run.size; at += lanes) {
+    const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
     if (hn::AllFalse(Ids(), hits)) continue;
     pairs.room();
-    pairs.write_of(query.id, ids(run, at), hits);
+    pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);
   }
 }
 
-template <int D>
-std::uint64_t compare_run(const Run<D>& run, PairSink& sink) {
-  Writer pairs(sink);
+template <int D, typename LastTest>
+std::uint64_t compare_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
+  Writer<LastTest> pairs(sink, last_test);
   const std::uint64_t rows = std::min(run.rows, run.size);
   for (std::size_t i = 0; i < rows; ++i) compare_from(Query<D>(run, i), run, i + 1, pairs);
   return rows * run.size - rows * (rows + 1) / 2;
 }
 
-template <int D>
-std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
-  Writer pairs(sink);
+template <int D, typename LastTest>
+std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, PairSink& sink) {
+  Writer<LastTest> pairs(sink, last_test);
   for (std::size_t i = 0; i < a.size; ++i) compare_from(Query<D>(a, i), b, 0, pairs);
   return std::uint64_t{a.size} * b.size;
 }
@@ -217,21 +200,37 @@ std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, PairSink& sink) {
 }  // namespace
 
 // What the dispatch below can name: no templates.
-std::uint64_t sweep_run_2(const Run<2>& run, PairSink& pairs) { return sweep_run(run, pairs); }
-std::uint64_t sweep_run_3(const Run<3>& run, PairSink& pairs) { return sweep_run(run, pairs); }
+std::uint64_t sweep_run_2(const Run<2>& run, PairSink& pairs) {
+  return run.doubles == nullptr ? sweep_run(run, ByFloats{}, pairs)
+                                : sweep_run(run, InDouble<2>{run.doubles}, pairs);
+}
+std::uint64_t sweep_run_3(const Run<3>& run, PairSink& pairs) {
+  return run.doubles == nullptr ? sweep_run(run, ByFloats{}, pairs)
+                                : sweep_run(run, InDouble<3>{run.doubles}, pairs);
+}
 std::uint64_t sweep_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return sweep_runs(a, b, pairs);
+  return a.doubles == nullptr ? sweep_runs(a, b, ByFloats{}, pairs)
+                              : sweep_runs(a, b, InDouble<2>{a.doubles}, pairs);
 }
 std::uint64_t sweep_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return sweep_runs(a, b, pairs);
+  return a.doubles == nullptr ? sweep_runs(a, b, ByFloats{}, pairs)
+                              : sweep_runs(a, b, InDouble<3>{a.doubles}, pairs);
 }
-std::uint64_t compare_run_2(const Run<2>& run, PairSink& pairs) { return compare_run(run, pairs); }
-std::uint64_t compare_run_3(const Run<3>& run, PairSink& pairs) { return compare_run(run, pairs); }
+std::uint64_t compare_run_2(const Run<2>& run, PairSink& pairs) {
+  return run.doubles == nullptr ? compare_run(run, ByFloats{}, pairs)
+                                : compare_run(run, InDouble<2>{run.doubles}, pairs);
+}
+std::uint64_t compare_run_3(const Run<3>& run, PairSink& pairs) {
+  return run.doubles == nullptr ? compare_run(run, ByFloats{}, pairs)
+                                : compare_run(run, InDouble<3>{run.doubles}, pairs);
+}
 std::uint64_t compare_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return compare_runs(a, b, pairs);
+  return a.doubles == nullptr ? compare_runs(a, b, ByFloats{}, pairs)
+                              : compare_runs(a, b, InDouble<2>{a.doubles}, pairs);
 }
 std::uint64_t compare_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return compare_runs(a, b, pairs);
+  return a.doubles == nullptr ? compare_runs(a, b, ByFloats{}, pairs)
+                              : compare_runs(a, b, InDouble<3>{a.doubles}, pairs);
 }
 
 }  // namespace broadside::kernels::HWY_NAMESPACE

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -69,6 +70,21 @@ std::vector<Box<D>> random_boxes(Rng& rng, std::size_t count, const BoxKind& kin
   std::vector<Box<D>> boxes(count);
   for (Box<D>& box : boxes) box = random_box<D>(rng, kind);
   return boxes;
+}
+
+/// Doubles whose nearest floats the box has, so that boxes that touch may be apart.
+template <int D>
+Box<D, double> near_double(Rng& rng, const Box<D>& box) {
+  // At once no more than half the distance to the next float, and more than a double's.
+  const auto near = [&rng](float value) {
+    return std::isinf(value) ? value : value + rng.whole(-1, 1) * 0x1p-40 * std::max(1.0F, std::abs(value));
+  };
+  Box<D, double> doubles;
+  for (int axis = 0; axis < D; ++axis) {
+    doubles.min[axis] = near(box.min[axis]);
+    doubles.max[axis] = std::max(doubles.min[axis], near(box.max[axis]));
+  }
+  return doubles;
 }
 
 inline Pair ordered(std::size_t a, std::size_t b) { return {BoxId(std::min(a, b)), BoxId(std::max(a, b))}; }

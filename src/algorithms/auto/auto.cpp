@@ -26,6 +26,7 @@
 #include "doubles/double_follower.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "interface/yielding.hpp"
 
 namespace broadside::algorithm {
@@ -38,11 +39,12 @@ constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
 
 template <int D>
-class Auto final : public PairFinder<D>, public Outlined<D> {
+class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTest<D> {
   using Limits = AutoThresholds<D>;
 
  public:
   Outlined<D>* outlined() noexcept override { return this; }
+  core::LastTest<D>* last_test() noexcept override { return this; }
 
   std::string explanation() const override {
     std::string text = reason();
@@ -89,6 +91,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     has_handed_over_ = false;
     PairFinder<D>& finder = chosen_for(boxes);
+    finder.last_test()->set_doubles(this->doubles());
     this->search_with(finder, boxes, pairs);
     const core::Yielding<D>* const search = finder.yielding();
     if (search == nullptr || !search->has_yielded()) return;
@@ -96,7 +99,7 @@ class Auto final : public PairFinder<D>, public Outlined<D> {
     Statistics statistics = this->statistics().value_or(Statistics{});
     if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
     core::LeftSink<D> left(*search, boxes, pairs);
-    const Statistics more = segments_->join(boxes, this->left_count(), left);
+    const Statistics more = segments_->join(boxes, this->left_count(), this->doubles(), left);
     left.flush();
     statistics.tests += more.tests;
     statistics.references += more.references;

@@ -36,12 +36,14 @@ constexpr std::size_t many_to_sort = 128;
 }  // namespace
 
 template <int D>
-Statistics SegmentJoin<D>::join(std::span<const Box<D>> boxes, std::size_t left_count, PairSink& pairs) {
+Statistics SegmentJoin<D>::join(std::span<const Box<D>> boxes, std::size_t left_count,
+                                const Box<D, double>* doubles, PairSink& pairs) {
   core::Sample<D> sample;
   sample.take(boxes);
   std::array<int, D> order = sample.axes_by_overlap();
   sorted_boxes_ = sorted_.sort(boxes, order);
   statistics_ = {};
+  doubles_ = doubles;
   pairs_ = &pairs;
   stack_.clear();
   const auto push_all = [&](bool left) {
@@ -267,7 +269,7 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
   const std::span<Reference> references = std::span(stack_).subspan(list.begin, list.size());
   if (axis == 0) {
     for (const Reference& reference : references) append(reference);
-    return run.view();
+    return run.view(doubles_);
   }
   const std::span<core::KeyedPlace> keys = radix_.places(references.size());
   for (std::size_t i = 0; i < references.size(); ++i)
@@ -278,7 +280,7 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
     std::ranges::sort(keys, {}, [](const core::KeyedPlace& key) { return std::pair(key.key, key.place); });
     for (const core::KeyedPlace& key : keys) append(references[key.place]);
   }
-  return run.view();
+  return run.view(doubles_);
 }
 
 template class SegmentJoin<2>;

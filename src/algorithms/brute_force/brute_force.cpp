@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::algorithm {
@@ -22,14 +23,17 @@ constexpr std::size_t tests_per_box = 128;
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>
-class BruteForce final : public PairFinder<D> {
+class BruteForce final : public PairFinder<D>, public core::LastTest<D> {
+ public:
+  core::LastTest<D>* last_test() noexcept override { return this; }
+
  private:
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     const std::size_t left = this->left_count();
     gather(boxes, left, boxes.size(), run_);
     gather(boxes, 0, left, left_run_);
-    const kernels::Run<D> run = run_.view();
-    const kernels::Run<D> left_run = left_run_.view();
+    const kernels::Run<D> run = run_.view(this->doubles());
+    const kernels::Run<D> left_run = left_run_.view(this->doubles());
     const std::size_t rows = left == 0 ? run.size : left;
     parallel_.start(this->workers(), rows * run.size / tests_per_box);
     const auto compare = [&](core::Range some, std::size_t, PairSink& sink) {

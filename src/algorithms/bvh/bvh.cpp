@@ -19,6 +19,7 @@
 #include "core/parallel.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/bvh_join.hpp"
@@ -36,10 +37,14 @@ constexpr std::size_t fewest_leaves = 64;
 constexpr std::size_t most_parts = 64;
 
 template <int D>
-class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+class Bvh final : public PairFinder<D>,
+                  public Outlined<D>,
+                  public core::Yielding<D>,
+                  public core::LastTest<D> {
  public:
   Outlined<D>* outlined() noexcept override { return this; }
   core::Yielding<D>* yielding() noexcept override { return this; }
+  core::LastTest<D>* last_test() noexcept override { return this; }
 
   /// A leaf is joined with all behind it.
   bool is_left(const Box<D>&, BoxId a, const Box<D>&, BoxId b) const override {
@@ -53,9 +58,10 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     if (boxes.empty()) return this->count({});
     parallel_.start(this->workers(), boxes.size());
     packer_.pack(boxes, parallel_, this->left_count());
-    const kernels::PackedBvh<D>& tree = packer_.tree();
+    tree_ = packer_.tree();
+    tree_.doubles = this->doubles();
     scratch_.resize(std::max(scratch_.size(), parallel_.workers()));
-    for (std::vector<std::uint32_t>& scratch : scratch_) scratch.resize(kernels::join_scratch(tree));
+    for (std::vector<std::uint32_t>& scratch : scratch_) scratch.resize(kernels::join_scratch(tree_));
     leaves_a_part_ = fewest_leaves;
     if (this->may_yield()) leaves_a_part_ = std::max(fewest_leaves, leaf_count() / most_parts + 1);
     Statistics statistics = this->may_yield() ? join_or_yield(pairs) : join_all(pairs);
@@ -63,14 +69,14 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     this->count(statistics);
     if (!this->has_yielded()) return;
     leaf_of_.resize(boxes.size());
-    for (std::size_t place = 0; place < tree.levels[0].size; ++place) {
-      const float min = tree.levels[0].min[0][place];
+    for (std::size_t place = 0; place < tree_.levels[0].size; ++place) {
+      const float min = tree_.levels[0].min[0][place];
       if (min == min)  // else it holds no box
-        leaf_of_[index(tree.id[place])] = static_cast<std::uint32_t>(place / kernels::fan_out);
+        leaf_of_[index(tree_.id[place])] = static_cast<std::uint32_t>(place / kernels::fan_out);
     }
   }
 
-  std::size_t leaf_count() const { return packer_.tree().levels[1].size; }
+  std::size_t leaf_count() const { return tree_.levels[1].size; }
   std::size_t part_count() const { return (leaf_count() + leaves_a_part_ - 1) / leaves_a_part_; }
 
   kernels::NodeRange leaves_of(core::Range parts) const {
@@ -81,8 +87,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     return parallel_.search(
         part_count(), pairs, [this](core::Range parts, std::size_t worker, PairSink& sink) {
           std::uint32_t* const scratch = scratch_[worker].data();
-          return Statistics{.tests =
-                                kernels::join(packer_.tree(), leaves_of(parts), {}, scratch, sink).tests};
+          return Statistics{.tests = kernels::join(tree_, leaves_of(parts), {}, scratch, sink).tests};
         });
   }
 
@@ -93,7 +98,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
     const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t most_tests,
                              std::size_t worker, PairSink& sink) {
       const kernels::JoinLimit limit = {most_tests, kernels::tests_per_pair};
-      parts_[part] = kernels::join(packer_.tree(), leaves, limit, scratch_[worker].data(), sink);
+      parts_[part] = kernels::join(tree_, leaves, limit, scratch_[worker].data(), sink);
       return parts_[part].tests;
     };
     Statistics statistics =
@@ -145,6 +150,7 @@ class Bvh final : public PairFinder<D>, public Outlined<D>, public core::Yieldin
 
   core::Parallel parallel_;
   BvhPacker<D> packer_;
+  kernels::PackedBvh<D> tree_;                       // the packer's
   std::vector<std::vector<std::uint32_t>> scratch_;  // by worker
   std::size_t leaves_a_part_ = fewest_leaves;
   std::vector<kernels::JoinWork> parts_;  // of a search that may give up

@@ -29,6 +29,7 @@
 #include "core/sample.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/run.hpp"
@@ -38,10 +39,14 @@ namespace broadside::algorithm {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+class Grid final : public PairFinder<D>,
+                   public Outlined<D>,
+                   public core::Yielding<D>,
+                   public core::LastTest<D> {
  public:
   Outlined<D>* outlined() noexcept override { return this; }
   core::Yielding<D>* yielding() noexcept override { return this; }
+  core::LastTest<D>* last_test() noexcept override { return this; }
 
   explicit Grid(std::optional<double> cell) : cell_(cell) {}
 
@@ -65,7 +70,7 @@ class Grid final : public PairFinder<D>, public Outlined<D>, public core::Yieldi
     const auto sweep = [&](core::Range slabs, std::size_t worker, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const BoxesByCell<D> cells{entries_, begin_};
+        const BoxesByCell<D> cells{entries_, begin_, this->doubles()};
         const Statistics of_slab =
             sweeps_[worker].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
         swept_to_[slab] = sweeps_[worker].swept_to();

@@ -63,6 +63,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
                                PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
+  doubles_ = cells.doubles;
   statistics_ = {};
   const std::size_t length = layout.row_length();
   columns_.resize(std::max(columns_.size(), length));
@@ -124,7 +125,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   run_.reserve(count);
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
-  const kernels::Run<D> run = run_.view(slack);
+  const kernels::Run<D> run = run_.view(doubles_, slack);
   if (kernels::is_wasteful(run, most_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;

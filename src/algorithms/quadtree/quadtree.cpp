@@ -31,6 +31,7 @@
 #include "core/sorted_boxes.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
@@ -45,9 +46,10 @@ template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 
 template <int D>
-class Quadtree final : public PairFinder<D>, public Outlined<D> {
+class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::LastTest<D> {
  public:
   Outlined<D>* outlined() noexcept override { return this; }
+  core::LastTest<D>* last_test() noexcept override { return this; }
 
   explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
 
@@ -206,7 +208,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     if (count <= capacity_ || !worker.stack.split(sorted_boxes_, begin, end, split)) {
       worker.statistics.references += count;
       gather(worker, begin, end, worker.run, [](std::size_t) { return true; });
-      worker.statistics.tests += kernels::sweep(worker.run.view(), pairs);
+      worker.statistics.tests += kernels::sweep(worker.run.view(this->doubles()), pairs);
       return;
     }
     if (worker.stack.kept_count > 0) sweep_kept(worker, begin, end, pairs);
@@ -227,8 +229,9 @@ class Quadtree final : public PairFinder<D>, public Outlined<D> {
     gather(worker, begin, end, worker.run,
            [&worker](std::size_t i) { return worker.stack.children[i] != 0; });
     worker.statistics.references += worker.kept_run.size();
-    worker.statistics.tests += kernels::sweep(worker.kept_run.view(), pairs);
-    worker.statistics.tests += kernels::sweep(worker.kept_run.view(), worker.run.view(), pairs);
+    worker.statistics.tests += kernels::sweep(worker.kept_run.view(this->doubles()), pairs);
+    worker.statistics.tests +=
+        kernels::sweep(worker.kept_run.view(this->doubles()), worker.run.view(this->doubles()), pairs);
   }
 
   /// Fills `run` with those of the node's references whose places in the node are `wanted`.

@@ -27,6 +27,7 @@
 #include "core/sorted_boxes.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
+#include "interface/last_test.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/sweep.hpp"
@@ -44,10 +45,14 @@ constexpr std::size_t most_stripes = 256;
 constexpr std::size_t swept_at_once = 64;
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public core::Yielding<D> {
+class SweepAndPrune final : public PairFinder<D>,
+                            public Outlined<D>,
+                            public core::Yielding<D>,
+                            public core::LastTest<D> {
  public:
   Outlined<D>* outlined() noexcept override { return this; }
   core::Yielding<D>* yielding() noexcept override { return this; }
+  core::LastTest<D>* last_test() noexcept override { return this; }
 
   explicit SweepAndPrune(const Settings& settings) {
     if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
@@ -132,7 +137,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
     buffer.reserve(sorted.size());
     for (const core::SortedBox<D>& box : sorted)
       buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
-    const kernels::Run<D> run = buffer.view();
+    const kernels::Run<D> run = buffer.view(this->doubles());
     if (this->may_yield() && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
       this->set_yielded(true);
       this->count({.references = run.size});
@@ -180,7 +185,7 @@ class SweepAndPrune final : public PairFinder<D>, public Outlined<D>, public cor
           run.append(sorted[i].box, sorted[i].id,
                      before | kernels::side_bit(sorted[i].id, this->left_count()));
         }
-        statistics.tests += kernels::sweep(run.view(), sink);
+        statistics.tests += kernels::sweep(run.view(this->doubles()), sink);
         statistics.references += list.size();
       }
       return statistics;

@@ -192,6 +192,22 @@ TEST(BvhJoin, FindsThePairsOfTheDefinitionOnce) {
       });
 }
 
+TEST(BvhJoin, LeavesOutWhatIsApartInDouble) {
+  Rng rng(13);
+  on_packed_trees([&]<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, PackedBvh<D> tree) {
+    std::vector<Box<D, double>> doubles;
+    for (const Box<D>& box : boxes) doubles.push_back(near_double(rng, box));
+    tree.doubles = doubles.data();
+    std::vector<std::uint32_t> scratch(join_scratch(tree));
+    const NodeRange all = {0, tree.levels[1].size};
+    const std::vector<Pair> expected = overlapping_pairs(doubles, left_count);
+    EXPECT_EQ(sorted_pairs([&](PairSink& sink) { join(tree, all, {}, scratch.data(), sink); }), expected);
+    if (boxes.size() > 300) {
+      EXPECT_LT(expected.size(), overlapping_pairs(boxes, left_count).size());
+    }
+  });
+}
+
 TEST(BvhJoin, FindsTheSamePairsInTheSameOrderInAnyRangesOfLeaves) {
   Rng rng(11);
   on_packed_trees([&]<int D>(const std::vector<Box<D>>&, std::size_t, const PackedBvh<D>& tree) {

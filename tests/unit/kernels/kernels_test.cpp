@@ -26,6 +26,7 @@ namespace {
 template <int D>
 struct Entry {
   Box<D> box;
+  Box<D, double> exact;  ///< what decides: the same, or doubles near it
   BoxId id;
   std::uint32_t dedup_mask;
 };
@@ -44,7 +45,7 @@ struct Result {
 template <int D>
 bool test(const Entry<D>& a, const Entry<D>& b, bool looks_at_mask, Result& result) {
   if (b.box.min[0] > a.box.max[0]) return false;
-  if (overlap(a.box, b.box) && (!looks_at_mask || (a.dedup_mask & b.dedup_mask) == 0))
+  if (overlap(a.exact, b.exact) && (!looks_at_mask || (a.dedup_mask & b.dedup_mask) == 0))
     result.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
   return true;
 }
@@ -113,11 +114,11 @@ Result found(Search search) {
 
 /// A run of `entries` in the memory of others before it, whose boxes then lie behind its end.
 template <int D>
-Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, float slack = 0) {
+Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, const Box<D, double>* doubles, float slack = 0) {
   buffer.clear();
   buffer.reserve(entries.size());
   for (const Entry<D>& entry : entries) buffer.append(entry.box, entry.id, entry.dedup_mask);
-  return buffer.view(slack);
+  return buffer.view(doubles, slack);
 }
 
 /// How boxes are drawn.
@@ -127,6 +128,7 @@ struct Kind {
   int most_extent;
   bool infinite;             ///< some reach to infinity, on either side or both
   std::uint32_t dedup_mask;  ///< these bits of `dedup_mask` are set at random
+  bool doubles = false;      ///< boxes that touch as floats may be apart
 };
 
 const std::vector<Kind> kinds = {
@@ -137,6 +139,8 @@ const std::vector<Kind> kinds = {
     {"apart", 40, 20, false, 7U},
     {"two sets", 60, 30, false, 3U << 30},
     {"everything overlaps", 1, 0, true, 0},
+    {"doubles", 40, 10, true, 7U, true},
+    {"doubles that all touch", 2, 1, false, 0, true},
 };
 
 template <int D>
@@ -152,6 +156,11 @@ Entries<D> entries_of(const Kind& kind, std::size_t count, std::size_t first_id,
       const int sides = rng.whole(0, 4);  // one of them: a box at an infinite point
       if (sides != 0) max = infinity;
       if (sides != 1) min = sides == 2 ? infinity : -infinity;
+    }
+    entries[i].exact = near_double(rng, entries[i].box);
+    for (int axis = 0; axis < D && !kind.doubles; ++axis) {
+      entries[i].exact.min[axis] = entries[i].box.min[axis];
+      entries[i].exact.max[axis] = entries[i].box.max[axis];
     }
     entries[i].id = BoxId(first_id + i);
     entries[i].dedup_mask = static_cast<std::uint32_t>(rng.bits()) & kind.dedup_mask;
@@ -173,7 +182,8 @@ void sort_run(Entries<D>& entries, float slack = 0) {
   });
 }
 
-/// Runs `body(entries, others)` on every instruction set and sizes from 0 to 200.
+/// Runs `body(entries, others, doubles)` on every instruction set and sizes from 0 to 200. The doubles are
+/// null where floats decide.
 template <typename Body>
 void on_all(Body body) {
   on_each_instruction_set([&]<int D>() {
@@ -181,7 +191,12 @@ void on_all(Body body) {
       SCOPED_TRACE(kind.name);
       Rng rng(17);
       for (std::size_t size = 200; size != std::size_t(-1); size -= size > 70 ? 13 : size > 36 ? 3 : 1) {
-        body(entries_of<D>(kind, size, 0, rng), entries_of<D>(kind, rng.below(200), size, rng));
+        const Entries<D> entries = entries_of<D>(kind, size, 0, rng);
+        const Entries<D> others = entries_of<D>(kind, rng.below(200), size, rng);
+        std::vector<Box<D, double>> doubles(entries.size() + others.size());
+        for (const Entry<D>& entry : entries) doubles[index(entry.id)] = entry.exact;
+        for (const Entry<D>& entry : others) doubles[index(entry.id)] = entry.exact;
+        body(entries, others, kind.doubles ? doubles.data() : nullptr);
         if (testing::Test::HasFailure()) return;
       }
     }
@@ -221,27 +236,32 @@ TEST(Kernels, RunOnTheInstructionSetThatTheyAreLimitedTo) {
 }
 
 TEST(Kernels, SweepARunAsDefinedOnEveryInstructionSet) {
-  on_all([]<int D>(Entries<D> run, const Entries<D>&) {
+  on_all([]<int D>(Entries<D> run, const Entries<D>&, const Box<D, double>* doubles) {
     static RunBuffer<D> buffer;
     for (const float slack : slacks) {
       sort_run(run, slack);
-      const Result result = found([&](PairSink& pairs) { return sweep(fill(buffer, run, slack), pairs); });
+      const Result result =
+          found([&](PairSink& pairs) { return sweep(fill(buffer, run, doubles, slack), pairs); });
       EXPECT_EQ(sorted(result), sorted(swept(run))) << run.size() << " boxes, slack " << slack;
     }
   });
 }
 
 TEST(Kernels, SweepTwoRunsAsDefinedOnEveryInstructionSet) {
-  on_all([]<int D>(Entries<D> a, Entries<D> b) {
+  on_all([]<int D>(Entries<D> a, Entries<D> b, const Box<D, double>* doubles) {
     static RunBuffer<D> first;
     static RunBuffer<D> second;
     for (const float slack : slacks) {
       sort_run(a, slack);
       sort_run(b);
-      EXPECT_EQ(found([&](PairSink& pairs) { return sweep(fill(first, a, slack), fill(second, b), pairs); }),
+      EXPECT_EQ(found([&](PairSink& pairs) {
+                  return sweep(fill(first, a, doubles, slack), fill(second, b, doubles), pairs);
+                }),
                 swept(a, b))
           << a.size() << " and " << b.size() << " boxes, slack " << slack;
-      EXPECT_EQ(found([&](PairSink& pairs) { return sweep(fill(second, b), fill(first, a, slack), pairs); }),
+      EXPECT_EQ(found([&](PairSink& pairs) {
+                  return sweep(fill(second, b, doubles), fill(first, a, doubles, slack), pairs);
+                }),
                 swept(b, a))
           << b.size() << " and " << a.size() << " boxes, slack " << slack;
     }
@@ -249,18 +269,21 @@ TEST(Kernels, SweepTwoRunsAsDefinedOnEveryInstructionSet) {
 }
 
 TEST(Kernels, CompareAllOfARunOnEveryInstructionSet) {
-  on_all([]<int D>(const Entries<D>& run, const Entries<D>&) {
+  on_all([]<int D>(const Entries<D>& run, const Entries<D>&, const Box<D, double>* doubles) {
     static RunBuffer<D> buffer;
-    EXPECT_EQ(found([&](PairSink& pairs) { return compare_all(fill(buffer, run), pairs); }), compared(run))
+    EXPECT_EQ(found([&](PairSink& pairs) { return compare_all(fill(buffer, run, doubles), pairs); }),
+              compared(run))
         << run.size();
   });
 }
 
 TEST(Kernels, CompareAllOfTwoRunsOnEveryInstructionSet) {
-  on_all([]<int D>(const Entries<D>& a, const Entries<D>& b) {
+  on_all([]<int D>(const Entries<D>& a, const Entries<D>& b, const Box<D, double>* doubles) {
     static RunBuffer<D> first;
     static RunBuffer<D> second;
-    EXPECT_EQ(found([&](PairSink& pairs) { return compare_all(fill(first, a), fill(second, b), pairs); }),
+    EXPECT_EQ(found([&](PairSink& pairs) {
+                return compare_all(fill(first, a, doubles), fill(second, b, doubles), pairs);
+              }),
               compared(a, b))
         << a.size() << " and " << b.size();
   });

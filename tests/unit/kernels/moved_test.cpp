@@ -109,7 +109,7 @@ TEST(Moved, MeetBoxesInAWindowOfARun) {
     std::fill_n(in_window.begin(), begin, nan_box<D>());
     Changes expected;
     for (const MovedBox<D>& box : scene.moved) expected.add<D>(box, in_window, scene.moves);
-    const kernels::Run<D> run = buffer.view();
+    const kernels::Run<D> run = buffer.view(nullptr);
     EXPECT_EQ(written_changes(scene.moves,
                               [&](const core::ChangeSinks& sinks) {
                                 for (const MovedBox<D>& box : scene.moved)

@@ -21,7 +21,7 @@ Run<D> run_of(RunBuffer<D>& buffer, std::size_t count, float extent, float apart
     box.min[1] = box.max[1] = apart * static_cast<float>(i);
     buffer.append(box, BoxId(i));
   }
-  return buffer.view();
+  return buffer.view(nullptr);
 }
 
 TEST(Waste, IsTestsBeyondTheLimitThatFindNothing) {

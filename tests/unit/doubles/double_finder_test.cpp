@@ -1,0 +1,106 @@
+// DoubleFinder against the definition in double, where floats cannot tell many boxes apart: with finders
+// whose kernels do the last test and with one that knows nothing of it.
+#include "doubles/double_finder.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+
+#include "tests/support/model.hpp"
+
+namespace broadside::core {
+namespace {
+
+/// What a user's algorithm is: it searches floats.
+template <int D>
+class OfFloats final : public PairFinder<D> {
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    for (std::size_t j = 0; j < boxes.size(); ++j) {
+      for (std::size_t i = 0; i < j; ++i) {
+        if (overlap(boxes[i], boxes[j])) pairs.add(BoxId(i), BoxId(j));
+      }
+    }
+  }
+};
+
+/// About 2^24 + 60, where a float has steps of 2: many that lie apart touch as floats.
+template <int D>
+std::vector<Box<D, double>> boxes_that_round(Rng& rng, std::size_t count) {
+  std::vector<Box<D, double>> boxes(count);
+  for (Box<D, double>& box : boxes) {
+    const Box<D> drawn = random_box<D>(rng, {.most_extent = 25});
+    for (int axis = 0; axis < D; ++axis) {
+      box.min[axis] = 0x1p24 + drawn.min[axis] / 2;
+      box.max[axis] = 0x1p24 + drawn.max[axis] / 2;
+    }
+  }
+  // The origin goes far from all of them.
+  for (int axis = 0; axis < D; ++axis) boxes[0].min[axis] = boxes[0].max[axis] = 0;
+  for (std::size_t i = 1; i < count / 2 + 2 && i < count; ++i) boxes[i] = boxes[0];
+  return boxes;
+}
+
+template <int D>
+void expect_exact(PairFinder<D, double>& finder, const std::vector<Box<D, double>>& boxes) {
+  EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find(boxes, sink); }), overlapping_pairs(boxes));
+  const std::size_t left_count = boxes.size() / 3;
+  std::vector<Pair> between = overlapping_pairs(boxes, left_count);
+  for (Pair& pair : between) pair.second = BoxId(index(pair.second) - left_count);
+  const std::span<const Box<D, double>> all = boxes;
+  EXPECT_EQ(sorted_pairs([&](PairSink& sink) {
+              finder.find_between(all.first(left_count), all.subspan(left_count), sink);
+            }),
+            between);
+  EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find_between(all, left_count, sink); }), between);
+}
+
+TEST(DoubleFinder, IsExactWhateverSearchesTheFloats) {
+  in_each_dimension([]<int D>() {
+    Rng rng(1);
+    for (const std::size_t count : {10, 200, 1200}) {
+      const std::vector<Box<D, double>> boxes = boxes_that_round<D>(rng, count);
+      DoubleFinder<D> of_user(std::make_unique<OfFloats<D>>());
+      expect_exact(of_user, boxes);
+      for (const Algorithm& algorithm : algorithms()) {
+        if (algorithm.kind != AlgorithmKind::own) continue;
+        SCOPED_TRACE(algorithm.name);
+        expect_exact(*make_finder<D, double>(algorithm.name), boxes);
+      }
+    }
+  });
+}
+
+TEST(DoubleFinder, LeavesTheLastTestToTheKernelsOfEachOwnAlgorithm) {
+  in_each_dimension([]<int D>() {
+    for (const Algorithm& algorithm : algorithms()) {
+      if (algorithm.kind == AlgorithmKind::own) {
+        EXPECT_NE(make_finder<D>(algorithm.name)->last_test(), nullptr) << algorithm.name;
+      }
+    }
+  });
+}
+
+TEST(DoubleFinder, GoesBackToFloatsWhereRoundingLosesNothing) {
+  in_each_dimension([]<int D>() {
+    Rng rng(2);
+    DoubleFinder<D> finder(make_finder<D>("grid"));
+    for (const bool rounds : {true, false, true}) {
+      std::vector<Box<D, double>> boxes = boxes_that_round<D>(rng, 600);
+      for (Box<D, double>& box : boxes) {
+        for (int axis = 0; axis < D && !rounds; ++axis) {
+          box.min[axis] = box.min[axis] == 0 ? 0 : box.min[axis] - 0x1p24;
+          box.max[axis] = box.max[axis] == 0 ? 0 : box.max[axis] - 0x1p24;
+        }
+      }
+      expect_exact(finder, boxes);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace broadside::core
