@@ -72,11 +72,11 @@ class LazyPairs {
   void changed(std::size_t place) noexcept {
     for_pairs_.add(place);
     for_index_.add(place);
-    are_current_ = false;
+    are_current_ = index_is_current_ = false;
   }
 
   /// Says that there are fewer boxes.
-  void shrunk() noexcept { are_current_ = false; }
+  void shrunk() noexcept { are_current_ = index_is_current_ = false; }
 
   /// The pairs of `boxes`, in an order fixed by the calls since construction. Valid until they change.
   std::span<const Pair> pairs(std::span<const Box<3, S>> boxes) {
@@ -96,10 +96,13 @@ class LazyPairs {
   /// For searches of other boxes, so that they reuse its memory.
   PairFinder<3, S>& finder() noexcept { return *finder_; }
 
+  /// Not touched where it is current: other threads may be asking it.
   const BoxIndex<3, S>& box_index(std::span<const Box<3, S>> boxes) {
+    if (index_is_current_) return *index_;
     if (!index_) index_ = make_box_index<3, S>();
     index_->update({.boxes = boxes, .changed = for_index_.below(boxes.size())});
     for_index_.clear();
+    index_is_current_ = true;
     return *index_;
   }
 
@@ -140,6 +143,7 @@ class LazyPairs {
   ChangedPlaces for_index_;
   bool are_known_ = false;    // pairs_ were right at the last pairs()
   bool are_current_ = false;  // and are so now
+  bool index_is_current_ = false;
   std::vector<Pair> pairs_;
 };
 
