@@ -18,9 +18,7 @@ class PairCollector final : public PairSink {
   explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
 
  private:
-  void consume(std::span<const Pair> pairs) override {
-    pairs_->insert(pairs_->end(), pairs.begin(), pairs.end());
-  }
+  void consume(std::span<const Pair> pairs) override;
 
   std::vector<Pair>* pairs_;
 };

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "core/large_array.hpp"
 #include "core/prefix_sum.hpp"
 
 namespace broadside::core {
@@ -48,9 +48,9 @@ class CellLists {
 
  private:
   std::size_t cells_ = 0;
-  std::vector<std::size_t>
+  LargeArray<std::size_t>
       ends_;  // counts, then where the next item goes, which is the list's end when all are there
-  std::vector<std::uint32_t> items_;
+  LargeArray<std::uint32_t> items_;
 };
 
 }  // namespace broadside::core

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 
 namespace broadside::core {
@@ -45,8 +46,8 @@ class RadixSort {
  private:
   void sort_by_ranges(Parallel& parallel, int digit);
 
-  std::vector<KeyedPlace> places_;
-  std::vector<KeyedPlace> other_;
+  LargeArray<KeyedPlace> places_;
+  LargeArray<KeyedPlace> other_;
   std::vector<std::uint32_t> counts_;  // by range and bucket
 };
 

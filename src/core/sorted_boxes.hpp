@@ -3,11 +3,11 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 
@@ -35,7 +35,7 @@ class SortedBoxes {
 
  private:
   RadixSort radix_;
-  std::vector<SortedBox<D>> sorted_;
+  LargeArray<SortedBox<D>> sorted_;
 };
 
 }  // namespace broadside::core

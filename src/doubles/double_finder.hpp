@@ -4,11 +4,11 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "broadside/debug/outline.hpp"
 #include "broadside/finder.hpp"
 
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 
 namespace broadside::core {
@@ -40,7 +40,7 @@ class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, doub
 
   std::unique_ptr<PairFinder<D>> finder_;
   Parallel parallel_;
-  std::vector<Box<D>> floats_;
+  LargeArray<Box<D>> floats_;
 };
 
 }  // namespace broadside::core

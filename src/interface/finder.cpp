@@ -10,6 +10,7 @@
 #include "broadside/tracker.hpp"
 
 #include "core/filter_sink.hpp"
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "interface/callers_sink.hpp"
 #include "interface/input_check.hpp"
@@ -219,6 +220,7 @@ void PairFinder<D, Real>::find_between(BoxView<D, Real> left_view, BoxView<D, Re
   present_.clear();
   if (absent_left + absent_right == 0) {
     present_.reserve(left.size() + right.size());
+    core::prefer_large_pages(present_.data(), present_.capacity() * sizeof(Box<D, Real>));
     present_.insert(present_.end(), left.begin(), left.end());
     present_.insert(present_.end(), right.begin(), right.end());
     find_valid_between(present_, left.size(), pairs);

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+
+#include "core/large_array.hpp"
 
 namespace broadside::kernels {
 
@@ -87,12 +88,13 @@ class RunBuffer {
   void reserve(std::size_t count) {
     // `dedup_mask_` grows last: where it has room all have, also after memory ran out in between.
     if (count + read_ahead <= dedup_mask_.size()) return;
+    // With values, since kernels read ahead.
     for (int axis = 0; axis < D; ++axis) {
-      min_[axis].resize(count + read_ahead);
-      max_[axis].resize(count + read_ahead);
+      min_[axis].resize(count + read_ahead, 0);
+      max_[axis].resize(count + read_ahead, 0);
     }
-    id_.resize(count + read_ahead);
-    dedup_mask_.resize(count + read_ahead);
+    id_.resize(count + read_ahead, BoxId{0});
+    dedup_mask_.resize(count + read_ahead, 0);
   }
 
   /// Adds a box whose axes are already in the run's order. reserve() must have made the room.
@@ -155,10 +157,10 @@ class RunBuffer {
     std::swap(dedup_mask_[a], dedup_mask_[b]);
   }
 
-  std::array<std::vector<float>, D> min_;
-  std::array<std::vector<float>, D> max_;
-  std::vector<BoxId> id_;
-  std::vector<std::uint32_t> dedup_mask_;
+  std::array<core::LargeArray<float>, D> min_;
+  std::array<core::LargeArray<float>, D> max_;
+  core::LargeArray<BoxId> id_;
+  core::LargeArray<std::uint32_t> dedup_mask_;
   std::size_t size_ = 0;
 };
 

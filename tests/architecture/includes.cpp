@@ -31,11 +31,13 @@ const std::vector<Rule>& rules() {
       // An integration sees its engine.
       {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
+      {"src/core/large_array", core + R"(|<sys/mman\.h>|<unistd\.h>)"},
       {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
       {"src/core/", core},
       {"src/interface/", interface},
       {"src/kernels/",
-       standard + R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis)\.hpp")" +
+       standard +
+           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis|large_array)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry",
        interface + R"(|"algorithms/descriptions\.hpp"|"doubles/double_finder\.hpp")"},

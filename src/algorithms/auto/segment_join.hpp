@@ -90,7 +90,7 @@ class SegmentJoin {
 
   core::SortedBoxes<D> sorted_;
   std::span<const core::SortedBox<D>> sorted_boxes_;
-  std::vector<Reference> stack_;
+  core::LargeArray<Reference> stack_;
   std::vector<float> minima_;
   core::RadixSort radix_;
   kernels::RunBuffer<D> run_a_;

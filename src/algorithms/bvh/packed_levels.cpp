@@ -10,7 +10,7 @@ using kernels::fan_out;
 
 /// The elements of `memory`, at least `size` of them.
 template <typename Element>
-Element* grown(std::vector<Element>& memory, std::size_t size) {
+Element* grown(core::LargeArray<Element>& memory, std::size_t size) {
   if (memory.size() < size) memory.resize(size);
   return memory.data();
 }
@@ -24,7 +24,7 @@ constexpr Box<D> none = absent_box<D>();
 template <int D>
 void PackedLevels<D>::start(std::size_t places) {
   resize(0, places);
-  if (ids_.size() < places) ids_.resize(places);
+  grown(ids_, places);
   gaps_.clear();
   tree_.left_size = 0;
 }

@@ -11,6 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "kernels/bvh_join.hpp"
 
@@ -61,8 +62,8 @@ class PackedLevels {
   };
 
   struct LevelMemory {
-    std::array<std::vector<float>, D> min;
-    std::array<std::vector<float>, D> max;
+    std::array<core::LargeArray<float>, D> min;
+    std::array<core::LargeArray<float>, D> max;
   };
 
   Gap gap_behind(std::size_t level) const;
@@ -71,7 +72,7 @@ class PackedLevels {
 
   std::vector<Gap> gaps_;
   std::array<LevelMemory, kernels::most_levels> memory_;
-  std::vector<BoxId> ids_;
+  core::LargeArray<BoxId> ids_;
   kernels::PackedBvh<D> tree_{};
 };
 

@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/bvh/packed_levels.hpp"
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sample.hpp"
@@ -71,10 +72,10 @@ class BvhPacker {
   core::Sample<D> sample_;
   std::array<int, D> axes_{};              // slabs are cut along the first one, and leaves along the last one
   std::array<float, D> typical_{};         // a box's usual extents, or more where boxes are sparse
-  std::vector<std::uint16_t> keys_;        // a box's bucket
+  core::LargeArray<std::uint16_t> keys_;   // a box's bucket
   std::vector<std::uint32_t> counts_;      // by range and bucket
   std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end
-  std::vector<Entry> entries_;
+  core::LargeArray<Entry> entries_;
   std::vector<Scratch> scratch_;  // by worker
   PackedLevels<D> levels_;
 };

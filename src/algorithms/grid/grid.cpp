@@ -24,6 +24,7 @@
 #include "algorithms/grid/layout.hpp"
 #include "algorithms/grid/sweep.hpp"
 #include "algorithms/grid/tracker.hpp"
+#include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
@@ -205,9 +206,9 @@ class Grid final : public PairFinder<D>,
 
   core::Sample<D> sample_;
   GridLayout<D> layout_;
-  std::vector<std::uint64_t> begin_;
-  std::vector<std::uint64_t> next_;
-  std::vector<CellEntry<D>> entries_;
+  core::LargeArray<std::uint64_t> begin_;
+  core::LargeArray<std::uint64_t> next_;
+  core::LargeArray<CellEntry<D>> entries_;
   core::Parallel parallel_;
   std::vector<GridSweep<D>> sweeps_;   // by worker
   std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept

@@ -11,6 +11,7 @@
 
 #include "broadside/box.hpp"
 
+#include "core/large_array.hpp"
 #include "core/sorted_boxes.hpp"
 
 namespace broadside::algorithm {
@@ -86,7 +87,7 @@ class QuadtreeStack {
     }
   }
 
-  std::vector<QuadtreeReference> references;
+  core::LargeArray<QuadtreeReference> references;
   std::vector<std::uint8_t> children;  ///< by reference of the node split last: bit c if it goes into child c
   std::size_t kept_count = 0;          ///< how many of them stay at the node: those without children
 

@@ -1,0 +1,30 @@
+// Large pages, where the system has them.
+#include "core/large_array.hpp"
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
+
+namespace broadside::core {
+
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+
+void prefer_large_pages(void* begin, std::size_t bytes) noexcept {
+  // Two of the usual size: one at least lies wholly within the memory, wherever that begins.
+  constexpr std::size_t least_bytes = std::size_t{4} << 20;
+  if (bytes < least_bytes) return;
+  static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::size_t left = bytes;
+  void* aligned = begin;
+  if (std::align(page, least_bytes - page, aligned, left) != nullptr)
+    madvise(aligned, left / page * page, MADV_HUGEPAGE);
+}
+
+#else
+
+void prefer_large_pages(void*, std::size_t) noexcept {}
+
+#endif
+
+}  // namespace broadside::core

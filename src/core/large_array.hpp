@@ -1,0 +1,49 @@
+// LargeArray: a vector for a search's large arrays, whose memory comes in large pages where there are such.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace broadside::core {
+
+/// Asks for large pages for memory that has not been written yet, where it holds some. A page is taken, and
+/// filled with zeros, when it is first written: of a single search by cells with pages of 4 KiB that is half
+/// the time. A hint: never fails, and does nothing where the system has no such pages or gives them anyway.
+void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
+
+/// The standard allocator, but for the hint; and elements that are not given a value have none.
+template <typename T>
+struct LargeAllocator {
+  using value_type = T;
+
+  LargeAllocator() = default;
+  template <typename Other>
+  LargeAllocator(const LargeAllocator<Other>&) noexcept {}  // NOLINT(google-explicit-constructor)
+
+  T* allocate(std::size_t count) {
+    T* const begin = std::allocator<T>().allocate(count);
+    prefer_large_pages(begin, count * sizeof(T));
+    return begin;
+  }
+  void deallocate(T* begin, std::size_t count) noexcept { std::allocator<T>().deallocate(begin, count); }
+
+  template <typename Element>
+  void construct(Element* at) noexcept(std::is_nothrow_default_constructible_v<Element>) {
+    ::new (static_cast<void*>(at)) Element;
+  }
+  template <typename Element, typename... Arguments>
+  void construct(Element* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) Element(std::forward<Arguments>(arguments)...);
+  }
+
+  friend bool operator==(const LargeAllocator&, const LargeAllocator&) = default;
+};
+
+template <typename T>
+using LargeArray = std::vector<T, LargeAllocator<T>>;
+
+}  // namespace broadside::core
