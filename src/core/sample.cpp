@@ -31,6 +31,24 @@ double overlapping_part(std::span<const float> minima, std::span<const float> ma
   return pairs > 0 ? 1 - static_cast<double>(disjoint) / pairs : 1;
 }
 
+/// With fewer overlaps among the sampled boxes, their number is chance; and none is found in a lattice, which
+/// a sample that is spread over the array meets at places that are spread over the axis.
+constexpr double telling_overlaps = 8;
+
+/// The chance that two boxes overlap on an axis, by how close the sampled boxes near each stand to each
+/// other: so clusters count for what they are. Negative where some stand in one place.
+double overlap_by_density(std::span<const float> minima, double mean_extent) {
+  constexpr std::size_t steps = 4;
+  const auto size = static_cast<double>(minima.size());
+  double density = 0;  // of all boxes, those that begin in a unit of length
+  for (std::size_t i = 0; i + steps < minima.size(); ++i) {
+    const double distance = static_cast<double>(minima[i + steps]) - minima[i];
+    if (!(distance > 0)) return -1;
+    density += (steps - 1) / (distance * size * (size - steps));
+  }
+  return std::min(1.0, 2 * density * mean_extent);
+}
+
 /// Sets the bounds of a sample from its ends, both sorted: those of the middle three quarters, and as much
 /// again on either side if the sample reaches that far.
 void set_bounds(AxisSample& sample, std::span<const float> maxima) {
@@ -72,6 +90,10 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
     const auto middle = extents_.begin() + static_cast<std::ptrdiff_t>(extents_.size() / 2);
     std::nth_element(extents_.begin(), middle, extents_.end());
     sample.extent = extents_.empty() ? 0 : *middle;
+    const auto size = static_cast<double>(count);
+    if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps || count == boxes.size()) continue;
+    const double by_density = overlap_by_density(sample.minima, sample.mean_extent);
+    if (by_density >= 0) sample.overlap = by_density;
   }
 }
 

@@ -133,7 +133,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     sample_.take(boxes, Limits::most_compared);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
-    tests_ = tests_along(best, count);
+    tests_ = count * sample_[best].overlap / 2;
     if (tests_ <= Limits::tests_of_a_good_axis) return Choice::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
@@ -179,25 +179,6 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
       return true;
     return (size >= Limits::long_boxes_for_cells && sides.longest_over_shortest >= Limits::long_boxes) ||
            (size >= Limits::uneven_boxes_for_cells && sides.unevenness >= Limits::uneven_boxes);
-  }
-
-  /// About how many tests a box a sweep of `count` boxes along the axis takes.
-  double tests_along(int axis, double count) const {
-    const core::AxisSample& sample = sample_[axis];
-    const std::vector<float>& minima = sample.minima;
-    const auto size = static_cast<double>(minima.size());
-    const double measured = count * sample.overlap / 2;
-    if (sample.overlap * size * (size - 1) / 2 >= Limits::telling_overlaps) return measured;
-    // How many begin within a box's extent, by how close the sampled boxes near it stand to each other: so
-    // clusters count for what they are.
-    constexpr std::size_t steps = 4;
-    double density = 0;  // of all boxes, those that begin in a unit of length
-    for (std::size_t i = 0; i + steps < minima.size(); ++i) {
-      const double distance = static_cast<double>(minima[i + steps]) - minima[i];
-      if (!(distance > 0)) return measured;
-      density += (steps - 1) / (distance * size * (size - steps));
-    }
-    return count * density * sample.mean_extent;
   }
 
   core::OverlapEstimate<D> estimate_;

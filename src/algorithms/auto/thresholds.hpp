@@ -56,10 +56,6 @@ struct AutoThresholds {
 
   /// Boxes in a sample.
   static constexpr std::size_t most_compared = 96;
-
-  /// With fewer overlaps among the sampled boxes, their number is chance: one of them stands for n / 9,000
-  /// tests a box.
-  static constexpr double telling_overlaps = 8;
 };
 
 }  // namespace broadside::algorithm
