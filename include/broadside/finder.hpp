@@ -88,10 +88,7 @@ class PairFinder {
   /// Who does the work: one thread, unless the spec or set_workers() says otherwise. An algorithm without the
   /// tunable `threads` uses the calling thread alone.
   const Workers& workers() const noexcept { return workers_; }
-  void set_workers(const Workers& workers) {
-    workers_ = workers;
-    workers_changed();
-  }
+  void set_workers(const Workers& workers) { workers_ = workers; }
 
   /// Where the algorithm is one that chooses: what it chose for the last find(), and why, in a sentence.
   /// Empty for others.
@@ -136,9 +133,6 @@ class PairFinder {
 
   /// find_between() for boxes that are all present.
   void find_valid_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
-
-  /// Where a finder works through another one, it hands workers() on.
-  virtual void workers_changed() {}
 
   /// Checks the boxes, and returns how many are absent or quarantined.
   std::size_t check(std::span<const Box<D, Real>> boxes) const;

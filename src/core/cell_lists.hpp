@@ -28,7 +28,7 @@ class CellLists {
   /// Makes room for what was counted.
   void prepare() {
     const std::size_t total = prefix_sum(std::span<std::size_t>(ends_), cells_);
-    items_.resize(total);
+    renew(items_, total);
   }
 
   /// Appends `item` to the cell's list, or to the range's part of it.

@@ -46,4 +46,22 @@ struct LargeAllocator {
 template <typename T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
 
+/// Makes `size` the array's size. What was in it is gone: it is not copied where the array grows.
+template <typename T>
+void renew(LargeArray<T>& array, std::size_t size) {
+  if (size > array.capacity()) array.clear();
+  array.resize(size);
+}
+
+/// Makes room in a vector, whose new memory is to come in large pages.
+template <typename T>
+void reserve_large(std::vector<T>& vector, std::size_t size) {
+  if (size <= vector.capacity()) return;
+  std::vector<T> larger;
+  larger.reserve(size);
+  prefer_large_pages(larger.data(), larger.capacity() * sizeof(T));
+  larger.insert(larger.end(), vector.begin(), vector.end());
+  vector.swap(larger);
+}
+
 }  // namespace broadside::core

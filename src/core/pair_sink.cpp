@@ -1,7 +1,6 @@
 // Sinks: their functions that are not inline.
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
 #include "broadside/pair.hpp"
 #include "broadside/sinks.hpp"
@@ -16,13 +15,7 @@ void PairSink::merge(PairSink&) {
 
 void PairCollector::consume(std::span<const Pair> pairs) {
   const std::size_t size = pairs_->size() + pairs.size();
-  if (size > pairs_->capacity()) {
-    std::vector<Pair> larger;
-    larger.reserve(std::max(size, 2 * pairs_->capacity()));
-    core::prefer_large_pages(larger.data(), larger.capacity() * sizeof(Pair));
-    larger.insert(larger.end(), pairs_->begin(), pairs_->end());
-    pairs_->swap(larger);
-  }
+  if (size > pairs_->capacity()) core::reserve_large(*pairs_, std::max(size, 2 * pairs_->capacity()));
   pairs_->insert(pairs_->end(), pairs.begin(), pairs.end());
 }
 

@@ -19,8 +19,8 @@ constexpr std::size_t digit(std::uint32_t key, int at) {
 }  // namespace
 
 std::span<KeyedPlace> RadixSort::places(std::size_t count) {
-  places_.resize(count);
-  other_.resize(count);
+  renew(places_, count);
+  renew(other_, count);
   return places_;
 }
 

@@ -38,18 +38,12 @@ double median(std::vector<double>& values) {
 }
 
 /// Fits one axis to the finite minima of some boxes.
-LinearFit fit_axis(std::vector<double>& minima) {
+LinearRounding fit_axis(std::vector<double>& minima) {
   const double origin = median(minima);
-  LinearFit fit{.rounding = {}, .low = origin, .high = origin};
-  for (double& min : minima) {
-    fit.low = std::min(fit.low, min);
-    fit.high = std::max(fit.high, min);
-    min = std::min(std::abs(min - origin), largest_double);
-  }
+  for (double& min : minima) min = std::min(std::abs(min - origin), largest_double);
   double distance = median(minima);
   if (distance == 0 && !minima.empty()) distance = *std::ranges::max_element(minima);
-  fit.rounding = LinearRounding(origin, distance);
-  return fit;
+  return {origin, distance};
 }
 
 /// Boxes by axis, so that a loop compares one with many.
@@ -139,7 +133,7 @@ float QuantileRounding::operator()(double value) const {
 }
 
 template <int D>
-std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes) {
+std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) {
   std::array<std::vector<double>, D> minima;
   const std::size_t tries = std::min(boxes.size(), 4 * most_fitted);
   std::size_t taken = 0;
@@ -151,25 +145,25 @@ std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes) {
       if (std::isfinite(box.min[axis])) minima[axis].push_back(box.min[axis]);
     }
   }
-  std::array<LinearFit, D> fit;
+  std::array<LinearRounding, D> fit;
   for (int axis = 0; axis < D; ++axis) fit[axis] = fit_axis(minima[axis]);
   return fit;
 }
 
 template <int D>
-void round_linear(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+void round_linear(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                   std::span<Box<D>> floats) {
   for (std::size_t i = 0; i < boxes.size(); ++i)
     floats[i] = rounded(
-        boxes[i], [&](int axis) -> const auto& { return fit[axis].rounding; });
+        boxes[i], [&](int axis) -> const auto& { return fit[axis]; });
 }
 
 template <int D>
-bool is_lossless(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                  std::span<const Box<D>> floats) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (int axis = 0; axis < D; ++axis) {
-      const LinearRounding& rounding = fit[axis].rounding;
+      const LinearRounding& rounding = fit[axis];
       if (rounding.back(floats[i].min[axis]) != boxes[i].min[axis] ||
           rounding.back(floats[i].max[axis]) != boxes[i].max[axis])
         return false;
@@ -213,7 +207,7 @@ std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> bo
 }
 
 template <int D>
-bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count, std::uint64_t hash) {
   const auto size = static_cast<double>(boxes.size());
   const auto most = std::max(least_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
@@ -225,7 +219,7 @@ bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<
       const Box<D, double>& box = from[count == from.size() ? i : sampled_place(i + shift, from.size())];
       if (is_present(box))
         columns.add(box, rounded(
-                             box, [&](int axis) -> const auto& { return fit[axis].rounding; }));
+                             box, [&](int axis) -> const auto& { return fit[axis]; }));
     }
     return count;
   };
@@ -248,23 +242,23 @@ bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<
   return compared > 0 && static_cast<double>(wrong) / compared * all > most_false_pairs * size;
 }
 
-template std::array<LinearFit, 2> fit_linear<2>(std::span<const DoubleBox2>);
-template std::array<LinearFit, 3> fit_linear<3>(std::span<const DoubleBox3>);
-template void round_linear<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>,
+template std::array<LinearRounding, 2> fit_linear<2>(std::span<const DoubleBox2>);
+template std::array<LinearRounding, 3> fit_linear<3>(std::span<const DoubleBox3>);
+template void round_linear<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
                               std::span<Box<2>>);
-template bool is_lossless<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>,
+template bool is_lossless<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
                              std::span<const Box<2>>);
 template std::uint64_t hash_of<2>(std::span<const DoubleBox2>, std::size_t);
 template std::array<QuantileRounding, 2> fit_quantiles<2>(std::span<const DoubleBox2>, std::uint64_t);
-template bool makes_false_pairs<2>(const std::array<LinearFit, 2>&, std::span<const DoubleBox2>, std::size_t,
-                                   std::uint64_t);
-template void round_linear<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>,
+template bool makes_false_pairs<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
+                                   std::size_t, std::uint64_t);
+template void round_linear<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,
                               std::span<Box<3>>);
-template bool is_lossless<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>,
+template bool is_lossless<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,
                              std::span<const Box<3>>);
 template std::uint64_t hash_of<3>(std::span<const DoubleBox3>, std::size_t);
 template std::array<QuantileRounding, 3> fit_quantiles<3>(std::span<const DoubleBox3>, std::uint64_t);
-template bool makes_false_pairs<3>(const std::array<LinearFit, 3>&, std::span<const DoubleBox3>, std::size_t,
-                                   std::uint64_t);
+template bool makes_false_pairs<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,
+                                   std::size_t, std::uint64_t);
 
 }  // namespace broadside::core

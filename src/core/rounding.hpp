@@ -62,25 +62,18 @@ class QuantileRounding {
   double slope_ = 0;           // beyond the first and the last knot
 };
 
-/// One axis of a sample of boxes.
-struct LinearFit {
-  LinearRounding rounding;
-  double low;  ///< the least and the greatest of the minima that are finite, 0 where none is
-  double high;
-};
-
 /// A rounding for each axis that suits most of the present boxes, by a sample.
 template <int D>
-std::array<LinearFit, D> fit_linear(std::span<const Box<D, double>> boxes);
+std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes);
 
-/// Sets floats[i] to boxes[i], rounded by a fit.
+/// Sets floats[i] to boxes[i], rounded.
 template <int D>
-void round_linear(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+void round_linear(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                   std::span<Box<D>> floats);
 
 /// Whether that kept every coordinate that differs from another apart from it, as far as `back` can tell.
 template <int D>
-bool is_lossless(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                  std::span<const Box<D>> floats);
 
 /// A number that depends on all boxes and their order: the sum of what parts give, each with the place of its
@@ -97,7 +90,7 @@ std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> bo
 /// Where `left_count` is not 0, only pairs between the boxes before that place and the others matter.
 /// Compares a sample of about sqrt(n) boxes, by their hash, with each other: O(n).
 template <int D>
-bool makes_false_pairs(const std::array<LinearFit, D>& fit, std::span<const Box<D, double>> boxes,
+bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count, std::uint64_t hash);
 
 /// The box, rounded on each axis by what `rounding_of(axis)` gives; the absent box stays absent.

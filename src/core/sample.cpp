@@ -31,8 +31,8 @@ double overlapping_part(std::span<const float> minima, std::span<const float> ma
   return pairs > 0 ? 1 - static_cast<double>(disjoint) / pairs : 1;
 }
 
-/// With fewer overlaps among the sampled boxes, their number is chance; and none is found in a lattice, which
-/// a sample that is spread over the array meets at places that are spread over the axis.
+/// With fewer overlaps among the sampled boxes, their number is chance. In a lattice in order there are none:
+/// a sample that is spread over the array is spread over each axis as well, and no two of its boxes are near.
 constexpr double telling_overlaps = 8;
 
 /// The chance that two boxes overlap on an axis, by how close the sampled boxes near each stand to each

@@ -13,7 +13,7 @@ std::span<const SortedBox<D>> SortedBoxes<D>::sort(std::span<const Box<D>> boxes
       places[i] = {sort_key(boxes[i].min[swept]), static_cast<std::uint32_t>(i)};
   });
   const std::span<const KeyedPlace> order = radix_.sort(parallel);
-  sorted_.resize(boxes.size());
+  renew(sorted_, boxes.size());
   parallel.for_ranges(boxes.size(), [&](Range range, std::size_t) {
     SortedBox<D>* out = sorted_.data() + range.begin;
     for (const KeyedPlace& place : order.subspan(range.begin, range.end - range.begin)) {

@@ -62,10 +62,11 @@ DoubleFinder<D>::DoubleFinder(std::unique_ptr<PairFinder<D>> finder) : finder_(s
 template <int D>
 void DoubleFinder<D>::find_valid(std::span<const Box<D, double>> boxes, PairSink& pairs) {
   const bool is_exact = round(boxes);
-  LastTest<D>* const last_test = boxes.size() <= kernels::touching_bit ? finder_->last_test() : nullptr;
+  LastTest<D>* const last_test = finder_->last_test();
+  const bool in_kernels = last_test != nullptr && boxes.size() <= kernels::touching_bit;
   const std::span<const Box<D>> floats = floats_;
-  if (last_test != nullptr) last_test->set_doubles(is_exact ? nullptr : boxes.data());
-  if (is_exact || last_test != nullptr) {
+  if (last_test != nullptr) last_test->set_doubles(in_kernels && !is_exact ? boxes.data() : nullptr);
+  if (is_exact || in_kernels) {
     this->search_with(*finder_, floats, pairs);
     return;
   }
@@ -76,8 +77,8 @@ void DoubleFinder<D>::find_valid(std::span<const Box<D, double>> boxes, PairSink
 
 template <int D>
 bool DoubleFinder<D>::round(std::span<const Box<D, double>> boxes) {
-  const std::array<LinearFit, D> fit = fit_linear<D>(boxes);
-  floats_.resize(boxes.size());
+  const std::array<LinearRounding, D> fit = fit_linear<D>(boxes);
+  renew(floats_, boxes.size());
   parallel_.start(this->workers(), boxes.size());
   std::atomic<bool> all_exact = true;
   std::atomic<std::uint64_t> hash = 0;
@@ -108,7 +109,7 @@ bool DoubleFinder<D>::round(std::span<const Box<D, double>> boxes) {
 
 template <int D>
 Outline<D, double> DoubleFinder<D>::lay_out(std::span<const Box<D, double>> boxes) {
-  const std::array<LinearFit, D> fit = fit_linear<D>(boxes);
+  const std::array<LinearRounding, D> fit = fit_linear<D>(boxes);
   std::vector<Box<D>> floats(boxes.size());
   round_linear<D>(fit, boxes, floats);
   finder_->set_workers(this->workers());
@@ -118,8 +119,8 @@ Outline<D, double> DoubleFinder<D>::lay_out(std::span<const Box<D, double>> boxe
     std::vector<Box<D, double>>& parts = outline.levels.emplace_back(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
       for (int axis = 0; axis < D; ++axis) {
-        parts[i].min[axis] = fit[axis].rounding.back(level[i].min[axis]);
-        parts[i].max[axis] = fit[axis].rounding.back(level[i].max[axis]);
+        parts[i].min[axis] = fit[axis].back(level[i].min[axis]);
+        parts[i].max[axis] = fit[axis].back(level[i].max[axis]);
       }
     }
   }

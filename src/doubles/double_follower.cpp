@@ -81,7 +81,7 @@ Box<D> DoubleFollower<D>::rounded(const Box<D, double>& box) const {
     return core::rounded(
         box, [&](int axis) -> const auto& { return quantiles_[axis]; });
   return core::rounded(
-      box, [&](int axis) -> const auto& { return fit_[axis].rounding; });
+      box, [&](int axis) -> const auto& { return fit_[axis]; });
 }
 
 template <int D>

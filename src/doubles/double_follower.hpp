@@ -32,7 +32,7 @@ class DoubleFollower final : public PairTracker<D, double> {
   Box<D> rounded(const Box<D, double>& box) const;
   void start(const Change<D, double>& change);
 
-  std::array<core::LinearFit, D> fit_{};
+  std::array<core::LinearRounding, D> fit_{};
   std::array<core::QuantileRounding, D> quantiles_;
   bool by_quantiles_ = false;
   std::uint64_t false_candidates_ = 0;  // since all boxes were rounded

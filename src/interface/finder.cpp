@@ -219,8 +219,7 @@ void PairFinder<D, Real>::find_between(BoxView<D, Real> left_view, BoxView<D, Re
   statistics_.reset();
   present_.clear();
   if (absent_left + absent_right == 0) {
-    present_.reserve(left.size() + right.size());
-    core::prefer_large_pages(present_.data(), present_.capacity() * sizeof(Box<D, Real>));
+    core::reserve_large(present_, left.size() + right.size());
     present_.insert(present_.end(), left.begin(), left.end());
     present_.insert(present_.end(), right.begin(), right.end());
     find_valid_between(present_, left.size(), pairs);
@@ -292,7 +291,7 @@ void PairFinder<D, Real>::list_invalid(std::span<const Box<D, Real>> boxes, std:
 
 template <int D, typename Real>
 void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
-  present_.reserve(present_.size() + boxes.size());
+  core::reserve_large(present_, present_.size() + boxes.size());
   ids_.reserve(ids_.size() + boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!is_present(boxes[i])) continue;

@@ -5,8 +5,8 @@
 
 namespace broadside::core {
 
-/// A finder derives from this too where its kernels can test in double the pairs of boxes that touch as
-/// floats, at less cost than somebody who gets them afterwards: the floats are still at hand.
+/// A finder derives from this too where its kernels test in double the pairs of boxes that touch as floats.
+/// That costs less than a test of all pairs behind the finder, since kernels still have the floats at hand.
 template <int D>
 class LastTest {
  public:

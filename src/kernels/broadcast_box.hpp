@@ -98,7 +98,7 @@ struct LoadedBoxes {
   FloatVector max[D];
 };
 
-/// In which lanes boxes that overlap do no more than touch. Each side is a BroadcastBox or LoadedBoxes.
+/// In which lanes boxes that overlap do no more than touch. `a` is a BroadcastBox or LoadedBoxes.
 template <int D, template <int> typename A>
 HWY_INLINE FloatMask touch(const A<D>& a, const LoadedBoxes<D>& b) {
   FloatMask touching = hn::Or(hn::Eq(a.min[0], b.max[0]), hn::Eq(b.min[0], a.max[0]));

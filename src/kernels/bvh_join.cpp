@@ -209,8 +209,9 @@ void bound_level(const PackedBvh<D>& tree, std::size_t parent, NodeRange nodes) 
 template <int D>
 JoinWork join_leaves(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit,
                      std::uint32_t* scratch, PairSink& pairs) {
-  if (tree.doubles == nullptr) return Join(tree, leaves, limit, ByFloats{}, pairs).run(scratch);
-  return Join(tree, leaves, limit, InDouble<D>{tree.doubles}, pairs).run(scratch);
+  return with_last_test(tree.doubles, [&](auto last_test) HWY_ATTR {
+    return Join(tree, leaves, limit, last_test, pairs).run(scratch);
+  });
 }
 
 }  // namespace

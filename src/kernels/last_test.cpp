@@ -31,8 +31,9 @@ Pair* keep_overlapping(const Box<D, double>* boxes, Pair* begin, Pair* end) {
     const Pair pair = *touching[i];
     *out = pair;
     out += overlap(boxes[index(pair.first)], boxes[index(pair.second)]) ? 1 : 0;
-    Pair* const next = i + 1 < count ? touching[i + 1] : end;
-    out = std::copy(touching[i] + 1, next, out);
+    Pair* const begin_certain = touching[i] + 1;
+    Pair* const end_certain = i + 1 < count ? touching[i + 1] : end;
+    out = out == begin_certain ? end_certain : std::copy(begin_certain, end_certain, out);
   }
   return out;
 }

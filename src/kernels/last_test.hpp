@@ -12,24 +12,30 @@ namespace broadside::kernels {
 /// double they may be apart. So ids with doubles are less than this.
 inline constexpr std::uint32_t touching_bit = 0x80000000U;
 
-/// Of the pairs [begin, end), drops those with a touching_bit whose boxes are apart in double, and takes the
-/// bit off the others, which may have it in either order of their ids. The order stays. Returns the new end.
-/// `boxes` are by id. At most PairSink::max_room pairs.
+/// Of the pairs [begin, end), drops those with a touching_bit whose boxes are apart in double. The others
+/// lose the bit, and have their lesser id first again: the bit had made the marked one the greater. The order
+/// of pairs stays. Returns the new end. `boxes` are by id. At most PairSink::max_room pairs.
 template <int D>
 Pair* keep_overlapping(const Box<D, double>* boxes, Pair* begin, Pair* end);
 
-/// What decides about the pairs that a kernel writes: the floats that it compares,
+/// The last test where floats decide.
 struct ByFloats {
   static constexpr bool marks_touching = false;
   Pair* operator()(Pair*, Pair* end) const { return end; }
 };
 
-/// or these boxes of doubles, by id.
+/// The last test where boxes of doubles decide, these, by id.
 template <int D>
 struct InDouble {
   static constexpr bool marks_touching = true;
   const Box<D, double>* boxes;
   Pair* operator()(Pair* begin, Pair* end) const { return keep_overlapping(boxes, begin, end); }
 };
+
+/// Calls `body` with the last test by these boxes, or by floats if they are null.
+template <int D, typename Body>
+auto with_last_test(const Box<D, double>* doubles, const Body& body) {
+  return doubles == nullptr ? body(ByFloats{}) : body(InDouble<D>{doubles});
+}
 
 }  // namespace broadside::kernels

@@ -61,15 +61,15 @@ class PairWriter {
   PairWriter(const PairWriter&) = delete;
   PairWriter& operator=(const PairWriter&) = delete;
 
-  /// How many pairs were written; of the last ones, some may yet fail the last test.
+  /// How many pairs were written, with those that the last test drops: when it comes depends on the lanes.
   std::uint64_t written() const { return handed_on_ + static_cast<std::uint64_t>(out_ - begin_); }
 
   /// How many times `at_once` pairs may be written before room() is called again: at least once.
   HWY_INLINE std::size_t room() {
     if (HWY_UNLIKELY(left() < 1)) {
       Pair* const begin = begin_;
+      handed_on_ += static_cast<std::uint64_t>(out_ - begin);
       Pair* const end = last_test_(begin, out_);
-      handed_on_ += static_cast<std::uint64_t>(end - begin);
       begin_ = out_ = end;  // if the sink throws, this much is committed already
       begin_ = out_ = next_room(*sink_, static_cast<std::size_t>(end - begin));
     }

@@ -201,36 +201,36 @@ std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, LastTest last_test,
 
 // What the dispatch below can name: no templates.
 std::uint64_t sweep_run_2(const Run<2>& run, PairSink& pairs) {
-  return run.doubles == nullptr ? sweep_run(run, ByFloats{}, pairs)
-                                : sweep_run(run, InDouble<2>{run.doubles}, pairs);
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_run(run, last_test, pairs); });
 }
 std::uint64_t sweep_run_3(const Run<3>& run, PairSink& pairs) {
-  return run.doubles == nullptr ? sweep_run(run, ByFloats{}, pairs)
-                                : sweep_run(run, InDouble<3>{run.doubles}, pairs);
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_run(run, last_test, pairs); });
 }
 std::uint64_t sweep_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return a.doubles == nullptr ? sweep_runs(a, b, ByFloats{}, pairs)
-                              : sweep_runs(a, b, InDouble<2>{a.doubles}, pairs);
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_runs(a, b, last_test, pairs); });
 }
 std::uint64_t sweep_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return a.doubles == nullptr ? sweep_runs(a, b, ByFloats{}, pairs)
-                              : sweep_runs(a, b, InDouble<3>{a.doubles}, pairs);
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_runs(a, b, last_test, pairs); });
 }
 std::uint64_t compare_run_2(const Run<2>& run, PairSink& pairs) {
-  return run.doubles == nullptr ? compare_run(run, ByFloats{}, pairs)
-                                : compare_run(run, InDouble<2>{run.doubles}, pairs);
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_run(run, last_test, pairs); });
 }
 std::uint64_t compare_run_3(const Run<3>& run, PairSink& pairs) {
-  return run.doubles == nullptr ? compare_run(run, ByFloats{}, pairs)
-                                : compare_run(run, InDouble<3>{run.doubles}, pairs);
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_run(run, last_test, pairs); });
 }
 std::uint64_t compare_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return a.doubles == nullptr ? compare_runs(a, b, ByFloats{}, pairs)
-                              : compare_runs(a, b, InDouble<2>{a.doubles}, pairs);
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_runs(a, b, last_test, pairs); });
 }
 std::uint64_t compare_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return a.doubles == nullptr ? compare_runs(a, b, ByFloats{}, pairs)
-                              : compare_runs(a, b, InDouble<3>{a.doubles}, pairs);
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_runs(a, b, last_test, pairs); });
 }
 
 }  // namespace broadside::kernels::HWY_NAMESPACE

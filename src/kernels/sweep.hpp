@@ -10,11 +10,12 @@
 namespace broadside::kernels {
 
 /// Reports the pairs of overlapping boxes within a run that is sorted by min[0], except those that
-/// `dedup_mask` rules out. Returns the number of pairs of boxes compared.
+/// `dedup_mask` rules out and, where the run has doubles, those that are apart in double. Returns the number
+/// of pairs of boxes compared.
 template <int D>
 std::uint64_t sweep(const Run<D>& run, PairSink& pairs);
 
-/// Likewise the pairs of one box of `a` and one of `b`, both sorted by min[0].
+/// Likewise the pairs of one box of `a` and one of `b`, both sorted by min[0], with the same doubles.
 template <int D>
 std::uint64_t sweep(const Run<D>& a, const Run<D>& b, PairSink& pairs);
 

@@ -15,6 +15,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/large_array.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sorted_boxes.hpp"
 #include "kernels/run.hpp"

@@ -42,7 +42,7 @@ class ConservativeRounding {
     constexpr double most = std::numeric_limits<double>::max();
     Box<D> rounded;
     for (int axis = 0; axis < D; ++axis) {
-      const core::LinearRounding& rounding = fit_[axis].rounding;
+      const core::LinearRounding& rounding = fit_[axis];
       rounded.min[axis] = rounded_down(std::min(box.min[axis] - rounding.origin(), most) * rounding.scale());
       rounded.max[axis] = rounded_up(std::max(box.max[axis] - rounding.origin(), -most) * rounding.scale());
     }
@@ -50,10 +50,10 @@ class ConservativeRounding {
   }
 
   /// A length on the axis is multiplied by 2 to this power.
-  int exponent(int axis) const noexcept { return std::ilogb(fit_[axis].rounding.scale()); }
+  int exponent(int axis) const noexcept { return std::ilogb(fit_[axis].scale()); }
 
  private:
-  std::array<core::LinearFit, D> fit_{};
+  std::array<core::LinearRounding, D> fit_{};
 };
 
 }  // namespace broadside::algorithm

@@ -8,10 +8,10 @@ namespace {
 
 using kernels::fan_out;
 
-/// The elements of `memory`, at least `size` of them.
+/// The elements of `memory`, at least `size` of them, to be set.
 template <typename Element>
 Element* grown(core::LargeArray<Element>& memory, std::size_t size) {
-  if (memory.size() < size) memory.resize(size);
+  if (memory.size() < size) core::renew(memory, size);
   return memory.data();
 }
 

@@ -51,7 +51,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
   const std::size_t groups = left == 0 ? classes : 2 * classes;
   const std::size_t keys = groups * buckets.count;
   counts_.assign(parallel.range_count() * keys, 0);
-  keys_.resize(boxes.size());
+  core::renew(keys_, boxes.size());
   parallel.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
     std::uint32_t* const counts = counts_.data() + number * keys;
     for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -70,7 +70,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
     }
   });
   core::prefix_sum(std::span(counts_), keys);
-  entries_.resize(boxes.size());
+  core::renew(entries_, boxes.size());
   parallel.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
     std::uint32_t* const places = counts_.data() + number * keys;
     for (std::size_t i = range.begin; i < range.end; ++i) entries_[places[keys_[i]]++] = {boxes[i], BoxId(i)};

@@ -187,7 +187,7 @@ class Grid final : public PairFinder<D>,
 
   /// Copies the boxes to their cells.
   void scatter(std::span<const Box<D>> boxes) {
-    entries_.resize(begin_.back());
+    core::renew(entries_, begin_.back());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
       std::uint64_t* const next = next_.data() + number * layout_.cells();
       CellEntry<D>* const entries = entries_.data();

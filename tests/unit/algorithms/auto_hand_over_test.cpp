@@ -1,6 +1,8 @@
 // auto notices that its choice was wrong: searches and trackers that take far more tests than boxes and pairs
 // account for are handed over.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -17,6 +19,7 @@
 
 #include "core/sample.hpp"
 #include "tests/support/found.hpp"
+#include "tests/support/model.hpp"
 #include "tests/support/rng.hpp"
 
 namespace broadside {
@@ -125,6 +128,39 @@ TEST(AutoHandOver, FindsEachPairOnce) {
           << finder->explanation() << ": " << sorted.size() << " pairs; expected " << expected.size();
       finder->set_workers({.threads = 3, .boxes_per_thread = 100});
       EXPECT_TRUE(laws::found(*finder, boxes, left_count) == pairs) << "the order with three threads differs";
+    }
+  }
+}
+
+TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet) {
+  constexpr std::size_t count = 8'000;
+  const auto definition = make_finder<3, double>("brute_force");
+  for (const auto& [benign, other] : deceptions) {
+    Random random(3);
+    std::vector<DoubleBox3> boxes;
+    for (const Box3& box : fooling(benign, other, count, random)) {
+      // On a lattice, so that many touch as floats.
+      Box3 rounded;
+      for (int axis = 0; axis < 3; ++axis) {
+        rounded.min[axis] = std::floor(box.min[axis] * 4) / 4;
+        rounded.max[axis] = std::ceil(box.max[axis] * 4) / 4;
+      }
+      boxes.push_back(near_double(random, rounded));
+    }
+    for (const std::size_t left_count : {std::size_t{0}, count / 3}) {
+      std::vector<Pair> expected = laws::found(*definition, boxes, left_count);
+      std::ranges::sort(expected);
+      std::vector<Pair> first;
+      for (const std::string& name : instruction_sets()) {
+        const OnInstructionSet chosen(name);
+        const auto finder = make_finder<3, double>("auto");
+        std::vector<Pair> pairs = laws::found(*finder, boxes, left_count);
+        EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+        if (first.empty()) first = pairs;
+        EXPECT_TRUE(pairs == first) << "another order with " << name;
+        std::ranges::sort(pairs);
+        EXPECT_TRUE(pairs == expected) << name << ", " << finder->explanation();
+      }
     }
   }
 }

@@ -1,10 +1,8 @@
 // Lattices of touching boxes in order, such as tiles and voxels: a sample that is spread over the array is
 // then spread over every axis as well, where it once saw no two boxes overlap.
-#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>

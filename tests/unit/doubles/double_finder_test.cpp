@@ -3,8 +3,6 @@
 #include "doubles/double_finder.hpp"
 
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
