@@ -18,7 +18,7 @@ void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
 /// The standard allocator, but for the hint; and elements that are not given a value have none.
 template <typename T>
 struct LargeAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): as the standard asks
 
   LargeAllocator() = default;
   template <typename Other>
