@@ -1,7 +1,10 @@
 // FilterSink: a sink that passes pairs on to another one, changed or left out.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <span>
 
 #include "broadside/pair.hpp"
 
@@ -19,6 +22,20 @@ class FilterSink : public PairSink {
 
  protected:
   explicit FilterSink(PairSink& target) : target_(&target) {}
+
+  /// Calls `pass(pair, to)` for each pair, which sets `to` to what becomes of it and returns whether it is
+  /// passed on. Written in any case, and kept if it is: a branch could not be predicted.
+  template <typename Pass>
+  void pass_on(std::span<const Pair> pairs, const Pass& pass) {
+    while (!pairs.empty()) {
+      const std::size_t count = std::min(pairs.size(), max_room);
+      Pair* const out = target_->room(count);
+      std::size_t passed = 0;
+      for (const Pair pair : pairs.first(count)) passed += pass(pair, out[passed]) ? 1 : 0;
+      target_->commit(passed);
+      pairs = pairs.subspan(count);
+    }
+  }
 
  private:
   PairSink* target_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace broadside::core {
@@ -36,14 +37,14 @@ double overlapping_part(std::span<const float> minima, std::span<const float> ma
 constexpr double telling_overlaps = 8;
 
 /// The chance that two boxes overlap on an axis, by how close the sampled boxes near each stand to each
-/// other: so clusters count for what they are. Negative where some stand in one place.
-double overlap_by_density(std::span<const float> minima, double mean_extent) {
+/// other: so clusters count for what they are. Empty where some stand in one place.
+std::optional<double> overlap_by_density(std::span<const float> minima, double mean_extent) {
   constexpr std::size_t steps = 4;
   const auto size = static_cast<double>(minima.size());
   double density = 0;  // of all boxes, those that begin in a unit of length
   for (std::size_t i = 0; i + steps < minima.size(); ++i) {
     const double distance = static_cast<double>(minima[i + steps]) - minima[i];
-    if (!(distance > 0)) return -1;
+    if (!(distance > 0)) return std::nullopt;
     density += (steps - 1) / (distance * size * (size - steps));
   }
   return std::min(1.0, 2 * density * mean_extent);
@@ -92,8 +93,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
     sample.extent = extents_.empty() ? 0 : *middle;
     const auto size = static_cast<double>(count);
     if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps || count == boxes.size()) continue;
-    const double by_density = overlap_by_density(sample.minima, sample.mean_extent);
-    if (by_density >= 0) sample.overlap = by_density;
+    sample.overlap = overlap_by_density(sample.minima, sample.mean_extent).value_or(sample.overlap);
   }
 }
 

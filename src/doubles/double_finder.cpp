@@ -35,17 +35,15 @@ class ExactSink final : public FilterSink {
  private:
   void consume(std::span<const Pair> pairs) override {
     while (!pairs.empty()) {
-      const std::size_t count = std::min(pairs.size(), max_room);
+      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
       std::array<std::uint8_t, max_room> overlaps;
-      kernels::set_overlap_flags(boxes_, pairs.first(count), overlaps.data());
-      Pair* const out = target().room(count);
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        out[kept] = pairs[i];
-        kept += overlaps[i];
-      }
-      target().commit(kept);
-      pairs = pairs.subspan(count);
+      kernels::set_overlap_flags(boxes_, some, overlaps.data());
+      const std::uint8_t* next = overlaps.data();
+      pass_on(some, [&next](Pair pair, Pair& to) {
+        to = pair;
+        return *next++ != 0;
+      });
+      pairs = pairs.subspan(some.size());
     }
   }
 

@@ -31,20 +31,10 @@ class RenamingSink final : public core::FilterSink {
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    while (!pairs.empty()) {
-      const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target().room(count);
-      std::size_t written = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t first = index(pairs[i].first);
-        const std::uint32_t second = index(pairs[i].second);
-        out[written] = {ids_[first], ids_[second]};
-        written +=
-            static_cast<std::size_t>(left_count_ == 0 || (first < left_count_ && second >= left_count_));
-      }
-      target().commit(written);
-      pairs = pairs.subspan(count);
-    }
+    pass_on(pairs, [this](Pair pair, Pair& to) {
+      to = {ids_[index(pair.first)], ids_[index(pair.second)]};
+      return left_count_ == 0 || (index(pair.first) < left_count_ && index(pair.second) >= left_count_);
+    });
   }
 
   std::span<const BoxId> ids_;
@@ -63,19 +53,10 @@ class CrossingSink final : public core::FilterSink {
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    while (!pairs.empty()) {
-      const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target().room(count);
-      std::size_t written = 0;
-      for (const Pair pair : pairs.first(count)) {
-        const std::uint32_t first = index(pair.first);
-        const std::uint32_t second = index(pair.second);
-        out[written] = {BoxId{first}, BoxId{second - left_count_}};
-        written += static_cast<std::size_t>(first < left_count_ && second >= left_count_);
-      }
-      target().commit(written);
-      pairs = pairs.subspan(count);
-    }
+    pass_on(pairs, [this](Pair pair, Pair& to) {
+      to = {pair.first, BoxId{index(pair.second) - left_count_}};
+      return index(pair.first) < left_count_ && index(pair.second) >= left_count_;
+    });
   }
 
   std::uint32_t left_count_;
@@ -100,19 +81,11 @@ class FilteringSink final : public core::FilterSink {
 
   void consume(std::span<const Pair> pairs) override {
     const std::span<const Filter> right = right_ == nullptr ? left_ : *right_;
-    while (!pairs.empty()) {
-      const std::size_t count = std::min(pairs.size(), max_room);
-      Pair* const out = target().room(count);
-      std::size_t written = 0;
-      for (const Pair pair : pairs.first(count)) {
-        out[written] = pair;
-        written +=
-            static_cast<std::size_t>(accepts(filter_of(left_, pair.first), filter_of(right, pair.second)) &&
-                                     (ignored_ == nullptr || !ignored_->contains(pair)));
-      }
-      target().commit(written);
-      pairs = pairs.subspan(count);
-    }
+    pass_on(pairs, [&](Pair pair, Pair& to) {
+      to = pair;
+      return accepts(filter_of(left_, pair.first), filter_of(right, pair.second)) &&
+             (ignored_ == nullptr || !ignored_->contains(pair));
+    });
   }
 
   std::span<const Filter> left_;
