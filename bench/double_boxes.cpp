@@ -187,7 +187,8 @@ void run(std::span<const std::string_view> algorithms, std::size_t count, std::s
 int main(int count, char** arguments) {
   using namespace broadside::bench;
   return guarded("double_boxes", 1, [&] {
-    const std::string_view chosen = count > 3 ? arguments[3] : "";
+    const std::string text = text_at(count, arguments, 3, "");
+    const std::string_view chosen = text;
     std::span<const std::string_view> algorithms = own_algorithms;
     if (!chosen.empty()) algorithms = {&chosen, 1};
     run(algorithms, number_at(count, arguments, 1, 1'000'000), number_at(count, arguments, 2, 9));

@@ -37,7 +37,7 @@ inline std::size_t number_at(int count, char** arguments, int place, std::size_t
   return number;
 }
 
-/// Likewise as text.
+/// The argument at `place`; `standard` where there are fewer arguments.
 inline std::string text_at(int count, char** arguments, int place, const std::string& standard) {
   return count > place ? arguments[place] : standard;
 }

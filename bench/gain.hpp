@@ -1,0 +1,130 @@
+// What two threads gain over one: the same work by one thread and by two, in turns, and two copies by one
+// thread each at once, which shows what the machine has to give. All must find the same.
+//
+// What more cores would give is computed, not measured: one thread does all, and the time in what several
+// would share is divided by their number.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "broadside/broadside.hpp"
+
+#include "lab/measure/benchmark.hpp"
+#include "lab/measure/samples.hpp"
+#include "lab/numbers.hpp"
+#include "lab/report/columns.hpp"
+
+namespace broadside::bench {
+
+/// Runs all tasks in the calling thread, as if there were sixteen, and takes the time.
+class Accountant final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 16; }
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    const lab::Stopwatch watch;
+    for (std::size_t i = 0; i < count; ++i) task(i);
+    shared_ms_ += watch.milliseconds();
+  }
+
+  /// The time in tasks since the last call.
+  double take_shared_ms() { return std::exchange(shared_ms_, 0); }
+
+ private:
+  double shared_ms_ = 0;
+};
+
+/// Work that is done again and again.
+class Work {
+ public:
+  virtual ~Work() = default;
+
+  /// Gets ready for a round. Not timed.
+  virtual void prepare(std::size_t round) = 0;
+
+  virtual void run() = 0;
+
+  /// What the last run() found.
+  virtual std::uint64_t hash() const = 0;
+};
+
+inline std::uint64_t hash_of(std::span<const Pair> pairs) {
+  PairHasher hasher;
+  hasher.put(pairs);
+  hasher.flush();
+  return hasher.hash();
+}
+
+inline double milliseconds_of(const std::function<void()>& run) {
+  const lab::Stopwatch watch;
+  run();
+  return watch.milliseconds();
+}
+
+/// Adds a row: `make(workers)` makes the same work for these.
+inline void add_gain(const std::string& name,
+                     const std::function<std::unique_ptr<Work>(const Workers&)>& make, std::size_t rounds,
+                     lab::Columns& columns) {
+  Accountant accountant;
+  const auto one = make({});
+  const auto two = make({.threads = 2});
+  const auto accounted = make({.threads = 16, .executor = &accountant});
+  const std::array<std::unique_ptr<Work>, 2> copies = {make({}), make({})};
+  const std::array<Work*, 5> all = {one.get(), two.get(), accounted.get(), copies[0].get(), copies[1].get()};
+  accountant.take_shared_ms();  // a tracker's first frame
+  std::vector<double> ones;
+  std::vector<double> gains;
+  std::vector<double> copies_gain;
+  std::vector<double> shared;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (Work* const work : all) work->prepare(round);
+    const double one_ms = milliseconds_of([&] { one->run(); });
+    const double two_ms = milliseconds_of([&] { two->run(); });
+    const double copies_ms = milliseconds_of([&] {
+      std::future<void> other = std::async(std::launch::async, [&] { copies[1]->run(); });
+      copies[0]->run();
+      other.get();
+    });
+    const double accounted_ms = milliseconds_of([&] { accounted->run(); });
+    for (const Work* const work : all) {
+      if (work->hash() != one->hash())
+        throw std::runtime_error(
+            fmt::format("{}: found other pairs than one thread; expected the same", name));
+    }
+    if (round == 0) continue;  // memory was taken in it
+    ones.push_back(one_ms);
+    gains.push_back(one_ms / two_ms);
+    copies_gain.push_back(2 * one_ms / copies_ms);
+    shared.push_back(accountant.take_shared_ms() / accounted_ms);
+  }
+  const double gain = lab::median(gains);
+  const double most = lab::median(copies_gain);
+  const double part = lab::median(shared);
+  const auto with = [part](double threads) { return fmt::format("{:.1f}", 1 / (1 - part + part / threads)); };
+  columns.add({name, lab::rounded(lab::median(ones)), fmt::format("{:.2f}", gain),
+               fmt::format("{:.2f}", most), fmt::format("{:.2f}", gain / most),
+               fmt::format("{:.0f} %", part * 100), with(8), with(16)});
+}
+
+inline lab::Columns gain_columns() {
+  lab::Columns columns("<>>>>>>>");
+  columns.add({"", "one thread, ms", "two threads", "two copies", "of these", "shared", "8", "16"});
+  return columns;
+}
+
+inline std::string text_of_gains(const lab::Columns& columns) {
+  return columns.text("  ") + "(how many times as fast as one thread; 8 and 16 by the part that is shared)\n";
+}
+
+}  // namespace broadside::bench
