@@ -147,11 +147,12 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
   options.watch.progress = [&](std::string_view what) { progress.show(what); };
   check_threads(arguments.entries, catalogue.select(options.algorithms));
   // Refused before the file is read.
-  const auto is_peer = [](const lab::Entry& entry) { return entry.algorithm->kind == AlgorithmKind::peer; };
+  const auto is_peer = [](const lab::Entry& entry) { return lab::is_foreign(entry.algorithm->kind); };
   if (std::ranges::all_of(catalogue.select(options.algorithms), is_peer))
-    throw Unusable(fmt::format(
-        "--algorithms is '{}'; expected one of Broadside's own among them: other libraries are never advised",
-        options.algorithms));
+    throw Unusable(
+        fmt::format("--algorithms is '{}'; expected one of Broadside's own among them: other libraries, and "
+                    "what is from the literature, are never advised",
+                    options.algorithms));
   Boxes boxes = reads ? read_file(arguments) : make_scene(arguments, named);
 
   on_signal(OnSignal::note_then_end);
@@ -199,9 +200,10 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
   verb->add_option("--frames", arguments->frames, "Number of frames with motion (default: 20)");
   add_motion_options(*verb, arguments->motion);
   verb->add_option("--seed", arguments->seed, "Seed of a scene (default: 1)")->check(is_seed);
-  add_algorithms(*verb, arguments->entries.algorithms,
-                 "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between. "
-                 "Peers are shown, but never advised");
+  add_algorithms(
+      *verb, arguments->entries.algorithms,
+      "Names, specs such as grid:cell=2.5, or the groups own, paper, literature, peers, all; a comma "
+      "between. Peers and literature are shown, but never advised");
   add_threads(*verb, arguments->entries,
               "Numbers of threads to try besides one, such as "
               "2,4 (0: as many as the machine has); advised where they pay");

@@ -22,10 +22,10 @@ struct EntryOptions {
 };
 
 /// Adds --algorithms, and --algorithm for the same; the standard is what `list` holds.
-CLI::Option* add_algorithms(
-    CLI::App& verb, std::string& list,
-    const std::string& help =
-        "Names, specs such as grid:cell=2.5, or the groups own, paper, peers, all; a comma between");
+CLI::Option* add_algorithms(CLI::App& verb, std::string& list,
+                            const std::string& help =
+                                "Names, specs such as grid:cell=2.5, or the groups own, paper, literature, "
+                                "peers, all; a comma between");
 
 /// Adds --threads, which takes several numbers; `help` says what for.
 void add_threads(CLI::App& verb, EntryOptions& options, const std::string& help);

@@ -32,11 +32,11 @@ endif()
 
 set(program_packages "")
 if(BROADSIDE_BUILD_PROGRAM)
-  foreach(part IN ITEMS listings lab experiments)
+  foreach(part IN ITEMS listings literature lab experiments)
     set_target_properties(broadside_${part} PROPERTIES EXPORT_NAME ${part})
   endforeach()
   set_target_properties(broadside_cli PROPERTIES EXPORT_NAME program)
-  install(TARGETS broadside_listings broadside_lab broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
+  install(TARGETS broadside_listings broadside_literature broadside_lab broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(FILES ${PROJECT_SOURCE_DIR}/paper/listings/descriptions.hpp

@@ -11,6 +11,7 @@
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 
+#include "lab/literature/literature.hpp"
 #include "lab/peers/peers.hpp"
 #include "paper/listings/descriptions.hpp"
 
@@ -21,10 +22,11 @@ namespace {
 bool in_group(const Algorithm& algorithm, std::string_view group) {
   return group == "all" || (group == "own" && algorithm.kind == AlgorithmKind::own) ||
          (group == "paper" && algorithm.kind == AlgorithmKind::paper) ||
+         (group == "literature" && algorithm.kind == AlgorithmKind::literature) ||
          (group == "peers" && algorithm.kind == AlgorithmKind::peer);
 }
 
-constexpr std::array<std::string_view, 4> groups = {"own", "paper", "peers", "all"};
+constexpr std::array<std::string_view, 5> groups = {"own", "paper", "literature", "peers", "all"};
 
 bool is_group(std::string_view name) { return std::ranges::find(groups, name) != groups.end(); }
 
@@ -64,6 +66,7 @@ std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<con
 Catalogue::Catalogue() {
   paper::register_listings();
   for (const Algorithm& algorithm : broadside::algorithms()) add(algorithm);
+  for (Algorithm& algorithm : literature::algorithms()) add(std::move(algorithm));
   for (Algorithm& peer : peers::peers()) add(std::move(peer));
 }
 

@@ -1,4 +1,4 @@
-// The lab's list of algorithms: the library's, the paper's, the peers' and the user's.
+// The lab's list of algorithms: the library's, the paper's, the literature's, the peers' and the user's.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<con
 /// point into it.
 class Catalogue {
  public:
-  /// Registers the paper's listings; takes all algorithms that then have a name, and the peers that were
-  /// built in. Throws InvalidSpec if the name of a group, a listing or a peer is registered already.
+  /// Registers the paper's listings; takes all algorithms that then have a name, those from the
+  /// literature, and the peers that were built in. Throws InvalidSpec if the name of a group, a listing or a peer is registered already.
   Catalogue();
 
   /// Adds an algorithm to this list alone. Throws InvalidSpec if its name is taken.
@@ -38,7 +38,7 @@ class Catalogue {
   std::span<const Algorithm> algorithms() const noexcept { return algorithms_; }
 
   /// The entries that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper,
-  /// peers, all; each spec once, in the list's order. Throws InvalidSpec naming what there is.
+  /// literature, peers, all; each spec once, in the list's order. Throws InvalidSpec naming what there is.
   std::vector<Entry> select(std::string_view list) const;
 
  private:

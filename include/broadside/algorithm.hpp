@@ -65,9 +65,9 @@ class Settings {
 };
 
 /// Where an algorithm comes from.
-enum class AlgorithmKind { own, paper, peer };
+enum class AlgorithmKind { own, paper, literature, peer };
 
-/// "own", "paper" or "peer".
+/// "own", "paper", "literature" or "peer".
 std::string_view name(AlgorithmKind kind) noexcept;
 
 template <int D>

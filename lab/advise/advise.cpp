@@ -210,7 +210,7 @@ class Adviser {
     }
     std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(time(first[i]), i); });
     const auto is_auto = [&](std::size_t i) { return plain[i].algorithm->name == default_algorithm; };
-    const auto is_peer = [&](std::size_t i) { return plain[i].algorithm->kind == AlgorithmKind::peer; };
+    const auto is_peer = [&](std::size_t i) { return is_foreign(plain[i].algorithm->kind); };
     const auto best = std::ranges::find_if_not(order, is_peer);
     if (best == order.end()) return {};
     std::vector<Entry> finalists;

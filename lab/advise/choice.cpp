@@ -22,7 +22,7 @@ bool is_eligible(const Rival& rival) {
   return rival.measurement->outcome == Outcome::verified && is_timed(*rival.measurement);
 }
 
-bool is_peer(const Rival& rival) { return rival.measurement->kind == AlgorithmKind::peer; }
+bool is_peer(const Rival& rival) { return is_foreign(rival.measurement->kind); }
 
 /// Of each input, in rotation, the least sample.
 std::vector<double> least_of(std::span<const double> samples, std::size_t inputs) {

@@ -187,8 +187,7 @@ std::vector<std::string> reasons_of(const Advice& advice) {
   std::size_t others = 0;
   for (const Ranked& ranked : advice.ranking) {
     const Measurement& other = ranked.measurement;
-    if (ranked.is_variant || &other == &chosen || !is_timed(other) || other.kind == AlgorithmKind::peer)
-      continue;
+    if (ranked.is_variant || &other == &chosen || !is_timed(other) || is_foreign(other.kind)) continue;
     const double ratio = ranked.milliseconds / time;
     if (ratio <= as_fast || ++others > most_others) continue;
     const std::string why = base_of(other.algorithm) == default_algorithm
@@ -200,8 +199,8 @@ std::vector<std::string> reasons_of(const Advice& advice) {
   if (choice.peer) {
     const Measurement& peer = advice.ranking[*choice.peer].measurement;
     reasons.push_back(fmt::format(
-        "{}, which is not part of Broadside, is faster here: {} takes {} as long as it", peer.algorithm,
-        chosen.algorithm, times(time / advice.ranking[*choice.peer].milliseconds)));
+        "{}, which is not part of Broadside's library, is faster here: {} takes {} as long as it",
+        peer.algorithm, chosen.algorithm, times(time / advice.ranking[*choice.peer].milliseconds)));
   }
   return reasons;
 }
@@ -247,8 +246,7 @@ std::vector<std::string> changes_of(const Advice& advice) {
   const Ranked* steadiest = nullptr;
   for (const Ranked& ranked : advice.ranking) {
     const Measurement& other = ranked.measurement;
-    if (!is_timed(other) || other.kind == AlgorithmKind::peer || ranked.is_variant || &other == &chosen)
-      continue;
+    if (!is_timed(other) || is_foreign(other.kind) || ranked.is_variant || &other == &chosen) continue;
     if (chosen.peak_bytes && other.peak_bytes && *other.peak_bytes * 5 <= *chosen.peak_bytes * 3 &&
         ranked.milliseconds <= 8 * time && *chosen.peak_bytes > 1'000'000 &&
         (leanest == nullptr || *other.peak_bytes < *leanest->measurement.peak_bytes))

@@ -53,6 +53,11 @@ struct PairedRatio {
   std::size_t rounds;                ///< that both took part in
 };
 
+/// Whether algorithms of this kind are no part of what users link: they are compared, and never advised.
+constexpr bool is_foreign(AlgorithmKind kind) noexcept {
+  return kind == AlgorithmKind::literature || kind == AlgorithmKind::peer;
+}
+
 /// One algorithm in one case. What was counted (pairs, hash, statistics, bytes) is of the first seed.
 struct Measurement {
   std::string algorithm;  ///< its spec

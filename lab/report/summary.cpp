@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,17 +57,18 @@ std::string auto_text(const Comparison& comparison) {
       fmt::format("{:.3g}", ratios.pairs[worst].median()), ratios.names[worst]);
 }
 
-/// How many times as fast as the fastest peer `name` is, which `entry_of` picks in each case, as a line;
-/// empty where no case has both.
+/// How many times as fast as the fastest of a kind, which is called `rival`, `name` is, which `entry_of`
+/// picks in each case, as a line; empty where no case has both.
 template <typename EntryOf>
-std::string lead_text(const Comparison& comparison, std::string_view name, const EntryOf& entry_of) {
+std::string lead_text(const Comparison& comparison, AlgorithmKind kind, std::string_view rival,
+                      std::string_view name, const EntryOf& entry_of) {
   Ratios ratios;
   for (const CaseResult& result : comparison.cases)
-    ratios.add(result, fastest_of_kind(result, AlgorithmKind::peer), entry_of(result));
+    ratios.add(result, fastest_of_kind(result, kind), entry_of(result));
   if (ratios.pairs.empty()) return "";
   const std::size_t least = ratios.extreme(std::greater<>());
   return fmt::format(
-      "{} is {} times as fast as the fastest peer, geometric mean of {}; at least {} times ({})\n", name,
+      "{} is {} times as fast as the fastest {}, geometric mean of {}; at least {} times ({})\n", name, rival,
       mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
       fmt::format("{:.3g}", ratios.pairs[least].median()), ratios.names[least]);
 }
@@ -140,9 +142,12 @@ std::string summary_of(const Comparison& comparison) {
       columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
                    ratio_text(standing.mean()), ""});
     }
-    text += columns.text("  ") + auto_text(comparison) +
-            lead_text(comparison, "the best of ours", best_own_of) + lead_text(comparison, "auto", auto_of) +
-            "\n";
+    text += columns.text("  ") + auto_text(comparison);
+    for (const auto& [kind, rival] : {std::pair(AlgorithmKind::peer, "peer"),
+                                      std::pair(AlgorithmKind::literature, "from the literature")})
+      text += lead_text(comparison, kind, rival, "the best of ours", best_own_of) +
+              lead_text(comparison, kind, rival, "auto", auto_of);
+    text += "\n";
   }
   for (const NotCompared& missing : comparison.not_compared)
     text += fmt::format("not compared: {}: {}\n", missing.request.scene, missing.reason);

@@ -17,6 +17,7 @@ Scene lattice();
 Scene integers();
 Scene thin();
 Scene terdiman();
+Scene join_table();
 Scene churn();
 Scene jumps();
 Scene pile();

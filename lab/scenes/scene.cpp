@@ -25,10 +25,10 @@ namespace {
 /// Every scene that the lab knows; those missing from this build last.
 struct SceneList {
   std::vector<Scene> scenes = {
-      generated::uniform(),   generated::power_law(), generated::mixed(),   generated::clustered(),
-      generated::one_point(), generated::one_line(),  generated::lattice(), generated::integers(),
-      generated::thin(),      generated::terdiman(),  generated::churn(),   generated::jumps(),
-      generated::pile(),
+      generated::uniform(),   generated::power_law(),  generated::mixed(),   generated::clustered(),
+      generated::one_point(), generated::one_line(),   generated::lattice(), generated::integers(),
+      generated::thin(),      generated::terdiman(),   generated::churn(),   generated::jumps(),
+      generated::pile(),      generated::join_table(),
   };
   std::size_t there = 0;  // how many are not missing
 

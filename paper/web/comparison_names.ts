@@ -96,7 +96,7 @@ export function lostList({ lost }: Facts): string {
     .join("\n");
 }
 
-const kinds: Record<string, string> = { own: "ours", paper: "the draft's", peer: "peer", user: "user's" };
+const kinds: Record<string, string> = { own: "ours", paper: "the draft's", literature: "literature", peer: "peer", user: "user's" };
 
 export function standingsTable(facts: Facts): string {
   return tableText(

@@ -133,7 +133,7 @@ function checkMeasurement(measurement: Place): void {
   measurement.has("a finite number", "dimension", "boxes", "frames", "moving", "threads");
   measurement.hasOrNull("a finite number", "drift", "teleport", "pairs", "median_ms", "p99_ms", "floor_ms");
   measurement.hasOrNull("a text", "skipped").hasOrNull("true or false", "verified");
-  measurement.at("kind").isOneOf(["own", "paper", "peer", "user"]);
+  measurement.at("kind").isOneOf(["own", "paper", "literature", "peer", "user"]);
   measurement.at("mode").isOneOf(["find", "track"]);
   if (measurement.at("verified").value === false)
     measurement.at("verified").refuse("true: nothing is quoted that is wrong");

@@ -57,7 +57,7 @@ std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Setti
 }  // namespace
 
 std::string_view name(AlgorithmKind kind) noexcept {
-  constexpr std::array<std::string_view, 3> names = {"own", "paper", "peer"};
+  constexpr std::array<std::string_view, 4> names = {"own", "paper", "literature", "peer"};
   return names[static_cast<std::size_t>(kind)];
 }
 

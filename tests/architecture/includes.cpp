@@ -51,6 +51,7 @@ const std::vector<Rule>& rules() {
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
+      {"lab/literature/", library + R"(|"lab/peers/peer_tracker\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"lab/formats/", lab + "|<assimp/.*>"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},

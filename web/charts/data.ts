@@ -101,7 +101,7 @@ export interface Measurement {
   teleport: number | null;
   algorithm: string;
   version: string;
-  kind: "own" | "paper" | "peer" | "user";
+  kind: "own" | "paper" | "literature" | "peer" | "user";
   mode: "find" | "track";
   threads: number;
   target: string | null;

@@ -29,7 +29,7 @@ export const dark: Theme = {
   palette: ["#4aa8e8", "#f0803c", "#2fc49a", "#e08fbe", "#f0b43c", "#9fd4f5", "#a3abb8", "#d6c94a"],
 };
 
-/** [light, dark] by family: our algorithms and the paper's of the same kind; then libraries. */
+/** [light, dark] by family: our algorithms and the paper's of the same kind; then libraries and what is from the literature. */
 const families: Record<string, readonly [string, string]> = {
   auto: ["#1d2430", "#f4f6f9"],
   brute_force: ["#7b8494", "#99a2b0"],
@@ -47,7 +47,12 @@ const families: Record<string, readonly [string, string]> = {
   embree: ["#2f86c6", "#9fd4f5"],
   fcl: ["#c05a6b", "#ec93a1"],
   geos: ["#7a4fa3", "#bf9ae0"],
+  karras: ["#4a6a2a", "#a5c77f"],
   ode: ["#6e5a46", "#c4a98c"],
+  pbsm: ["#a34a1f", "#e8a27c"],
+  segmented: ["#274f7d", "#86b1e0"],
+  serpa: ["#7d2743", "#e086a6"],
+  terdiman: ["#1f6f78", "#74c3cb"],
 };
 
 /** The family that an algorithm is named for: "grid" of grid:cell=2 and of paper_grid, "bullet" of bullet_dbvt. */

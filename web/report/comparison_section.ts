@@ -71,8 +71,9 @@ function whiskersNote(cases: readonly Case[]): string {
 
 const kinds: [string, string, Measurement["kind"][]][] = [
   ["own", "ours", ["own", "user"]],
-  ["all", "all", ["own", "paper", "peer", "user"]],
+  ["all", "all", ["own", "paper", "literature", "peer", "user"]],
   ["paper", "the paper's", ["paper"]],
+  ["literature", "from the literature", ["literature"]],
   ["peer", "other libraries", ["peer"]],
 ];
 

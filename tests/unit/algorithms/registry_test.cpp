@@ -136,6 +136,7 @@ TEST(Registry, TakesNamesOfEarlierVersions) {
 TEST(AlgorithmKind, HasANameForEachKind) {
   EXPECT_EQ(name(AlgorithmKind::own), "own");
   EXPECT_EQ(name(AlgorithmKind::paper), "paper");
+  EXPECT_EQ(name(AlgorithmKind::literature), "literature");
   EXPECT_EQ(name(AlgorithmKind::peer), "peer");
 }
 

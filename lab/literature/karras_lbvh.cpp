@@ -1,0 +1,285 @@
+// Karras 2012, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees" (High Performance
+// Graphics): a binary radix tree over the Morton codes of the boxes' centres, each internal node's range of
+// leaves found from common prefixes alone, bounds bottom up. It is searched as the same author's "Thinking
+// Parallel, Part II: Tree Traversal on the GPU" (2012) does: each leaf looks for the leaves to its right.
+//
+// Where this differs: one thread does what one GPU thread for each node did, in a loop, so the counters by
+// which the second child to arrive goes on to the parent are plain integers. Codes are made of coordinates
+// in double, relative to the centres' bounds, and infinite centres stand at the border of these. Of two sets
+// the tree holds the right one, and the boxes of the left one search it in the order of their codes.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lab/literature/literature.hpp"
+#include "lab/literature/radix_sort.hpp"
+
+namespace broadside::lab::literature {
+namespace {
+
+/// Puts D - 1 zeros between the bits of `value`, of which the lowest 64 / D count.
+template <int D>
+std::uint64_t spread(std::uint64_t value) noexcept {
+  if constexpr (D == 2) {
+    value &= 0xffffffffU;
+    value = (value | value << 16) & 0x0000ffff0000ffffU;
+    value = (value | value << 8) & 0x00ff00ff00ff00ffU;
+    value = (value | value << 4) & 0x0f0f0f0f0f0f0f0fU;
+    value = (value | value << 2) & 0x3333333333333333U;
+    return (value | value << 1) & 0x5555555555555555U;
+  } else {
+    value &= 0x1fffffU;
+    value = (value | value << 32) & 0x001f00000000ffffU;
+    value = (value | value << 16) & 0x001f0000ff0000ffU;
+    value = (value | value << 8) & 0x100f00f00f00f00fU;
+    value = (value | value << 4) & 0x10c30c30c30c30c3U;
+    return (value | value << 2) & 0x1249249249249249U;
+  }
+}
+
+/// Morton codes of boxes' centres: `axis_bits` bits of each coordinate.
+template <int D>
+class MortonCurve {
+ public:
+  MortonCurve(std::span<const Box<D>> boxes, int axis_bits) : most_(std::ldexp(1.0, axis_bits) - 1) {
+    low_.fill(std::numeric_limits<double>::infinity());
+    std::array<double, D> high;
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (const Box<D>& box : boxes) {
+      for (int axis = 0; axis < D; ++axis) {
+        const double centre = centre_of(box, axis);
+        if (!std::isfinite(centre)) continue;
+        low_[axis] = std::min(low_[axis], centre);
+        high[axis] = std::max(high[axis], centre);
+      }
+    }
+    for (int axis = 0; axis < D; ++axis) {
+      if (low_[axis] > high[axis]) low_[axis] = 0;  // none is finite
+      scale_[axis] = high[axis] > low_[axis] ? most_ / (high[axis] - low_[axis]) : 0;
+    }
+  }
+
+  std::uint64_t code(const Box<D>& box) const noexcept {
+    std::uint64_t code = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      const double place = (centre_of(box, axis) - low_[axis]) * scale_[axis];
+      // A NaN, as of a box that is infinite both ways, is not above 0.
+      const double inside = place > 0 ? std::min(place, most_) : 0;
+      code |= spread<D>(static_cast<std::uint64_t>(inside)) << axis;
+    }
+    return code;
+  }
+
+ private:
+  static double centre_of(const Box<D>& box, int axis) noexcept {
+    return (double{box.min[axis]} + double{box.max[axis]}) / 2;
+  }
+
+  double most_;
+  std::array<double, D> low_;
+  std::array<double, D> scale_;
+};
+
+/// Up to 32 bits of code are sorted as such; more, as 64.
+template <int D, typename Key>
+class KarrasLbvh final : public PairFinder<D> {
+ public:
+  explicit KarrasLbvh(int axis_bits) : axis_bits_(axis_bits) {}
+
+ private:
+  /// An internal node. A child is an internal node's place, or a leaf's with `leaf_bit`.
+  struct Node {
+    std::array<Box<D>, 2> bounds;  // of the children: one visit tests both
+    std::array<std::uint32_t, 2> children;
+    std::array<std::uint32_t, 2> last;  // the last leaf below each child
+    std::uint32_t parent;
+    std::uint32_t arrived;
+  };
+
+  static constexpr std::uint32_t leaf_bit = 0x80000000U;
+  // Codes have up to 64 bits and places 32: each level of the tree shares at least one bit more.
+  static constexpr std::size_t most_levels = 96;
+
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    const MortonCurve<D> curve(boxes, axis_bits_);
+    const std::size_t left = this->left_count();
+    sort(curve, boxes, left, boxes.size());
+    const std::size_t leaves = codes_.size();
+    if (leaves > 1) build();
+    if (left > 0) {
+      if (leaves > 0) search_from_left(curve, boxes.first(left), pairs);
+      return;
+    }
+    for (std::size_t i = 0; i + 1 < leaves; ++i) search(leaf_boxes_[i], ids_[i], i + 1, pairs);
+  }
+
+  /// The leaves: `boxes` from `begin` to `end` in the order of their codes.
+  void sort(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, std::size_t begin, std::size_t end) {
+    const auto entries = sorter_.entries(end - begin);
+    for (std::size_t i = begin; i < end; ++i)
+      entries[i - begin] = {static_cast<Key>(curve.code(boxes[i])), static_cast<std::uint32_t>(i)};
+    const auto sorted = sorter_.sort();
+    codes_.resize(sorted.size());
+    ids_.resize(sorted.size());
+    leaf_boxes_.resize(sorted.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      codes_[i] = sorted[i].key;
+      ids_[i] = BoxId{sorted[i].place};
+      leaf_boxes_[i] = boxes[sorted[i].place];
+    }
+  }
+
+  /// The length of the common prefix of two leaves' codes, each followed by the leaf's place so that no two
+  /// are equal; -1 where there is no leaf j.
+  int prefix(std::int64_t i, std::int64_t j) const noexcept {
+    if (j < 0 || j >= static_cast<std::int64_t>(codes_.size())) return -1;
+    const Key differing = codes_[static_cast<std::size_t>(i)] ^ codes_[static_cast<std::size_t>(j)];
+    if (differing != 0) return std::countl_zero(differing);
+    return static_cast<int>(sizeof(Key)) * 8 + std::countl_zero(static_cast<std::uint32_t>(i ^ j));
+  }
+
+  /// Karras' algorithm for internal node i: the direction and length of its range, and where it splits.
+  void make_node(std::int64_t i) {
+    const int direction = prefix(i, i + 1) > prefix(i, i - 1) ? 1 : -1;
+    const int least = prefix(i, i - direction);
+    std::int64_t most = 2;
+    while (prefix(i, i + most * direction) > least) most *= 2;
+    std::int64_t length = 0;
+    for (std::int64_t step = most / 2; step > 0; step /= 2) {
+      if (prefix(i, i + (length + step) * direction) > least) length += step;
+    }
+    const std::int64_t other_end = i + length * direction;
+
+    const int shared = prefix(i, other_end);
+    std::int64_t split = 0;
+    for (std::int64_t step = length; step > 1;) {
+      step = (step + 1) / 2;
+      if (prefix(i, i + (split + step) * direction) > shared) split += step;
+    }
+    const std::int64_t first = std::min(i, other_end);
+    const std::int64_t last = std::max(i, other_end);
+    const std::int64_t middle = i + split * direction + std::min(direction, 0);
+
+    Node& node = nodes_[static_cast<std::size_t>(i)];
+    node.arrived = 0;
+    node.last = {static_cast<std::uint32_t>(middle), static_cast<std::uint32_t>(last)};
+    link(node, 0, i, middle, first == middle);
+    link(node, 1, i, middle + 1, middle + 1 == last);
+  }
+
+  void link(Node& node, std::size_t side, std::int64_t parent, std::int64_t child, bool is_leaf) {
+    const auto place = static_cast<std::uint32_t>(child);
+    node.children[side] = is_leaf ? place | leaf_bit : place;
+    if (is_leaf)
+      leaf_parents_[place] = static_cast<std::uint32_t>(parent);
+    else
+      nodes_[place].parent = static_cast<std::uint32_t>(parent);
+  }
+
+  void build() {
+    const std::size_t leaves = codes_.size();
+    nodes_.resize(leaves - 1);
+    leaf_parents_.resize(leaves);
+    for (std::size_t i = 0; i + 1 < leaves; ++i) make_node(static_cast<std::int64_t>(i));
+    // Bottom up: of two children, the one that comes second goes on to the parent's parent.
+    for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
+      Box<D> bounds = leaf_boxes_[leaf];
+      std::uint32_t child = static_cast<std::uint32_t>(leaf) | leaf_bit;
+      std::uint32_t parent = leaf_parents_[leaf];
+      for (;;) {
+        Node& node = nodes_[parent];
+        node.bounds[node.children[1] == child ? 1 : 0] = bounds;
+        if (++node.arrived < 2 || parent == 0) break;
+        for (int axis = 0; axis < D; ++axis) {
+          bounds.min[axis] = std::min(node.bounds[0].min[axis], node.bounds[1].min[axis]);
+          bounds.max[axis] = std::max(node.bounds[0].max[axis], node.bounds[1].max[axis]);
+        }
+        child = parent;
+        parent = node.parent;
+      }
+    }
+  }
+
+  /// Writes the pairs of `box` with the leaves from the place `first` on.
+  void search(const Box<D>& box, BoxId id, std::size_t first, PairSink& pairs) const {
+    std::array<std::uint32_t, most_levels + 1> stack;
+    std::size_t depth = 0;
+    std::uint32_t place = 0;
+    for (;;) {
+      const Node& node = nodes_[place];
+      std::uint32_t next = leaf_bit;
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (node.last[side] < first || !overlap(box, node.bounds[side])) continue;
+        const std::uint32_t child = node.children[side];
+        if ((child & leaf_bit) != 0) {
+          pairs.add(id, ids_[child & ~leaf_bit]);
+        } else if (next == leaf_bit) {
+          next = child;
+        } else {
+          stack[depth++] = child;
+        }
+      }
+      if (next != leaf_bit)
+        place = next;
+      else if (depth > 0)
+        place = stack[--depth];
+      else
+        return;
+    }
+  }
+
+  void search_from_left(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, PairSink& pairs) {
+    const auto entries = left_sorter_.entries(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      entries[i] = {static_cast<Key>(curve.code(boxes[i])), static_cast<std::uint32_t>(i)};
+    for (const auto& entry : left_sorter_.sort()) {
+      const Box<D>& box = boxes[entry.place];
+      if (codes_.size() > 1)
+        search(box, BoxId{entry.place}, 0, pairs);
+      else if (overlap(box, leaf_boxes_[0]))
+        pairs.add(BoxId{entry.place}, ids_[0]);
+    }
+  }
+
+  int axis_bits_;
+  RadixSort<Key> sorter_;
+  RadixSort<Key> left_sorter_;
+  std::vector<Key> codes_;  // of the leaves, ascending
+  std::vector<BoxId> ids_;
+  std::vector<Box<D>> leaf_boxes_;
+  std::vector<std::uint32_t> leaf_parents_;
+  std::vector<Node> nodes_;  // one less than leaves; the first is the root
+};
+
+template <int D>
+std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+  if (settings.text("code") == "64") return std::make_unique<KarrasLbvh<D, std::uint64_t>>(64 / D);
+  return std::make_unique<KarrasLbvh<D, std::uint32_t>>(32 / D);
+}
+
+}  // namespace
+
+Algorithm karras_lbvh() {
+  return {
+      .name = "karras_lbvh",
+      .summary = "a binary radix tree over Morton codes; each leaf looks for the leaves to its right",
+      .source = "Karras 2012, Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees",
+      .kind = AlgorithmKind::literature,
+      .tunables = {{.name = "code",
+                    .summary = "bits of a Morton code: 16 or 32 an axis in 2D, 10 or 21 in 3D",
+                    .standard = "32",
+                    .type = Tunable::Type::choice,
+                    .choices = {"32", "64"}}},
+      .finder_2d = make<2>,
+      .finder_3d = make<3>,
+      .most_boxes = (std::size_t{1} << 31) - 1,
+  };
+}
+
+}  // namespace broadside::lab::literature

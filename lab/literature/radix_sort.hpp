@@ -1,0 +1,80 @@
+// The radix sort of the algorithms from the literature: places in an array, by integer keys.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace broadside::lab::literature {
+
+/// A signed number that orders as `value` does, for any float but NaN; -0.0 and 0.0 have the same. Infinities
+/// lie between -`beyond_floats` and `beyond_floats`.
+inline std::int32_t ordered(float value) noexcept {
+  const auto bits = std::bit_cast<std::int32_t>(value + 0.0F);
+  return bits ^ ((bits >> 31) & 0x7fffffff);
+}
+
+/// Greater than ordered() of any float, infinity included: a sentinel that ends every scan.
+inline constexpr std::int32_t beyond_floats = 0x7fffffff;
+
+/// ordered() as an unsigned key.
+inline std::uint32_t sort_key(float value) noexcept {
+  return static_cast<std::uint32_t>(ordered(value)) ^ 0x80000000U;
+}
+
+/// Sorts places by unsigned keys, those of equal keys staying in order. A counting pass for each 11 bits in
+/// which the keys differ.
+template <typename Key>
+class RadixSort {
+ public:
+  struct Entry {
+    Key key;
+    std::uint32_t place;
+  };
+
+  /// Room for `count` entries to be filled in and sorted. Valid until the next call.
+  std::span<Entry> entries(std::size_t count) {
+    entries_.resize(count);
+    return entries_;
+  }
+
+  /// Sorts what was filled in. The result is valid until the next call of entries().
+  std::span<const Entry> sort() {
+    for (auto& counts : counts_) counts.fill(0);
+    for (const Entry& entry : entries_) {
+      for (std::size_t pass = 0; pass < passes; ++pass) ++counts_[pass][digit(entry.key, pass)];
+    }
+    other_.resize(entries_.size());
+    for (std::size_t pass = 0; pass < passes; ++pass) {
+      auto& counts = counts_[pass];
+      if (entries_.empty() || counts[digit(entries_[0].key, pass)] == entries_.size()) continue;
+      std::uint32_t begin = 0;
+      for (std::uint32_t& count : counts) {
+        const std::uint32_t next = begin + count;
+        count = begin;
+        begin = next;
+      }
+      for (const Entry& entry : entries_) other_[counts[digit(entry.key, pass)]++] = entry;
+      entries_.swap(other_);
+    }
+    return entries_;
+  }
+
+ private:
+  static constexpr int digit_bits = 11;
+  static constexpr std::size_t passes = (sizeof(Key) * 8 + digit_bits - 1) / digit_bits;
+
+  static std::size_t digit(Key key, std::size_t pass) noexcept {
+    return static_cast<std::size_t>(key >> (pass * digit_bits)) & ((std::size_t{1} << digit_bits) - 1);
+  }
+
+  std::vector<Entry> entries_;
+  std::vector<Entry> other_;
+  std::array<std::array<std::uint32_t, std::size_t{1} << digit_bits>, passes> counts_;
+};
+
+}  // namespace broadside::lab::literature
