@@ -1,8 +1,10 @@
 // The files that results are written to.
 #include "cli/result_files.hpp"
 
+#include <array>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,7 +29,11 @@ void write_text(const std::string& path, const std::string& text) {
 }  // namespace
 
 std::string ResultFiles::names() const {
-  return json.empty() || report.empty() ? json + report : json + " and " + report;
+  std::string all;
+  for (const std::string& name : {json, samples, report}) {
+    if (!name.empty()) all += (all.empty() ? "" : " and ") + name;
+  }
+  return all;
 }
 
 void add_result_files(CLI::App& verb, ResultFiles& files) {
@@ -38,24 +44,44 @@ void add_result_files(CLI::App& verb, ResultFiles& files) {
       ->type_name("FILE");
 }
 
+void add_samples_file(CLI::App& verb, ResultFiles& files) {
+  verb.add_option(
+          "--samples", files.samples,
+          "Write the results with every sample to this file, an archive, and leave the samples out of "
+          "--json")
+      ->type_name("FILE");
+}
+
 void check(const ResultFiles& files, const std::string& input) {
-  check_is_no_output("--json", files.json);
-  check_is_no_output("--report", files.report);
-  if (!files.json.empty()) check_writable("--json", files.json);
+  const std::array<std::pair<std::string, const std::string&>, 3> all = {
+      {{"--json", files.json}, {"--samples", files.samples}, {"--report", files.report}}};
+  if (!files.samples.empty() && files.json.empty())
+    throw Unusable(fmt::format(
+        "--samples is '{}', but there is no --json for the rest; expected both or neither", files.samples));
   if (!files.report.empty()) {
     if (const std::string missing = lab::page_missing(); !missing.empty())
       throw Unusable(fmt::format("--report: {}", missing));
-    check_writable("--report", files.report);
   }
-  if (!files.json.empty() && !files.report.empty() && are_one(files.json, files.report))
-    throw Unusable(fmt::format("--report is '{}', and so is --json; expected two files", files.report));
-  if (!input.empty() && !files.json.empty()) check_is_other_file("--json", files.json, input);
-  if (!input.empty() && !files.report.empty()) check_is_other_file("--report", files.report, input);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [option, path] = all[i];
+    if (path.empty()) continue;
+    check_is_no_output(option, path);
+    check_writable(option, path);
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [other, other_path] = all[j];
+      if (!other_path.empty() && are_one(other_path, path))
+        throw Unusable(fmt::format("{} is '{}', and so is {}; expected two files", option, path, other));
+    }
+    if (!input.empty()) check_is_other_file(option, path, input);
+  }
   check_extension("--json", files.json, {".json"});
+  check_extension("--samples", files.samples, {".json"});
   check_extension("--report", files.report, {".html", ".htm"});
 }
 
-void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page) {
+void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page,
+           const std::string& samples) {
+  if (!files.samples.empty()) write_text(files.samples, samples);
   if (!files.json.empty()) write_text(files.json, json);
   if (!files.report.empty()) write_text(files.report, lab::page_of(page()));
 }

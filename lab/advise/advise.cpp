@@ -57,7 +57,8 @@ History<D, Real> window(const History<D, Real>& history, double budget_seconds, 
   const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
   double most = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
   // The definition is asked about every frame.
-  if (places <= static_cast<double>(most_tracked_boxes_by_definition))
+  constexpr double most_places_by_definition = 5'000;
+  if (places <= most_places_by_definition)
     most = std::min(most, std::max(budget_seconds * 2e8 / (places * places), 8.0));
   advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(most));
   if (advice.frames < history.steps.size()) advice.first_frame = typical_frames(history, advice.frames);

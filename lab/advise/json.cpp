@@ -57,7 +57,8 @@ Json json_of(const Ranked& ranked) {
   json["finalist"] = ranked.is_finalist;
   json["verified"] =
       measurement.outcome == Outcome::skipped ? Json() : Json(measurement.outcome == Outcome::verified);
-  json["verified_by"] = or_null(measurement.verified_by);
+  const bool verified = measurement.evidence && measurement.outcome == Outcome::verified;
+  json["verified_by"] = verified ? Json(measurement.evidence->text()) : Json();
   json["skipped"] = or_null(measurement.reason);
   json["samples"] = samples.size();
   json["time_ms"] = timed ? Json(ranked.milliseconds) : Json();

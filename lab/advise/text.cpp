@@ -136,7 +136,8 @@ std::string text_of(const Advice& advice) {
   if (advice.mode == Mode::track) text += fmt::format(" (p99 {})", duration(advice.p99_ms / 1e3));
   if (chosen.own_bytes && chosen.peak_bytes)
     text += fmt::format(", {} kept, {} at most", bytes(*chosen.own_bytes), bytes(*chosen.peak_bytes));
-  text += fmt::format("; checked against {}\n", chosen.verified_by);
+  if (chosen.evidence) text += fmt::format("; verified {}", chosen.evidence->text());
+  text += "\n";
   text += "\nWhy\n" + list(advice.reasons);
   if (!advice.changes.empty()) text += "\nWhat would change it\n" + list(advice.changes);
   return text + "\n" + advice.snippet;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "broadside/error.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/version.hpp"
 
 #include "lab/numbers.hpp"
@@ -27,6 +28,7 @@ Measurement measurement_of(const Entry& entry) {
   measurement.version = algorithm.version.empty() ? BROADSIDE_VERSION : algorithm.version;
   measurement.kind = algorithm.kind;
   measurement.threads = threads_of(entry);
+  if (algorithm.kind == AlgorithmKind::own) measurement.target = instruction_set();
   return measurement;
 }
 

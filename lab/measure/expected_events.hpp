@@ -25,9 +25,14 @@ struct ExpectedEvents {
   std::string fault;           ///< what is wrong with the reference itself; empty if nothing is
 };
 
+/// How many tests of two boxes the definition's events of a history take: in each frame the changed boxes
+/// against all, or all against all where more than half of them changed.
+template <int D, typename Real>
+double tests_by_definition(const History<D, Real>& history);
+
 /// The events of `history` by the reference: the definition's pairs in each frame and what differs from one
-/// to the next, or those of a DiffTracker over the reference's finder, whose pairs after the last frame are
-/// then sampled.
+/// to the next, or those of a DiffTracker over the reference's finder, whose pairs are sampled in every
+/// frame, each time those of other boxes.
 template <int D, typename Real>
 ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history);
 

@@ -9,6 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/cases.hpp"
+#include "lab/measure/evidence.hpp"
 #include "lab/measure/floor.hpp"
 #include "lab/measure/memory.hpp"
 #include "lab/measure/reference.hpp"
@@ -69,11 +70,18 @@ class FindCase {
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
     }
+    count_agreement(measurements_, references());
     return {case_, std::move(measurements_), std::move(floor_ms_)};
   }
 
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
+
+  std::vector<Reference> references() const {
+    std::vector<Reference> all;
+    for (const auto& known : expectations_) all.push_back(known->reference);
+    return all;
+  }
 
   /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
@@ -112,7 +120,7 @@ class FindCase {
   void warm_up(FindParticipant<D, Real>& participant) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
-    measurement.verified_by = expectation(*participant.entry->algorithm, 0).reference.text();
+    measurement.evidence = Evidence{expectation(*participant.entry->algorithm, 0).reference.is_definition()};
     participant.compared.resize(inputs_.size());
     measurement.outcome = Outcome::verified;
     attempt(measurement, [&] {
@@ -204,7 +212,8 @@ class FindCase {
 
   /// What the entry must find in the input; computed when first asked for.
   const ExpectedPairs& expectation(const Algorithm& entry, std::size_t input) {
-    const Reference reference(entry, benchmark_.known, boxes_of(0).size(), most_boxes_by_definition);
+    const Reference reference(entry, benchmark_.known, boxes_of(0).size(),
+                              benchmark_.effort.definition_boxes);
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
@@ -215,6 +224,12 @@ class FindCase {
         expected.fault =
             explained<D, Real>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input))
                 .text;
+    }
+    for (const auto& known : expectations_) {
+      if (known->input == input && (known->count != expected.count || known->hash != expected.hash))
+        expected.fault = fmt::format(
+            "reference: {} gives {} pairs, hash {:016x}; expected those of {}: {}, {:016x}", reference.text(),
+            expected.count, expected.hash, known->reference.text(), known->count, known->hash);
     }
     if (pairs.size() <= most_pairs_kept) expected.pairs = std::move(pairs);
     expectations_.push_back(std::make_unique<ExpectedPairs>(std::move(expected)));

@@ -37,6 +37,19 @@ enum class Outcome {
   skipped    ///< it did not take part, or ran out of memory
 };
 
+/// How the results of a measurement were verified; docs/benchmarking.md says what each word is worth.
+struct Evidence {
+  bool by_definition = false;  ///< compared with every pair tested by the definition
+  std::size_t structures = 0;  ///< algorithms of the case that gave the same pairs, this one included,
+  std::size_t libraries = 0;   ///< and libraries that these are from, Broadside with all of its being one
+
+  /// "by definition", or as in "cross-checked by 9 structures of 6 libraries".
+  std::string text() const;
+};
+
+/// What holds of both.
+Evidence weaker(const Evidence& a, const Evidence& b);
+
 /// A 95 % confidence interval.
 struct Interval {
   double low;
@@ -51,6 +64,7 @@ struct PairedRatio {
   double median;                     ///< over the seeds, of each seed's median ratio of its rounds
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
+  std::size_t processes = 1;         ///< in which these rounds were
 };
 
 /// Whether algorithms of this kind are no part of what users link: they are compared, and never advised.
@@ -64,14 +78,16 @@ struct Measurement {
   std::string version;    ///< of the library behind it
   AlgorithmKind kind = AlgorithmKind::own;
   std::size_t threads = 1;
+  std::string target{};  ///< the instruction set of its kernels; empty for what is not Broadside's own
 
   Outcome outcome = Outcome::skipped;
-  std::string verified_by;             ///< what the pairs were compared with; empty where they were not
+  std::optional<Evidence> evidence;    ///< empty where nothing was compared
   std::string reason;                  ///< why there is no time: what diverged first, or why it was skipped
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
-  std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
-  std::size_t samples_a_round = 1;   ///< the frames of a history; round r of all is on the same boxes
+  std::vector<double> samples_ms;   ///< each a whole call, from boxes to pairs, or a frame
+  std::size_t samples_a_round = 1;  ///< the frames of a history; round r of all is on the same boxes
+  std::vector<std::size_t> rounds_of_processes{};  ///< where several were merged; empty: one process
   std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
@@ -103,6 +119,9 @@ struct Effort {
   double slow_seconds = 0.1;          ///< a search that takes longer has slow_rounds rounds
   double slow_history_seconds = 0.8;  ///< a history that takes longer has slow_rounds rounds
   std::size_t slow_rounds = 5;
+  std::size_t definition_boxes =
+      20'000;              ///< searches of more boxes are not checked by the definition, nor are
+                           ///< histories that take over four times the tests of such a search
   double far_ratio = 1.5;  ///< an algorithm that takes this many times the time of both the fastest other
                            ///< library and our fastest (and over far_from_seconds) has far_rounds rounds
   std::size_t far_rounds = 1;

@@ -13,8 +13,9 @@
 namespace broadside::lab {
 namespace {
 
-RatiosBySeed paired(const Measurement& entry, const Measurement& other, const CaseResult& result) {
-  return {round_times(entry), round_times(other), std::max<std::size_t>(result.of.seeds.size(), 1)};
+bool is_faster(const Measurement& entry, const Measurement& other, const Case& measured) {
+  return were_together(entry, other) ? RatiosByProcess(measured, entry, other).ratio() < 1
+                                     : time_of(entry) < time_of(other);
 }
 
 /// The fastest of the measurements that `eligible` accepts: of two, the one that is faster in the rounds that
@@ -24,18 +25,18 @@ const Measurement* fastest_among(const CaseResult& result, const Eligible& eligi
   const Measurement* fastest = nullptr;
   for (const Measurement& measurement : result.measurements) {
     if (!is_timed(measurement) || !eligible(measurement)) continue;
-    if (fastest == nullptr || paired(measurement, *fastest, result).median() < 1) fastest = &measurement;
+    if (fastest == nullptr || is_faster(measurement, *fastest, result.of)) fastest = &measurement;
   }
   return fastest;
 }
 
-/// Whatever its options are.
-bool is_auto(const Measurement& measurement) {
-  const std::string& spec = measurement.algorithm;
-  return spec.substr(0, spec.find(':')) == default_algorithm;
-}
+bool is_auto(const Measurement& measurement) { return structure_of(measurement) == default_algorithm; }
 
 }  // namespace
+
+std::string structure_of(const Measurement& measurement) {
+  return measurement.algorithm.substr(0, measurement.algorithm.find(':'));
+}
 
 bool is_timed(const Measurement& measurement) { return !measurement.samples_ms.empty(); }
 
@@ -60,6 +61,12 @@ const Measurement* best_own_of(const CaseResult& result) {
 }
 
 const Measurement* auto_of(const CaseResult& result) { return fastest_among(result, is_auto); }
+
+std::string whole_name_of(const Case& measured) {
+  const std::string name = name_of(measured);
+  return measured.mode == Mode::track ? fmt::format("{}, {:.3g} % moving", name, measured.moving * 100)
+                                      : name;
+}
 
 std::string name_of(const Case& measured) {
   return fmt::format("{}, {}D, {}", measured.scene, measured.dimension,

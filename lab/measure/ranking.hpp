@@ -7,6 +7,9 @@
 
 namespace broadside::lab {
 
+/// The algorithm's name, whatever its options are.
+std::string structure_of(const Measurement& measurement);
+
 /// Whether it has a time.
 bool is_timed(const Measurement& measurement);
 
@@ -29,5 +32,8 @@ const Measurement* auto_of(const CaseResult& result);
 
 /// "uniform, 2D, 1,000 boxes".
 std::string name_of(const Case& measured);
+
+/// "uniform, 2D, 1,000 boxes, 10 % moving", where boxes move.
+std::string whole_name_of(const Case& measured);
 
 }  // namespace broadside::lab

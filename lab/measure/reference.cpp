@@ -50,19 +50,12 @@ std::vector<Pair> Reference::pairs(BoxSpan<D, Real> boxes) const {
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs) {
+std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
+                                       std::uint64_t seed) {
+  const std::vector<std::size_t> sample = sample_of(boxes.size(), sampled_boxes, seed);
   std::vector<bool> sampled(boxes.size(), false);
-  std::vector<Pair> expected;
-  for (const std::size_t i : sample_of(boxes.size(), sampled_boxes)) {
-    sampled[i] = true;
-    if (!is_present(boxes[i])) continue;
-    for (std::size_t j = 0; j < boxes.size(); ++j) {
-      // A pair of two sampled boxes is met twice.
-      if ((sampled[j] && j <= i) || !is_present(boxes[j]) || !overlap(boxes[i], boxes[j])) continue;
-      expected.push_back({BoxId(std::min(i, j)), BoxId(std::max(i, j))});
-    }
-  }
-  std::sort(expected.begin(), expected.end());
+  for (const std::size_t i : sample) sampled[i] = true;
+  const std::vector<Pair> expected = reference_pairs_of<D, Real>(boxes, sample);
   std::vector<Pair> found;
   std::ranges::copy_if(pairs, std::back_inserter(found),
                        [&](Pair pair) { return sampled[index(pair.first)] || sampled[index(pair.second)]; });
@@ -75,28 +68,32 @@ std::uint64_t hash_of(std::span<const Pair> pairs) noexcept {
   return sum;
 }
 
-std::vector<std::size_t> sample_of(std::size_t size, std::size_t count) {
+std::vector<std::size_t> sample_of(std::size_t size, std::size_t count, std::uint64_t seed) {
   std::vector<std::size_t> all(size);
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (size <= count) return all;
   std::vector<std::size_t> chosen;
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(seed);
   std::ranges::sample(all, std::back_inserter(chosen), static_cast<std::ptrdiff_t>(count), random);
   return chosen;
 }
 
 template std::unique_ptr<PairFinder<2, float>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<2, float>(BoxSpan<2, float>) const;
-template std::optional<Divergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>);
+template std::optional<Divergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>,
+                                                          std::uint64_t);
 template std::unique_ptr<PairFinder<2, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<2, double>(BoxSpan<2, double>) const;
-template std::optional<Divergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>);
+template std::optional<Divergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>,
+                                                           std::uint64_t);
 template std::unique_ptr<PairFinder<3, float>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, float>(BoxSpan<3, float>) const;
-template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>);
+template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>,
+                                                          std::uint64_t);
 template std::unique_ptr<PairFinder<3, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>) const;
-template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>);
+template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>,
+                                                           std::uint64_t);
 
 template <int D, typename Real>
 void check_pair_count(BoxSpan<D, Real> boxes) {

@@ -16,10 +16,6 @@
 
 namespace broadside::lab {
 
-/// The most boxes on which a search, and each frame of a history, is compared with the definition.
-inline constexpr std::size_t most_boxes_by_definition = 20'000;
-inline constexpr std::size_t most_tracked_boxes_by_definition = 5'000;
-
 /// How many boxes are compared with all others where a reference is not the definition.
 inline constexpr std::size_t sampled_boxes = 200;
 
@@ -55,16 +51,18 @@ class Reference {
 };
 
 /// Compares sampled boxes with all others by the definition: what differs first from `pairs`, or empty. Where
-/// the boxes are no more than the sample all are compared. Cost: the sample times the boxes.
+/// the boxes are no more than the sample all are compared. `seed` is the sample's. Cost: the sample times the
+/// boxes.
 template <int D, typename Real = float>
-std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs);
+std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
+                                       std::uint64_t seed = 1);
 
 /// The hash of a set of pairs, as PairHasher computes it.
 std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;
 
-/// `count` of the numbers below `size`, or all if they are fewer, chosen at random but always the same;
-/// ascending.
-std::vector<std::size_t> sample_of(std::size_t size, std::size_t count);
+/// `count` of the numbers below `size`, or all if they are fewer, chosen at random but always the same for a
+/// seed; ascending.
+std::vector<std::size_t> sample_of(std::size_t size, std::size_t count, std::uint64_t seed = 1);
 
 /// Throws std::runtime_error where boxes have more than some 250,000,000 pairs (2 GB), as estimated from a
 /// sample.

@@ -9,6 +9,7 @@
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/cases.hpp"
+#include "lab/measure/evidence.hpp"
 #include "lab/measure/expected_events.hpp"
 #include "lab/measure/memory.hpp"
 #include "lab/measure/rounds.hpp"
@@ -54,6 +55,10 @@ class TrackCase {
         extremes_.boxes = std::max(extremes_.boxes, step.size);
       }
     }
+    // What checking a whole history may cost, in searches.
+    constexpr double searches = 4;
+    const auto boxes = static_cast<double>(benchmark.effort.definition_boxes);
+    is_by_definition_ = tests_by_definition(inputs[0]) <= searches * boxes * boxes / 2;
   }
 
   std::vector<Measurement> run() {
@@ -68,6 +73,9 @@ class TrackCase {
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
     }
+    std::vector<Reference> references;
+    for (const auto& known : expectations_) references.push_back(known->reference);
+    count_agreement(measurements_, references);
     return std::move(measurements_);
   }
 
@@ -245,20 +253,39 @@ class TrackCase {
   /// What the participant must report on the input; computed when first asked for.
   const ExpectedEvents& expectation(TrackParticipant<D, Real>& participant, std::size_t input) {
     const Reference reference(*participant.entry->algorithm, benchmark_.known, case_.boxes,
-                              most_tracked_boxes_by_definition);
-    participant.measurement->verified_by = reference.text();
+                              is_by_definition_ ? case_.boxes : 0);
+    participant.measurement->evidence = Evidence{reference.is_definition()};
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
-    expectations_.push_back(std::make_unique<InputEvents>(
-        InputEvents{reference, input, expected_events(reference, inputs_[input])}));
+    ExpectedEvents events = expected_events(reference, inputs_[input]);
+    for (const auto& known : expectations_) {
+      if (known->input == input && events.fault.empty())
+        events.fault = disagreement(reference, events, *known);
+    }
+    expectations_.push_back(std::make_unique<InputEvents>(InputEvents{reference, input, std::move(events)}));
     return expectations_.back()->events;
+  }
+
+  /// What a reference says otherwise than another one on the same input; empty if they agree.
+  std::string disagreement(const Reference& reference, const ExpectedEvents& events,
+                           const InputEvents& other) const {
+    for (std::size_t frame = 0; frame < events.frames.size(); ++frame) {
+      if (std::string fault = difference<D, Real>(
+              events.frames[frame], other.events.frames[frame],
+              fmt::format("reference: {} beside {}", reference.text(), other.reference.text()), frame,
+              inputs_[other.input].boxes);
+          !fault.empty())
+        return fault;
+    }
+    return {};
   }
 
   const Case& case_;
   Histories<D, Real> inputs_;
   const Benchmark& benchmark_;
   Extremes extremes_;
+  bool is_by_definition_ = false;
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<TrackParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<InputEvents>> expectations_;

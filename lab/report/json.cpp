@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "broadside/executor.hpp"
-
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/measure/steadiness.hpp"
@@ -25,10 +23,11 @@ Json json_of(const std::optional<PairedRatio>& ratio) {
           {"median", ratio->median},
           {"low", interval ? Json(interval->low) : Json()},
           {"high", interval ? Json(interval->high) : Json()},
-          {"rounds", ratio->rounds}};
+          {"rounds", ratio->rounds},
+          {"processes", ratio->processes}};
 }
 
-Json measurement_json(const CaseResult& result, const Measurement& measurement) {
+Json measurement_json(const CaseResult& result, const Measurement& measurement, Samples kept) {
   const Case& of = result.of;
   const std::vector<double>& samples = measurement.samples_ms;
   const bool timed = !samples.empty();
@@ -51,19 +50,25 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["kind"] = name(measurement.kind);
   json["mode"] = of.mode == Mode::find ? "find" : "track";
   json["threads"] = measurement.threads;
-  json["target"] = measurement.kind == AlgorithmKind::own ? Json(instruction_set()) : Json();
+  json["target"] = or_null(measurement.target);
   json["pairs"] = or_null(measurement.pairs);
   json["pair_hash"] = measurement.pair_hash ? Json(fmt::format("{:016x}", *measurement.pair_hash)) : Json();
   json["verified"] =
       measurement.outcome == Outcome::skipped ? Json() : Json(measurement.outcome == Outcome::verified);
-  json["verified_by"] = or_null(measurement.verified_by);
+  const auto& evidence = measurement.evidence;
+  const bool verified = evidence && measurement.outcome == Outcome::verified;
+  json["verified_by"] = verified ? Json(evidence->text()) : Json();
+  json["agreeing_structures"] = verified ? Json(evidence->structures) : Json();
+  json["agreeing_libraries"] = verified ? Json(evidence->libraries) : Json();
   json["skipped"] = or_null(measurement.reason);
+  json["estimated_ms"] = or_null(measurement.estimated_ms);
   json["rounds"] = samples.size() / measurement.samples_a_round;
   json["median_ms"] = timed ? Json(time_of(measurement)) : Json();
   json["min_ms"] = timed ? Json(std::ranges::min(samples)) : Json();
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
   json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
-  json["samples_ms"] = timed ? Json(samples) : Json();
+  json["samples_ms"] = timed && kept == Samples::keep ? Json(samples) : Json();
+  if (!measurement.rounds_of_processes.empty()) json["rounds_of_processes"] = measurement.rounds_of_processes;
   json["unsteady"] = timed ? Json(is_unsteady(of, measurement)) : Json();
   json["build_ms"] = timed ? or_null(measurement.build_ms) : Json();
   json["ns_per_box"] =
@@ -81,26 +86,45 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   return json;
 }
 
-}  // namespace
-
-std::string json_of(const Comparison& comparison, std::span<const std::string> command) {
-  // One measurement a line: short, and readable where two results are compared.
-  std::string text = fmt::format(
-      "{{\n\"schema\": \"broadside.results/2\",\n\"date\": \"{}\",\n\"machine\": {},\n\"build\": {},\n",
-      today(), json_text(json_of(this_machine())), json_text(json_of(this_build())));
-  text += fmt::format(
-      "\"command\": {},\n\"stopped\": {},\n\"processor_share\": {},\n\"busy\": {},\n\"measurements\": [",
-      json_text(std::vector<std::string>(command.begin(), command.end())), comparison.stopped,
-      json_text(comparison.processor_share), is_busy(comparison.processor_share));
+/// The fields of one machine's results, one measurement a line: short, and readable where two results are
+/// compared.
+std::string fields_of(const Results& results, Samples samples) {
+  const Comparison& comparison = results.comparison;
+  std::string text = fmt::format("\"date\": {},\n\"machine\": {},\n\"build\": {},\n",
+                                 json_text(results.processes.back().date),
+                                 json_text(json_of(results.machine)), json_text(json_of(results.build)));
+  text += fmt::format("\"command\": {},\n\"stopped\": {},\n\"processor_share\": {},\n\"busy\": {},\n",
+                      json_text(results.command), comparison.stopped, json_text(comparison.processor_share),
+                      is_busy(comparison.processor_share));
+  if (results.processes.size() > 1) {
+    Json processes = Json::array();
+    for (const ProcessRun& process : results.processes)
+      processes.push_back({{"date", process.date}, {"processor_share", process.processor_share}});
+    text += fmt::format("\"processes\": {},\n", json_text(processes));
+  }
+  text += "\"measurements\": [";
   std::string_view separator = "\n";
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {
       text += separator;
-      text += json_text(measurement_json(result, measurement));
+      text += json_text(measurement_json(result, measurement, samples));
       separator = ",\n";
     }
   }
-  return text + "\n]\n}\n";
+  return text + "\n]";
+}
+
+}  // namespace
+
+std::string json_of(std::span<const Results> machines, Samples samples) {
+  std::string text = "{\n\"schema\": \"broadside.results/2\",\n" + fields_of(machines[0], samples);
+  std::string_view separator = ",\n\"other_machines\": [\n{\n";
+  for (const Results& other : machines.subspan(1)) {
+    text += separator;
+    text += fields_of(other, samples) + "\n}";
+    separator = ",\n{\n";
+  }
+  return text + (machines.size() > 1 ? "]\n}\n" : "\n}\n");
 }
 
 }  // namespace broadside::lab

@@ -1,18 +1,24 @@
-// A comparison as JSON, by the schema "broadside.results/2".
+// Results as JSON.
 #pragma once
 
 #include <span>
 #include <string>
 
-#include "lab/measure/compare.hpp"
+#include "lab/report/results.hpp"
 
 namespace broadside::lab {
 
-/// One object: schema, date, machine, build, command, whether the comparison was stopped before its end, how
-/// much of a processor the run had, and a flat list of measurements, every field in each of them, null where
-/// it is not known. docs/benchmarking.md and docs/schemas/ say what each field is. Hashes are hexadecimal
-/// texts, since a JSON number does not hold 64 bits. `command` is the program's arguments, the program itself
-/// first.
-std::string json_of(const Comparison& comparison, std::span<const std::string> command);
+/// Whether JSON holds every sample, or null in their place.
+enum class Samples { keep, leave_out };
+
+/// One object by the schema "broadside.results/2": date, machine, build, command, whether the comparison was
+/// stopped before its end, how much of a processor the run had, and a flat list of measurements, null where
+/// something is not known; then the same for each other machine. docs/benchmarking.md and docs/schemas/ say
+/// what each field is. Hashes are hexadecimal texts, since a JSON number does not hold 64 bits. There is at
+/// least one machine.
+std::string json_of(std::span<const Results> machines, Samples samples = Samples::keep);
+inline std::string json_of(const Results& results, Samples samples = Samples::keep) {
+  return json_of(std::span(&results, 1), samples);
+}
 
 }  // namespace broadside::lab

@@ -64,8 +64,8 @@ std::string heading(const CaseResult& result) {
                         of.mode == Mode::track ? " at the end" : "");
     break;
   }
-  const std::string references = references_of(result);
-  if (!references.empty()) text += ", checked against " + references;
+  const std::string evidence = evidence_of(result);
+  if (!evidence.empty()) text += ", verified " + evidence;
   return text + "\n";
 }
 
@@ -220,28 +220,24 @@ std::string ratio_text(double ratio, const std::optional<Interval>& interval) {
   return interval ? fmt::format("{} ({})", ratio_text(ratio), interval_text(interval)) : ratio_text(ratio);
 }
 
-std::string references_of(const CaseResult& result) {
-  std::vector<std::string> names;
-  std::string addition;
+std::string evidence_of(const CaseResult& result) {
+  std::optional<Evidence> weakest;
   for (const Measurement& measurement : result.measurements) {
-    const std::string& by = measurement.verified_by;
-    const std::size_t end = std::min(by.find(' '), by.size());
-    if (by.empty() || std::ranges::find(names, by.substr(0, end)) != names.end()) continue;
-    names.push_back(by.substr(0, end));
-    addition = by.substr(end);
+    if (measurement.outcome != Outcome::verified || !measurement.evidence) continue;
+    weakest = weakest ? weaker(*weakest, *measurement.evidence) : *measurement.evidence;
   }
-  return fmt::format("{}{}", fmt::join(names, " or "), addition);
+  return weakest ? weakest->text() : "";
 }
 
 std::string verdict_of(const CaseResult& result) {
   const auto failed = std::ranges::count(result.measurements, Outcome::failed, &Measurement::outcome);
   if (failed > 0) return fmt::format("{} FAILED", failed);
-  const std::string references = references_of(result);
-  return references.empty() ? "nothing verified" : references;
+  const std::string evidence = evidence_of(result);
+  return evidence.empty() ? "nothing verified" : evidence;
 }
 
 std::string case_line_heading() {
-  return line("case", "best of ours", "auto over it", "fastest peer", "over the best", "checked against");
+  return line("case", "best of ours", "auto over it", "fastest peer", "over the best", "verified");
 }
 
 std::string case_line(const CaseResult& result) {
@@ -249,13 +245,12 @@ std::string case_line(const CaseResult& result) {
   const Measurement* const own = best_own_of(result);
   const Measurement* const chosen = auto_of(result);
   const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
-  std::string name = name_of(measured);
-  if (measured.mode == Mode::track) name += fmt::format(", {:.3g} % moving", measured.moving * 100);
   const auto ratio = [&](const Measurement* measurement) -> std::string {
     if (measurement == nullptr || measurement == own || !measurement->to_best_own) return "-";
     return ratio_text(measurement->to_best_own->median, measurement->to_best_own->interval);
   };
-  return line(name, name_and_time(own), ratio(chosen), name_and_time(peer), ratio(peer), verdict_of(result));
+  return line(whole_name_of(measured), name_and_time(own), ratio(chosen), name_and_time(peer), ratio(peer),
+              verdict_of(result));
 }
 
 std::string table_of(const CaseResult& result) {

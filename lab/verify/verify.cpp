@@ -2,6 +2,7 @@
 #include "lab/verify/verify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <tuple>
 
@@ -17,17 +18,80 @@ std::string text_of(const Box<D, Real>& box) {
   return fmt::format("[({}), ({})]", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
 }
 
+/// Boxes to be tested by the definition: every test is made, several by one instruction. The bounds lie in an
+/// array each and a block of tests is one loop without a branch, which compilers turn into SIMD. Only blocks
+/// in which a test holds are looked at box by box. No code of the library takes part but overlap().
+template <int D, typename Real>
+class AllTests {
+ public:
+  explicit AllTests(std::span<const Box<D, Real>> boxes) : boxes_(boxes) {
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      for (const Box<D, Real>& box : boxes) {
+        min_[axis].push_back(box.min[axis]);
+        max_[axis].push_back(box.max[axis]);
+      }
+    }
+  }
+
+  /// Calls `visit` with each place from `begin` on whose box overlaps the one at `place`, ascending; the
+  /// place itself counts as any other.
+  template <typename Visit>
+  void for_each_overlap(std::size_t place, std::size_t begin, const Visit& visit) const {
+    const Box<D, Real>& box = boxes_[place];
+    if (!is_present(box)) return;
+    constexpr std::size_t block = 128;
+    for (; begin < boxes_.size(); begin += block) {
+      const std::size_t end = std::min(begin + block, boxes_.size());
+      if (!any_overlaps(box, begin, end)) continue;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (is_present(boxes_[i]) && overlap(box, boxes_[i])) visit(i);
+      }
+    }
+  }
+
+ private:
+  bool any_overlaps(const Box<D, Real>& box, std::size_t begin, std::size_t end) const {
+    unsigned any = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      unsigned both = 1;
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        both &= static_cast<unsigned>(min_[axis][i] <= box.max[axis]);
+        both &= static_cast<unsigned>(box.min[axis] <= max_[axis][i]);
+      }
+      any |= both;
+    }
+    return any != 0;
+  }
+
+  std::span<const Box<D, Real>> boxes_;
+  std::array<std::vector<Real>, D> min_;
+  std::array<std::vector<Real>, D> max_;
+};
+
 }  // namespace
 
 template <int D, typename Real>
 std::vector<Pair> reference_pairs(BoxSpan<D, Real> boxes) {
+  const AllTests<D, Real> tests(boxes);
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!is_present(boxes[i])) continue;
-    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-      if (is_present(boxes[j]) && overlap(boxes[i], boxes[j])) pairs.push_back({BoxId(i), BoxId(j)});
-    }
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    tests.for_each_overlap(i, i + 1, [&](std::size_t j) { pairs.push_back({BoxId(i), BoxId(j)}); });
+  return pairs;
+}
+
+template <int D, typename Real>
+std::vector<Pair> reference_pairs_of(BoxSpan<D, Real> boxes, std::span<const std::size_t> places) {
+  const AllTests<D, Real> tests(boxes);
+  std::vector<bool> is_listed(boxes.size(), false);
+  for (const std::size_t place : places) is_listed[place] = true;
+  std::vector<Pair> pairs;
+  for (const std::size_t i : places) {
+    tests.for_each_overlap(i, 0, [&](std::size_t j) {
+      // A pair of two listed boxes is met twice.
+      if (j != i && !(is_listed[j] && j < i)) pairs.push_back({BoxId(std::min(i, j)), BoxId(std::max(i, j))});
+    });
   }
+  std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
@@ -119,6 +183,7 @@ std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const His
 }
 
 template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
+template std::vector<Pair> reference_pairs_of<2, float>(BoxSpan<2, float>, std::span<const std::size_t>);
 template Divergence explained<2, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<2, float>);
 template std::optional<Divergence> check_finder(PairFinder<2, float>&, BoxSpan<2, float>, std::string_view,
@@ -129,6 +194,7 @@ template std::optional<Divergence> check_events<2, float>(const std::vector<Pair
                                                           std::span<const Pair>, std::span<const Pair>,
                                                           std::string_view, std::size_t, BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
+template std::vector<Pair> reference_pairs_of<2, double>(BoxSpan<2, double>, std::span<const std::size_t>);
 template Divergence explained<2, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<2, double>);
 template std::optional<Divergence> check_finder(PairFinder<2, double>&, BoxSpan<2, double>, std::string_view,
@@ -139,6 +205,7 @@ template std::optional<Divergence> check_events<2, double>(const std::vector<Pai
                                                            std::span<const Pair>, std::span<const Pair>,
                                                            std::string_view, std::size_t, BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
+template std::vector<Pair> reference_pairs_of<3, float>(BoxSpan<3, float>, std::span<const std::size_t>);
 template Divergence explained<3, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<3, float>);
 template std::optional<Divergence> check_finder(PairFinder<3, float>&, BoxSpan<3, float>, std::string_view,
@@ -149,6 +216,7 @@ template std::optional<Divergence> check_events<3, float>(const std::vector<Pair
                                                           std::span<const Pair>, std::span<const Pair>,
                                                           std::string_view, std::size_t, BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
+template std::vector<Pair> reference_pairs_of<3, double>(BoxSpan<3, double>, std::span<const std::size_t>);
 template Divergence explained<3, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<3, double>);
 template std::optional<Divergence> check_finder(PairFinder<3, double>&, BoxSpan<3, double>, std::string_view,

@@ -35,6 +35,11 @@ using BoxSpan = std::type_identity_t<std::span<const Box<D, Real>>>;
 template <int D, typename Real = float>
 std::vector<Pair> reference_pairs(BoxSpan<D, Real> boxes);
 
+/// Those of them that have one of the boxes at `places`, each place given once. Sorted. Cost: a test for each
+/// place and box.
+template <int D, typename Real = float>
+std::vector<Pair> reference_pairs_of(BoxSpan<D, Real> boxes, std::span<const std::size_t> places);
+
 /// Where expected pairs come from, sorted: reference_pairs, or something cheaper that is trusted.
 template <int D, typename Real>
 using ExpectedPairs = std::type_identity_t<std::function<std::vector<Pair>(std::span<const Box<D, Real>>)>>;

@@ -253,7 +253,7 @@ class HistoryCheck {
 
 std::size_t most_by_definition(std::size_t frames) noexcept {
   const double most = std::sqrt(2 * most_tests_by_definition / static_cast<double>(frames));
-  return std::min(static_cast<std::size_t>(most), most_boxes_by_definition);
+  return std::min(static_cast<std::size_t>(most), Effort{}.definition_boxes);
 }
 
 template <int D, typename Real>

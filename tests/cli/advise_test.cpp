@@ -36,7 +36,7 @@ TEST(AdviseVerb, PrintsSignalsRankingAdviceReasonsAndCode) {
   EXPECT_THAT(ended.output,
               AllOf(HasSubstr("3 boxes in 2D, as doubles."), HasSubstr("A box overlaps 0.667 others"),
                     HasSubstr("brute_force"), HasSubstr("verified"), HasSubstr("\nAdvice: "),
-                    HasSubstr("checked against the definition\n"), HasSubstr("\nWhy\n  - "),
+                    HasSubstr("verified by definition\n"), HasSubstr("\nWhy\n  - "),
                     HasSubstr("const std::vector<broadside::DoubleBox2>& boxes")));
 }
 
@@ -73,7 +73,7 @@ TEST(AdviseVerb, WritesAllOfItAsJson) {
   for (const Json& measurement : json["ranking"]) {
     EXPECT_EQ(measurement["verified"], true);
     EXPECT_EQ(measurement["pairs"], 1);
-    EXPECT_EQ(measurement["verified_by"], "the definition");
+    EXPECT_EQ(measurement["verified_by"], "by definition");
   }
 }
 

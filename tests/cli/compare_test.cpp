@@ -37,7 +37,7 @@ TEST(CompareVerb, PrintsALineForEachCaseAndASummary) {
   const Ended ended = run(small);
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(testing::StartsWith("case "), HasSubstr("\nuniform, 2D, 200 boxes  "),
-                                  HasSubstr("\nlattice, 3D, 300 boxes  "), HasSubstr("  the definition\n"),
+                                  HasSubstr("\nlattice, 3D, 300 boxes  "), HasSubstr("  by definition\n"),
                                   HasSubstr("All 8 cases"), HasSubstr("measurements, all verified\n"),
                                   HasSubstr("\ndetails: --details prints each case's table; ")));
   EXPECT_THAT(ended.output, Not(AnyOf(HasSubstr("ns a box"), HasSubstr("\x1b"))));
@@ -47,10 +47,9 @@ TEST(CompareVerb, PrintsALineForEachCaseAndASummary) {
 TEST(CompareVerb, PrintsATableForEachCaseWhereDetailsAreAskedFor) {
   const Ended ended = run(with(small, {"--details"}));
   EXPECT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output,
-              AllOf(HasSubstr("uniform, 2D, 200 boxes, "), HasSubstr("lattice, 3D, 300 boxes, "),
-                    HasSubstr("checked against the definition"), HasSubstr("All 8 cases"),
-                    HasSubstr("measurements, all verified\n")));
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("uniform, 2D, 200 boxes, "),
+                                  HasSubstr("lattice, 3D, 300 boxes, "), HasSubstr("verified by definition"),
+                                  HasSubstr("All 8 cases"), HasSubstr("measurements, all verified\n")));
 }
 
 TEST(CompareVerb, WritesJsonWithAMeasurementForEachLineOfTheTable) {
@@ -147,6 +146,50 @@ TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenNoCaseHadEnded) {
   EXPECT_THAT(ended.errors, HasSubstr("nothing is written to"));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
   EXPECT_EQ(text_of(file), "older");
+}
+
+TEST(CompareVerb, MergesItsRunsAndKeepsTheSamplesApart) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> files = {folder.file("1.json"), folder.file("2.json")};
+  for (const std::string& file : files) ASSERT_EQ(run(with(small, {"--json", file})).status, 0);
+  const std::string merged = folder.file("merged.json");
+  const std::string samples = folder.file("samples.json");
+  const Ended ended = run({"compare", "--merge", files[0], files[1], "--json", merged, "--samples", samples});
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, AllOf(HasSubstr(": 2 processes, "), HasSubstr("All 8 cases")));
+  const Json summary = Json::parse(text_of(merged));
+  Json archive = Json::parse(text_of(samples));
+  EXPECT_TRUE(summary["measurements"][0]["samples_ms"].is_null());
+  for (Json& measurement : archive["measurements"]) {
+    EXPECT_EQ(measurement["samples_ms"].size(), measurement["rounds"]);
+    measurement["samples_ms"] = nullptr;
+  }
+  EXPECT_EQ(archive, summary);
+
+  // An archive is merged as what it was made of, gzipped too; the summary has no samples to merge.
+  EXPECT_EQ(shell("gzip -kn " + samples).status, 0);
+  const std::string again = folder.file("again.json");
+  EXPECT_EQ(run({"compare", "--merge", samples + ".gz", "--json", again}).status, 0);
+  EXPECT_EQ(text_of(again), text_of(samples));
+  EXPECT_THAT(run({"compare", "--merge", merged}).errors,
+              HasSubstr("samples_ms is null; expected the samples"));
+}
+
+TEST(CompareVerb, WritesNothingWhereItCannotMerge) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("1.json");
+  ASSERT_EQ(run(with(small, {"--json", file})).status, 0);
+  const std::string merged = folder.put("merged.json", "older");
+  const Ended twice = run({"compare", "--merge", file, file, "--json", merged});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.errors, HasSubstr("1.json: holds a run that is in "));
+  EXPECT_EQ(text_of(merged), "older");
+  EXPECT_THAT(run({"compare", "--merge", file, "--long"}).errors, HasSubstr("--long says what to measure"));
+  EXPECT_THAT(run({"compare", "--merge", file, "--json", file}).errors, HasSubstr("which is the input"));
+  EXPECT_THAT(run({"compare", "uniform", "--samples", folder.file("s.json")}).errors,
+              HasSubstr("expected both or neither"));
+  EXPECT_THAT(run({"compare", "uniform", "--check", "all"}).errors,
+              HasSubstr("--check is 'all'; expected definition= and a number of boxes"));
 }
 
 TEST(CompareVerb, TakesItsBoxesFromStandardInput) {

@@ -86,6 +86,8 @@ export interface Ratio {
   high: number | null;
   /** Rounds in which both took part; null where it is not known. */
   rounds: number | null;
+  /** Processes in which these were; not in results of before processes were merged. */
+  processes?: number;
 }
 
 /** One algorithm in one case. What was skipped has no times. */
@@ -108,8 +110,14 @@ export interface Measurement {
   pairs: number | null;
   pair_hash: string | null;
   verified: boolean | null;
+  /** "by definition" or "cross-checked by 9 structures of 6 libraries"; in older results what it was compared with. */
   verified_by: string | null;
+  /** Algorithms and libraries of the case that gave the same pairs; not in older results. */
+  agreeing_structures?: number | null;
+  agreeing_libraries?: number | null;
   skipped: string | null;
+  /** Where it was skipped for its budget; not in older results. */
+  estimated_ms?: number | null;
   /** In how many rounds it was timed; null where it is not known. */
   rounds: number | null;
   median_ms: number | null;
@@ -117,6 +125,8 @@ export interface Measurement {
   p99_ms: number | null;
   max_ms: number | null;
   samples_ms: number[] | null;
+  /** Where processes were merged: the rounds of each, in the order of samples_ms. */
+  rounds_of_processes?: number[];
   /** Each null where there is nothing to compare with. */
   ratio_to_fastest: Ratio | null;
   ratio_to_best_own: Ratio | null;
@@ -136,8 +146,8 @@ export interface Measurement {
 
 export type RatioName = "ratio_to_fastest" | "ratio_to_best_own" | "ratio_to_fastest_peer";
 
-export interface Comparison {
-  schema: "broadside.results/2";
+/** The results of one machine. */
+export interface MachineResults {
   /** "2026-11-21"; null where it is not known. */
   date: string | null;
   machine: Machine;
@@ -147,5 +157,13 @@ export interface Comparison {
   /** Processor time over wall time of the run, about 1 for one thread; null where it is not known. */
   processor_share: number | null;
   busy: boolean | null;
+  /** The processes that were merged; absent where there was one. */
+  processes?: { date: string; processor_share: number }[];
   measurements: Measurement[];
+}
+
+export interface Comparison extends MachineResults {
+  schema: "broadside.results/2";
+  /** The same cases on other machines, where results were merged. */
+  other_machines?: MachineResults[];
 }

@@ -19,7 +19,9 @@ import type { Doubts } from "./summary.ts";
 function outcomeOf(measurement: Measurement): string {
   if (measurement.verified === null) return "skipped";
   if (!measurement.verified) return "FAILED";
-  return measurement.unsteady === true ? "verified, unsteady" : "verified";
+  // Older results name what the pairs were compared with.
+  const by = measurement.agreeing_libraries == null ? "verified" : `verified ${measurement.verified_by}`;
+  return measurement.unsteady === true ? `${by}, unsteady` : by;
 }
 
 function plural(count: number, one: string): string {

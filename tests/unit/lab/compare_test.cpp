@@ -59,7 +59,10 @@ TEST(Compare, VerifiesAndTimesEveryAlgorithmOnAStillScene) {
   make_finder<2>("brute_force")->find(boxes, hasher);
   for (const Measurement& measurement : result.measurements) {
     EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
-    EXPECT_EQ(measurement.verified_by, "the definition");
+    ASSERT_TRUE(measurement.evidence);
+    EXPECT_EQ(measurement.evidence->text(), "by definition");
+    EXPECT_EQ(measurement.evidence->structures, result.measurements.size() - 1) << "all but auto";
+    EXPECT_EQ(measurement.evidence->libraries, 1u);
     EXPECT_GE(measurement.samples_ms.size(), 3u);
     EXPECT_EQ(measurement.pairs, hasher.count());
     EXPECT_EQ(measurement.pair_hash, hasher.hash());
@@ -84,6 +87,26 @@ TEST(Compare, TracksAMovingScene) {
                                        {.boxes = 300, .seed = 1, .frames = 5, .moving = 0.2});
   for (const Step<3>& step : history.steps) apply(step, history.boxes);
   EXPECT_EQ(result.measurements[0].pairs, reference_pairs<3>(history.boxes).size());
+}
+
+TEST(Compare, CountsWhatAgreesWhereTheDefinitionIsTooDear) {
+  Algorithm peer = *find_algorithm("brute_force");
+  peer.name = "peer";
+  peer.kind = AlgorithmKind::peer;
+  peer.version = "Another 1.2";
+  Catalogue catalogue;
+  catalogue.add(peer);
+  for (const CaseRequest& request : {small_still, small_moving}) {
+    CompareOptions options = options_for("grid,grid:cell=2,auto,bvh,peer", {request});
+    options.effort.definition_boxes = 100;
+    for (const Measurement& measurement : compare(catalogue, options).cases.at(0).measurements) {
+      ASSERT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
+      // grid, bvh, the peer, and the quadtree that they were compared with.
+      EXPECT_EQ(measurement.evidence->text(), "cross-checked by 4 structures of 2 libraries");
+    }
+    options.effort.definition_boxes = 300;
+    EXPECT_EQ(compare(catalogue, options).cases.at(0).measurements.at(0).evidence->text(), "by definition");
+  }
 }
 
 TEST(Compare, LetsBoxesJumpWhereItIsAskedTo) {

@@ -2,6 +2,7 @@
 #include "lab/measure/reference.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -73,6 +74,42 @@ TEST(CheckSample, FindsARepeatedPairOfASampledBox) {
   std::vector<Pair> pairs = reference_pairs<2>(boxes);
   pairs.insert(pairs.begin(), pairs.front());
   ASSERT_TRUE(check_sample<2>(boxes, pairs));
+}
+
+TEST(CheckSample, LooksAtOtherBoxesForAnotherSeed) {
+  const std::vector<Box2> boxes = some_boxes(1'000);
+  const std::vector<Pair> all = reference_pairs<2>(boxes);
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    std::vector<Pair> pairs = all;
+    pairs.erase(pairs.begin());
+    if (check_sample<2>(boxes, pairs, seed)) ++found;
+  }
+  // 36 % of the samples hold one of the pair's boxes.
+  EXPECT_GT(found, 5u);
+  EXPECT_LT(found, 30u);
+}
+
+TEST(ReferencePairs, AreWhatEachTestSays) {
+  std::vector<Box2> boxes = some_boxes(700);
+  boxes[3] = absent_box<2>();
+  boxes[130] = {{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
+  boxes[131] = boxes[127];
+  boxes[500].min = boxes[131].max;
+  boxes[500].max = boxes[131].max;
+  std::vector<Pair> expected;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      if (is_present(boxes[i]) && is_present(boxes[j]) && overlap(boxes[i], boxes[j]))
+        expected.push_back({BoxId(i), BoxId(j)});
+    }
+  }
+  EXPECT_EQ(reference_pairs<2>(boxes), expected);
+  const std::vector<std::size_t> some = {3, 130, 131};
+  std::erase_if(expected, [&](Pair pair) {
+    return std::ranges::count(some, index(pair.first)) + std::ranges::count(some, index(pair.second)) == 0;
+  });
+  EXPECT_EQ(reference_pairs_of<2>(boxes, some), expected);
 }
 
 TEST(SampleOf, DrawsDifferentNumbersInOrderAndAlwaysTheSame) {

@@ -22,7 +22,7 @@ Measurement timed(std::string algorithm, std::vector<double> samples_ms) {
   measurement.algorithm = std::move(algorithm);
   measurement.version = "0.1.0";
   measurement.outcome = Outcome::verified;
-  measurement.verified_by = "brute_force";
+  measurement.evidence = Evidence{true, 3, 2};
   measurement.samples_ms = std::move(samples_ms);
   measurement.pairs = 1'234;
   measurement.pair_hash = 0xfedcba9876543210U;
@@ -36,7 +36,7 @@ Measurement failed(std::string algorithm) {
   Measurement measurement;
   measurement.algorithm = std::move(algorithm);
   measurement.outcome = Outcome::failed;
-  measurement.verified_by = "brute_force";
+  measurement.evidence = Evidence{true, 3, 2};
   measurement.reason = "mine: frame 0, search of seed 1: pair (3, 7) is missing; expected to be reported";
   return measurement;
 }
@@ -80,7 +80,7 @@ TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
   const auto lines = lines_of(table_of(still_case(
       {skipped("slow"), timed("second", {8, 9, 10}), failed("wrong"), timed("first", {4, 4.5, 5})})));
   ASSERT_EQ(lines.size(), 6u);
-  EXPECT_EQ(lines[0], "uniform, 2D, 10,000 boxes, 1,234 pairs, checked against brute_force");
+  EXPECT_EQ(lines[0], "uniform, 2D, 10,000 boxes, 1,234 pairs, verified by definition");
   EXPECT_THAT(lines[2], StartsWith("  first "));
   EXPECT_THAT(lines[3], StartsWith("  second "));
   EXPECT_THAT(lines[4], StartsWith("  wrong "));
@@ -127,7 +127,7 @@ TEST(CaseLine, NamesOurBestAutoTheFastestPeerTheLeadAndTheCheck) {
   EXPECT_EQ(case_line(result).find('\n'), case_line(result).size() - 1);
   EXPECT_THAT(case_line(result),
               testing::MatchesRegex("uniform, 2D, 10,000 boxes +ours 2.00 ms +1.1 \\(1.1 to 1.1\\) +"
-                                    "theirs 8.00 ms +4.[0-5] \\(4.0 to 4.5\\) +brute_force\n"));
+                                    "theirs 8.00 ms +4.[0-5] \\(4.0 to 4.5\\) +by definition\n"));
   EXPECT_THAT(case_line(still_case({failed("wrong")})), HasSubstr("1 FAILED"));
   EXPECT_THAT(case_line(still_case({skipped("slow")})), HasSubstr("nothing verified"));
 }
@@ -180,13 +180,15 @@ TEST(Table, TellsOfMotionWhatAMoverCostsAndWhatAPeerTakes) {
   EXPECT_EQ(lines[5], "  ours: incremental, since few move");
 }
 
-TEST(Table, NamesEachReferenceOnce) {
-  CaseResult result = still_case({timed("grid", {1}), timed("quadtree", {2}), timed("brute_force", {3})});
-  result.measurements[0].verified_by = "quadtree + 200 sampled boxes";
-  result.measurements[1].verified_by = "sweep_and_prune + 200 sampled boxes";
-  result.measurements[2].verified_by = "quadtree + 200 sampled boxes";
+TEST(Table, SaysOnceHowMuchAgreesWhereACaseIsCrossChecked) {
+  CaseResult result = still_case({timed("grid", {1}), timed("quadtree", {2}), failed("wrong")});
+  for (Measurement& measurement : result.measurements) measurement.evidence = Evidence{false, 5, 1};
   EXPECT_THAT(lines_of(table_of(result))[0],
-              HasSubstr("checked against quadtree or sweep_and_prune + 200 sampled boxes"));
+              HasSubstr("verified cross-checked by 5 structures of 1 library"));
+  result.measurements[2].evidence = Evidence{true};
+  EXPECT_THAT(verdict_of(result), "1 FAILED");
+  result.measurements.pop_back();
+  EXPECT_EQ(verdict_of(result), "cross-checked by 5 structures of 1 library");
 }
 
 TEST(Summary, MeansTheRatiosAndCountsTheWins) {
@@ -220,7 +222,7 @@ using Json = nlohmann::ordered_json;
 Json parsed(const std::vector<Measurement>& measurements) {
   Comparison comparison;
   comparison.cases = {still_case(measurements)};
-  return Json::parse(json_of(comparison, std::vector<std::string>{"broadside", "compare"}));
+  return Json::parse(json_of(results_of(comparison, std::vector<std::string>{"broadside", "compare"})));
 }
 
 TEST(Summary, SaysHowFarAutoIsFromTheBestOfOurOthers) {
@@ -253,8 +255,9 @@ TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {
   EXPECT_THAT(fields, testing::ElementsAre(
                           "scene", "scene_parameters", "seeds", "dimension", "boxes", "frames", "moving",
                           "drift", "teleport", "algorithm", "version", "kind", "mode", "threads", "target",
-                          "pairs", "pair_hash", "verified", "verified_by", "skipped", "rounds", "median_ms",
-                          "min_ms", "p99_ms", "max_ms", "samples_ms", "unsteady", "build_ms", "ns_per_box",
+                          "pairs", "pair_hash", "verified", "verified_by", "agreeing_structures",
+                          "agreeing_libraries", "skipped", "estimated_ms", "rounds", "median_ms", "min_ms",
+                          "p99_ms", "max_ms", "samples_ms", "unsteady", "build_ms", "ns_per_box",
                           "ns_per_mover", "ratio_to_fastest", "ratio_to_best_own", "ratio_to_fastest_peer",
                           "floor_ms", "tests", "references", "explanation", "own_bytes", "peak_bytes"));
 }
@@ -288,7 +291,8 @@ TEST(JsonResults, HoldHowBoxesMovedAndWhatTheFirstFrameTook) {
   of.drift = 0.2;
   comparison.cases[0].measurements[0].build_ms = 5;
   comparison.cases[0].measurements[0].samples_a_round = 3;
-  const Json measurements = Json::parse(json_of(comparison, std::vector<std::string>{}))["measurements"];
+  const Json measurements =
+      Json::parse(json_of(results_of(comparison, std::vector<std::string>{})))["measurements"];
   EXPECT_EQ(measurements[0]["mode"], "track");
   EXPECT_EQ(measurements[0]["drift"], 0.2);
   EXPECT_TRUE(measurements[0]["teleport"].is_null());
@@ -306,17 +310,22 @@ TEST(JsonResults, HoldRatiosOfTheRoundsThatBothTookPartIn) {
                                       timed("theirs", {8, 8})};
   entries[2].kind = AlgorithmKind::peer;
   const Json json = parsed(entries);
-  EXPECT_EQ(json["measurements"][0]["ratio_to_best_own"],
-            (Json{{"of", "grid"}, {"median", 1.5}, {"low", 1.5}, {"high", 1.5}, {"rounds", 6}}));
+  EXPECT_EQ(
+      json["measurements"][0]["ratio_to_best_own"],
+      (Json{{"of", "grid"}, {"median", 1.5}, {"low", 1.5}, {"high", 1.5}, {"rounds", 6}, {"processes", 1}}));
   EXPECT_EQ(json["measurements"][0]["ratio_to_fastest_peer"]["median"], 3.0 / 8);
-  EXPECT_EQ(json["measurements"][2]["ratio_to_fastest"],
-            (Json{{"of", "grid"}, {"median", 4.0}, {"low", nullptr}, {"high", nullptr}, {"rounds", 2}}));
+  EXPECT_EQ(json["measurements"][2]["ratio_to_fastest"], (Json{{"of", "grid"},
+                                                               {"median", 4.0},
+                                                               {"low", nullptr},
+                                                               {"high", nullptr},
+                                                               {"rounds", 2},
+                                                               {"processes", 1}}));
 }
 
 TEST(JsonResults, SayHowMuchOfAProcessorTheRunHad) {
   Comparison comparison;
   comparison.processor_share = 0.5;
-  const Json json = Json::parse(json_of(comparison, std::vector<std::string>{}));
+  const Json json = Json::parse(json_of(results_of(comparison, std::vector<std::string>{})));
   EXPECT_EQ(json["processor_share"], 0.5);
   EXPECT_EQ(json["busy"], true);
 }
@@ -325,7 +334,7 @@ TEST(JsonResults, HaveTheFloorOfTheCaseInEachMeasurement) {
   Comparison comparison;
   comparison.cases = {still_case({timed("grid", {4}), failed("wrong")}), still_case({timed("grid", {4})})};
   comparison.cases[0].floor_ms = {3, 1, 2};
-  const Json json = Json::parse(json_of(comparison, std::vector<std::string>{}));
+  const Json json = Json::parse(json_of(results_of(comparison, std::vector<std::string>{})));
   EXPECT_EQ(json["measurements"][0]["floor_ms"], 2);
   EXPECT_EQ(json["measurements"][1]["floor_ms"], 2);
   EXPECT_TRUE(json["measurements"][2]["floor_ms"].is_null());
@@ -349,7 +358,7 @@ TEST(JsonResults, StandTextThatIsNotUtf8) {
   Comparison comparison;
   comparison.cases = {still_case({timed("grid", {1})})};
   comparison.cases[0].of.scene = "caf\xe9.csv";
-  EXPECT_TRUE(Json::accept(json_of(comparison, std::vector<std::string>{"caf\xe9"})));
+  EXPECT_TRUE(Json::accept(json_of(results_of(comparison, std::vector<std::string>{"caf\xe9"}))));
 }
 
 }  // namespace
