@@ -1,0 +1,287 @@
+// Algorithms whose output is corrupted on purpose, once: a pair dropped, doubled, or swapped for another.
+// They say how much of what can go wrong `broadside compare` sees.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/sinks.hpp"
+
+#include "lab/measure/cases.hpp"
+#include "lab/measure/compare.hpp"
+
+namespace broadside::bench {
+
+/// What happens to one pair: of a search's pairs, or of a frame's events. PairTracker delivers each event of
+/// a frame once whatever an algorithm writes, so a doubled event is one that comes again in the next frame.
+enum class Fault { dropped, doubled, swapped };
+
+/// A corruption, drawn by its number, and how far it is.
+struct Corruption {
+  Corruption(std::uint64_t number, std::size_t of_calls)
+      : random(number), call(random() % of_calls), fault(static_cast<Fault>(random() % 3)) {}
+
+  std::mt19937_64 random;
+  std::size_t
+      call;  ///< the first search or update, counted over all, in which there may be a pair to corrupt
+  Fault fault;
+  std::size_t calls = 0;  ///< that were made
+  bool is_applied = false;
+  std::vector<Pair> again{};  ///< what the next frame reports once more
+};
+
+/// Corrupts one of the sorted pairs of `boxes` boxes, of which there is at least one.
+inline void corrupt(std::vector<Pair>& pairs, Fault fault, std::size_t boxes, std::mt19937_64& random) {
+  const Pair from{BoxId(random() % boxes), BoxId(random() % boxes)};
+  auto found = std::ranges::lower_bound(pairs, from);
+  if (found == pairs.end()) found = pairs.begin();
+  const Pair chosen = *found;
+  if (fault == Fault::doubled) {
+    pairs.push_back(chosen);
+    return;
+  }
+  Pair other = chosen;
+  while (std::ranges::find(pairs, other) != pairs.end()) {
+    const std::size_t a = random() % boxes;
+    const std::size_t b = random() % boxes;
+    if (a != b) other = {BoxId(std::min(a, b)), BoxId(std::max(a, b))};
+  }
+  if (fault == Fault::swapped)
+    *found = other;
+  else
+    pairs.erase(found);
+}
+
+/// The pairs that `write` gives a sink, sorted, each once.
+template <typename Write>
+std::vector<Pair> sorted_pairs(const Write& write) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  write(collector);
+  collector.flush();
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+inline void add_all(const std::vector<Pair>& pairs, PairSink& sink) {
+  for (const Pair pair : pairs) sink.add(pair.first, pair.second);
+}
+
+/// A search by another algorithm, in which `spoil` may change the pairs.
+template <int D, typename Spoil>
+class SpoiltSearch final : public PairFinder<D> {
+ public:
+  SpoiltSearch(std::unique_ptr<PairFinder<D>> real, Spoil spoil)
+      : real_(std::move(real)), spoil_(std::move(spoil)) {}
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& sink) override {
+    std::vector<Pair> pairs = sorted_pairs([&](PairSink& all) { real_->find(boxes, all); });
+    spoil_(pairs, boxes.size());
+    add_all(pairs, sink);
+  }
+
+  std::unique_ptr<PairFinder<D>> real_;
+  Spoil spoil_;
+};
+
+template <int D, typename Spoil>
+std::unique_ptr<PairFinder<D>> spoilt_search(const std::string& base, Spoil spoil) {
+  return std::make_unique<SpoiltSearch<D, Spoil>>(make_finder<D>(base), std::move(spoil));
+}
+
+/// A tracker over another one, which corrupts the events of one frame.
+template <int D>
+class CorruptedTracker final : public PairTracker<D> {
+ public:
+  CorruptedTracker(std::unique_ptr<PairTracker<D>> real, Corruption& corruption, std::size_t boxes)
+      : real_(std::move(real)), corruption_(corruption), boxes_(boxes) {}
+
+ private:
+  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    std::vector<Pair> ends;
+    std::vector<Pair> begins = sorted_pairs([&](PairSink& all) {
+      ends = sorted_pairs([&](PairSink& others) { this->update_with(*real_, change, all, others); });
+    });
+    if (change.now.size() == boxes_) spoil(begins, ends);
+    add_all(begins, begun);
+    add_all(ends, ended);
+  }
+
+  void spoil(std::vector<Pair>& begins, std::vector<Pair>& ends) {
+    Corruption& corruption = corruption_;
+    for (const Pair pair : std::exchange(corruption.again, {})) {
+      // Where it happens to be an event of this frame as well, nothing is wrong yet.
+      if (std::ranges::find(begins, pair) != begins.end())
+        corruption.again.push_back(pair);
+      else
+        corruption.is_applied = true;
+      begins.push_back(pair);
+    }
+    const bool is_due =
+        corruption.calls++ >= corruption.call && !corruption.is_applied && corruption.again.empty();
+    if (!is_due || (begins.empty() && ends.empty())) return;
+    std::vector<Pair>& events =
+        ends.empty() || (!begins.empty() && corruption.random() % 2 == 0) ? begins : ends;
+    if (corruption.fault == Fault::doubled) {
+      corruption.again = {events[corruption.random() % events.size()]};
+      return;
+    }
+    corrupt(events, corruption.fault, boxes_, corruption.random);
+    corruption.is_applied = true;
+  }
+
+  std::unique_ptr<PairTracker<D>> real_;
+  Corruption& corruption_;
+  std::size_t boxes_;
+};
+
+/// The corruptions of one algorithm, by number. Trials on fewer boxes are let alone.
+class Corrupted {
+ public:
+  Corrupted(std::string base, std::size_t boxes, std::size_t calls)
+      : base_(std::move(base)), boxes_(boxes), calls_(calls) {}
+
+  /// The algorithm as "corrupted_NAME:number=7". Must not outlive this object.
+  Algorithm algorithm() {
+    Algorithm algorithm;
+    algorithm.name = "corrupted_" + base_;
+    algorithm.tunables = {{"number", "which corruption", "0", Tunable::Type::integer, 0, 1e15}};
+    algorithm.finder_2d = [this](const Settings& settings) { return finder<2>(settings); };
+    algorithm.finder_3d = [this](const Settings& settings) { return finder<3>(settings); };
+    algorithm.tracker_2d = [this](const Settings& settings) { return tracker<2>(settings); };
+    algorithm.tracker_3d = [this](const Settings& settings) { return tracker<3>(settings); };
+    return algorithm;
+  }
+
+  Corruption& at(std::uint64_t number) { return all_.try_emplace(number, number, calls_).first->second; }
+
+ private:
+  template <int D>
+  std::unique_ptr<PairFinder<D>> finder(const Settings& settings) {
+    Corruption& corruption = at(static_cast<std::uint64_t>(settings.integer("number")));
+    return spoilt_search<D>(base_, [&corruption, this](std::vector<Pair>& pairs, std::size_t boxes) {
+      if (boxes != boxes_ || corruption.calls++ < corruption.call || corruption.is_applied || pairs.empty())
+        return;
+      corrupt(pairs, corruption.fault, boxes, corruption.random);
+      corruption.is_applied = true;
+    });
+  }
+
+  template <int D>
+  std::unique_ptr<PairTracker<D>> tracker(const Settings& settings) {
+    return std::make_unique<CorruptedTracker<D>>(
+        make_tracker<D>(base_), at(static_cast<std::uint64_t>(settings.integer("number"))), boxes_);
+  }
+
+  std::string base_;
+  std::size_t boxes_;
+  std::size_t calls_;
+  std::map<std::uint64_t, Corruption> all_;
+};
+
+/// How many corruptions there were, and how many of them were seen.
+struct Caught {
+  std::size_t applied = 0;
+  std::size_t caught = 0;
+
+  void add(const Caught& other) {
+    applied += other.applied;
+    caught += other.caught;
+  }
+};
+
+/// Rounds that each corrupted algorithm takes part in, after an untimed one.
+inline constexpr std::size_t corruption_rounds = 4;
+
+inline lab::Effort corruption_effort(std::size_t definition_boxes) {
+  lab::Effort effort{.budget_seconds = 1e6, .history_seconds = 1e6, .share_seconds = 0};
+  effort.least_rounds = effort.most_rounds = effort.slow_rounds = effort.far_rounds = corruption_rounds;
+  effort.definition_boxes = definition_boxes;
+  return effort;
+}
+
+/// Lets `compare` measure the algorithm called `base` under corruptions `first` to `first + count - 1`, each
+/// of one search or frame in one of the rounds. A corruption is caught if its measurement has failed.
+inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest& request, std::uint64_t first,
+                                std::size_t count, std::size_t definition_boxes) {
+  Corrupted corrupted(base, request.boxes, (corruption_rounds + 1) * (request.frames + 1));
+  lab::Catalogue catalogue;
+  catalogue.add(corrupted.algorithm());
+  lab::CompareOptions options;
+  options.algorithms.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) options.algorithms += ",";
+    options.algorithms += "corrupted_" + base + ":number=" + std::to_string(first + i);
+  }
+  options.plan = {request};
+  options.effort = corruption_effort(definition_boxes);
+  const lab::Comparison comparison = lab::compare(catalogue, options);
+  Caught result;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!corrupted.at(first + i).is_applied) continue;
+    ++result.applied;
+    if (comparison.cases.at(0).measurements.at(i).outcome == lab::Outcome::failed) ++result.caught;
+  }
+  return result;
+}
+
+/// The same where the reference has the very fault of the algorithm that is compared with it, in every search
+/// and frame: only the boxes that are sampled by the definition can tell.
+inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, std::uint64_t first,
+                                               std::size_t count) {
+  lab::Case measured;
+  measured.scene = request.scene;
+  measured.seeds = {1};
+  measured.boxes = request.boxes;
+  measured.frames = request.frames;
+  measured.mode = request.frames == 0 ? lab::Mode::find : lab::Mode::track;
+  const lab::NamedScene named = lab::find_scene(request.scene);
+  const std::vector<History<2>> inputs = {lab::make_history<2>(
+      named.scene, named.spec,
+      {.boxes = request.boxes, .seed = 1, .frames = request.frames, .moving = request.moving})};
+  Caught result;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    bool is_applied = false;
+    const auto faulty = [&](std::string name) {
+      Algorithm algorithm;
+      algorithm.name = std::move(name);
+      algorithm.finder_2d = [&is_applied, number, &request](const Settings&) {
+        return spoilt_search<2>(
+            "grid", [&is_applied, number, &request](std::vector<Pair>& pairs, std::size_t boxes) {
+              // The same place in the array each time, so that it is the same pair while that holds.
+              std::mt19937_64 random(number);
+              const auto fault = static_cast<Fault>(random() % 3);
+              if (boxes != request.boxes || pairs.empty()) return;
+              // A DiffTracker takes no pair twice.
+              corrupt(pairs, request.frames > 0 && fault == Fault::doubled ? Fault::dropped : fault, boxes,
+                      random);
+              is_applied = true;
+            });
+      };
+      return algorithm;
+    };
+    const std::vector<Algorithm> known = {faulty("quadtree")};
+    const Algorithm algorithm = faulty("shared");
+    const std::vector<lab::Entry> entries = {{&algorithm, Spec{algorithm.name, {}}}};
+    const lab::Benchmark benchmark{entries, known, corruption_effort(0), {}};
+    const std::vector<lab::Measurement> measurements =
+        request.frames == 0 ? lab::measure_find<2>(measured, inputs, benchmark).measurements
+                            : lab::measure_track<2>(measured, inputs, benchmark);
+    if (!is_applied) continue;
+    ++result.applied;
+    if (measurements.at(0).outcome == lab::Outcome::failed) ++result.caught;
+  }
+  return result;
+}
+
+}  // namespace broadside::bench
