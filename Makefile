@@ -2,11 +2,13 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results bench test sanitize clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published bench test sanitize clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
 results := paper/results
+published := build/published
+PROCESSES := 10
 sources := find $(wildcard include src integrations paper lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
@@ -24,11 +26,21 @@ paper: program ## Make docs/paper/paper.md and its figures from the committed re
 
 paper-results: program ## Measure what the paper quotes, on this machine: half an hour
 	mkdir -p build/paper $(results)
-	node web/build.mjs --paper build/paper
 	build/release/broadside experiment --json build/paper/measured.json
-	build/release/broadside compare --json build/paper/comparison.json
-	node build/paper/without_samples.mjs build/paper/comparison.json $(results)/comparison.json
+	build/release/broadside compare --json $(results)/comparison.json --samples build/paper/samples.json
 	cp build/paper/measured.json $(results)/experiments.json
+
+# Commits alone tell a revision from another, so there must be nothing that is not committed. Files of other machines,
+# made by the same target there, are merged in by OTHERS.
+published: program ## The comparison in PROCESSES=10 processes, merged with OTHERS=: $(published)/
+	git diff --quiet HEAD
+	rm -rf $(published)/processes
+	mkdir -p $(published)/processes
+	for i in $$(seq -w $(PROCESSES)); do \
+	  build/release/broadside compare --check definition=100000 --json $(published)/processes/$$i.json || exit 1; done
+	build/release/broadside compare --merge $(published)/processes/*.json $(OTHERS) \
+	  --json $(published)/comparison.json --samples $(published)/samples.json
+	gzip -9nf $(published)/samples.json
 
 bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak
 	cmake --build --preset release --target motion $(soak)
@@ -60,7 +72,7 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench paper-results: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 setup:
 	@scripts/setup $(setup_options)

@@ -110,8 +110,7 @@ function testsIn(folder) {
 }
 
 async function buildPaper(folder) {
-  const programs = ["main.ts", "without_samples.ts"].map((name) => join(paper, name));
-  await buildPrograms([...programs, ...testsIn(join(paper, "tests"))], folder);
+  await buildPrograms([join(paper, "main.ts"), ...testsIn(join(paper, "tests"))], folder);
 }
 
 const [mode, path] = process.argv.slice(2);
