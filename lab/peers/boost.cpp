@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 
 #include "lab/peers/peers.hpp"
 #include "lab/peers/queries.hpp"
+#include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab::peers {
 namespace {
@@ -43,26 +45,31 @@ BoostBox<D> boost_box(const Box<D>& box) {
 }
 
 template <int D>
-class BoostRtree final : public PairFinder<D> {
+class BoostRtree final : public PairFinder<D>, public TearDown {
+ public:
+  void tear_down() override { tree_.reset(); }
+
  private:
   using Value = typename BoostTree<D>::value_type;
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    tear_down();
     values_.clear();
     values_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       values_.push_back({boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i)});
-    const BoostTree<D> tree(values_);  // made of a range, it is packed
+    tree_.emplace(values_);  // made of a range, it is packed
     // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
-    for (const Value& value : tree) {
+    for (const Value& value : *tree_) {
       const auto report = [&pairs, i = value.second](const Value& other) {
         if (other.second > i) pairs.add(BoxId{i}, BoxId{other.second});
       };
-      tree.query(geometry::index::intersects(value.first), boost::make_function_output_iterator(report));
+      tree_->query(geometry::index::intersects(value.first), boost::make_function_output_iterator(report));
     }
   }
 
   std::vector<Value> values_;
+  std::optional<BoostTree<D>> tree_;  // of the last search
 };
 
 namespace geometry = boost::geometry;

@@ -14,6 +14,7 @@
 
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peers.hpp"
+#include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
@@ -42,7 +43,10 @@ b2AABB scaled(const Box2& box, float scale) {
 void* user_data(BoxId id) { return std::bit_cast<void*>(std::uintptr_t{index(id)}); }
 BoxId id_of(void* data) { return BoxId(std::bit_cast<std::uintptr_t>(data)); }
 
-class Box2dFinder final : public PairFinder<2> {
+class Box2dFinder final : public PairFinder<2>, public TearDown {
+ public:
+  void tear_down() override { broad_phase_.reset(); }
+
  private:
   /// What b2BroadPhase::UpdatePairs calls: margins make more pairs than there are.
   struct Report {
@@ -57,7 +61,7 @@ class Box2dFinder final : public PairFinder<2> {
   };
 
   void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
-    b2BroadPhase broad_phase;
+    b2BroadPhase& broad_phase = broad_phase_.emplace();
     const float scale = scale_of(boxes);
     for (std::size_t i = 0; i < boxes.size(); ++i)
       broad_phase.CreateProxy(scaled(boxes[i], scale), user_data(BoxId(i)));
@@ -65,6 +69,8 @@ class Box2dFinder final : public PairFinder<2> {
     broad_phase.UpdatePairs(&report);
     report.pairs.finish();
   }
+
+  std::optional<b2BroadPhase> broad_phase_;  // of the last search
 };
 
 /// Follows b2ContactManager: pairs of fat boxes are contacts, which are looked at again in every frame; the

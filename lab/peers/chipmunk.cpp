@@ -16,6 +16,7 @@
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peer_tracker.hpp"
 #include "lab/peers/peers.hpp"
+#include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
@@ -75,23 +76,26 @@ void find_all(cpSpatialIndex* spatial_index, std::span<const Box2> boxes, PairSi
   search.pairs.finish();
 }
 
-class ChipmunkFinder final : public PairFinder<2> {
+class ChipmunkFinder final : public PairFinder<2>, public TearDown {
  public:
   explicit ChipmunkFinder(MakeIndex make) : make_(make) {}
 
+  void tear_down() override { index_.reset(); }
+
  private:
   void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+    tear_down();
     objects_.clear();
     objects_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) objects_.push_back(object_of(boxes[i], BoxId(i)));
-    const ChipmunkIndex spatial_index = make_(boxes, false, nullptr);
-    for (ChipmunkObject& object : objects_)
-      cpSpatialIndexInsert(spatial_index.get(), &object, hash_of(object));
-    find_all(spatial_index.get(), boxes, pairs);
+    index_ = make_(boxes, false, nullptr);
+    for (ChipmunkObject& object : objects_) cpSpatialIndexInsert(index_.get(), &object, hash_of(object));
+    find_all(index_.get(), boxes, pairs);
   }
 
   MakeIndex make_;
   std::vector<ChipmunkObject> objects_;
+  ChipmunkIndex index_;  // of the last search; points into them
 };
 
 /// As cpSpace does, with an index for what moves and one for what rests: shapes go to the latter with their

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <geos/geom/Envelope.h>
@@ -9,11 +10,15 @@
 #include <geos/version.h>
 
 #include "lab/peers/peers.hpp"
+#include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab::peers {
 namespace {
 
-class GeosStrtree final : public PairFinder<2> {
+class GeosStrtree final : public PairFinder<2>, public TearDown {
+ public:
+  void tear_down() override { tree_.reset(); }
+
  private:
   static geos::geom::Envelope envelope(const Box2& box) {
     return {box.min[0], box.max[0], box.min[1], box.max[1]};
@@ -21,8 +26,8 @@ class GeosStrtree final : public PairFinder<2> {
 
   void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
     constexpr std::size_t standard_capacity = 10;
-    // A tree once built takes no more items, so that a new one is made for each search.
-    geos::index::strtree::TemplateSTRtree<std::uint32_t> tree(standard_capacity, boxes.size());
+    // A tree once built takes no more items, and its memory cannot be handed on to a new one.
+    auto& tree = tree_.emplace(standard_capacity, boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       tree.insert(envelope(boxes[i]), static_cast<std::uint32_t>(i));
     // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
@@ -32,6 +37,8 @@ class GeosStrtree final : public PairFinder<2> {
       });
     }
   }
+
+  std::optional<geos::index::strtree::TemplateSTRtree<std::uint32_t>> tree_;  // of the last search
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab::peers {
 namespace {
@@ -104,28 +105,36 @@ class Geoms {
   std::deque<Geom> geoms_;  // point into items_
 };
 
-class OdeFinder final : public PairFinder<3> {
+class OdeFinder final : public PairFinder<3>, public TearDown {
  public:
   explicit OdeFinder(const OdeSpaceKind& kind) : kind_(kind) {}
+  ~OdeFinder() override { OdeFinder::tear_down(); }
+
+  void tear_down() override {
+    // The last one first: it is the first that a list is searched for.
+    for (; in_space_ > 0; --in_space_) dSpaceRemove(space_.get(), geoms_[in_space_ - 1]);
+    space_.reset();
+  }
 
  private:
   void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
     if (boxes.size() > kind_.most_boxes)
       throw std::length_error(std::to_string(boxes.size()) + " boxes in ODE's hash space; expected at most " +
                               std::to_string(kind_.most_boxes) + ", as it counts pairs of boxes in an int");
+    tear_down();
     const double shift = kind_.shift != nullptr ? kind_.shift(boxes) : 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.put(i, boxes[i], shift);
-    const OdeSpace space = kind_.make(boxes);
-    for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.add_to(space.get(), i);
+    space_ = kind_.make(boxes);
+    for (; in_space_ < boxes.size(); ++in_space_) geoms_.add_to(space_.get(), in_space_);
     CallbackSink sink(pairs);
-    find_all(space.get(), boxes, sink);
-    // The last one first: it is the first that a list is searched for.
-    for (std::size_t i = boxes.size(); i > 0; --i) dSpaceRemove(space.get(), geoms_[i - 1]);
+    find_all(space_.get(), boxes, sink);
     sink.finish();
   }
 
   OdeSpaceKind kind_;
   Geoms geoms_;
+  OdeSpace space_;            // of the last search
+  std::size_t in_space_ = 0;  // the first so many geoms
 };
 
 class OdeTracker final : public PeerTracker<3> {
@@ -179,33 +188,6 @@ class OdeTracker final : public PeerTracker<3> {
 };
 
 }  // namespace
-
-std::array<double, 2> range_on(int axis, std::span<const Box3> boxes) {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = -least;
-  for (const Box3& box : boxes) {
-    if (!is_present(box)) continue;
-    for (const double at : {box.min[axis], box.max[axis]}) {
-      if (std::isinf(at)) continue;
-      least = std::min(least, at);
-      greatest = std::max(greatest, at);
-    }
-  }
-  return least <= greatest ? std::array{least, greatest} : std::array{0.0, 0.0};
-}
-
-std::array<int, 3> axes_by_extent(std::span<const Box3> boxes) {
-  std::array<double, 3> extents{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [least, greatest] = range_on(axis, boxes);
-    extents[static_cast<std::size_t>(axis)] = greatest - least;
-  }
-  std::array<int, 3> axes{};
-  std::iota(axes.begin(), axes.end(), 0);
-  std::ranges::stable_sort(axes, std::greater(),
-                           [&](int axis) { return extents[static_cast<std::size_t>(axis)]; });
-  return axes;
-}
 
 Algorithm ode_space(const OdeSpaceKind& kind) {
   Algorithm algorithm{

@@ -34,12 +34,6 @@ struct OdeSpaceKind {
   std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
 };
 
-/// The axes in the order of the world's extent on them, the longest first; infinite coordinates aside.
-std::array<int, 3> axes_by_extent(std::span<const Box3> boxes);
-
-/// The least and the greatest coordinate on an axis, infinite ones aside; 0 and 0 if there is none.
-std::array<double, 2> range_on(int axis, std::span<const Box3> boxes);
-
 /// The description of a space: a finder that fills a new one in each call, and a tracker that keeps one.
 Algorithm ode_space(const OdeSpaceKind& kind);
 

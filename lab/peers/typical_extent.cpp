@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace broadside::lab::peers {
@@ -23,17 +25,7 @@ std::array<double, 2> reach(std::span<const Box<D>> boxes) {
   double greatest = 0;
   double side = 0;
   for (int axis = 0; axis < D; ++axis) {
-    double min = std::numeric_limits<double>::infinity();
-    double max = -min;
-    for (const Box<D>& box : boxes) {
-      if (!is_present(box)) continue;
-      for (const double at : {box.min[axis], box.max[axis]}) {
-        if (std::isinf(at)) continue;
-        min = std::min(min, at);
-        max = std::max(max, at);
-      }
-    }
-    if (min > max) continue;
+    const auto [min, max] = range_on(axis, boxes);
     greatest = std::max({greatest, std::abs(min), std::abs(max)});
     side = std::max(side, max - min);
   }
@@ -54,6 +46,34 @@ double cells_touched(std::span<const Box<D>> boxes, double cell) {
 }
 
 }  // namespace
+
+template <int D>
+std::array<double, 2> range_on(int axis, std::span<const Box<D>> boxes) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  for (const Box<D>& box : boxes) {
+    if (!is_present(box)) continue;
+    for (const double at : {box.min[axis], box.max[axis]}) {
+      if (std::isinf(at)) continue;
+      least = std::min(least, at);
+      greatest = std::max(greatest, at);
+    }
+  }
+  return least <= greatest ? std::array{least, greatest} : std::array{0.0, 0.0};
+}
+
+template <int D>
+std::array<int, D> axes_by_extent(std::span<const Box<D>> boxes) {
+  std::array<double, D> extents{};
+  for (int axis = 0; axis < D; ++axis) {
+    const auto [least, greatest] = range_on(axis, boxes);
+    extents[axis] = greatest - least;
+  }
+  std::array<int, D> axes{};
+  std::iota(axes.begin(), axes.end(), 0);
+  std::ranges::stable_sort(axes, std::greater(), [&](int axis) { return extents[axis]; });
+  return axes;
+}
 
 template <int D>
 double typical_extent(std::span<const Box<D>> boxes) {
@@ -81,6 +101,10 @@ double cell_size(std::span<const Box<D>> boxes, double extents) {
   return cell;
 }
 
+template std::array<double, 2> range_on<2>(int, std::span<const Box2>);
+template std::array<double, 2> range_on<3>(int, std::span<const Box3>);
+template std::array<int, 2> axes_by_extent<2>(std::span<const Box2>);
+template std::array<int, 3> axes_by_extent<3>(std::span<const Box3>);
 template double typical_extent<2>(std::span<const Box2>);
 template double typical_extent<3>(std::span<const Box3>);
 template double cell_size<2>(std::span<const Box2>, double);

@@ -1,11 +1,20 @@
-// The length that some peers must be given: the extent of a typical box, or a sensible cell size.
+// What some peers must be given: the world's extent, that of a typical box, or a sensible cell size.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "broadside/box.hpp"
 
 namespace broadside::lab::peers {
+
+/// The least and the greatest coordinate on an axis, infinite ones aside; 0 and 0 if there is none.
+template <int D>
+std::array<double, 2> range_on(int axis, std::span<const Box<D>> boxes);
+
+/// The axes in the order of the world's extent on them, the longest first; infinite coordinates aside.
+template <int D>
+std::array<int, D> axes_by_extent(std::span<const Box<D>> boxes);
 
 /// The median of a sample of the boxes' longest sides, infinite ones aside. Where the typical box is a point,
 /// the mean distance of as many points; never 0. O(n) for the world's extent where it is needed, else O(1).

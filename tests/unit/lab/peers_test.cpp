@@ -1,6 +1,7 @@
 // The list of other libraries: what is there, what is missing, and that nothing is forgotten.
 #include "lab/peers/peers.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <regex>
 #include <string>
@@ -9,9 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "broadside/error.hpp"
+#include "broadside/broadside.hpp"
 
 #include "lab/catalogue.hpp"
+#include "lab/peers/tear_down.hpp"
+#include "lab/scenes/scene.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/text_of.hpp"
 
@@ -44,6 +47,39 @@ TEST(Peers, AreInTheCatalogueAsPeersWithTheirVersions) {
     EXPECT_FALSE(found->summary.empty()) << peer.name;
     EXPECT_FALSE(found->source.empty()) << peer.name;
     EXPECT_TRUE(found->has_dimension(2) || found->has_dimension(3)) << peer.name;
+  }
+}
+
+template <int D>
+void expect_the_same_after_tear_down(const Algorithm& peer) {
+  const Scene scene = find_scene("uniform").scene;
+  const auto boxes_of = [&scene](std::size_t count) {
+    return make_history<D>(scene, {scene.name, {}}, {.boxes = count, .seed = 3}).boxes;
+  };
+  const auto finder = make_finder<D>(peer, {peer.name, {}});
+  auto* const torn_down = dynamic_cast<peers::TearDown*>(finder.get());
+  if (torn_down == nullptr) return;
+  torn_down->tear_down();  // before there is anything
+  for (const std::size_t count : {300, 200, 400}) {
+    const std::vector<Box<D>> boxes = boxes_of(count);
+    std::vector<Pair> expected = find_pairs(boxes, "brute_force");
+    std::ranges::sort(expected);
+    for (const bool tear_down : {false, true}) {
+      std::vector<Pair> found;
+      PairCollector collector(found);
+      finder->find(boxes, collector);
+      collector.flush();
+      std::ranges::sort(found);
+      EXPECT_EQ(found, expected) << peer.name;
+      if (tear_down) torn_down->tear_down();
+    }
+  }
+}
+
+TEST(Peers, FindTheSameWhetherTheyWereTornDownOrNot) {
+  for (const Algorithm& peer : peers::peers()) {
+    if (peer.has_dimension(2)) expect_the_same_after_tear_down<2>(peer);
+    if (peer.has_dimension(3)) expect_the_same_after_tear_down<3>(peer);
   }
 }
 

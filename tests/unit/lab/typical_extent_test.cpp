@@ -47,6 +47,18 @@ TEST(TypicalExtent, IsNeverNothing) {
   EXPECT_GT(typical_extent<3>(std::vector<Box3>(5, absent_box<3>())), 0);
 }
 
+TEST(RangeOn, LeavesOutWhatIsAbsentOrInfinite) {
+  const std::vector<Box2> boxes = {{{-infinity, 3}, {7, 4}}, absent_box<2>(), {{2, -1}, {5, infinity}}};
+  EXPECT_EQ(range_on<2>(0, boxes), (std::array{2.0, 7.0}));
+  EXPECT_EQ(range_on<2>(1, boxes), (std::array{-1.0, 4.0}));
+  EXPECT_EQ(range_on<2>(0, {}), (std::array{0.0, 0.0}));
+}
+
+TEST(AxesByExtent, BeginWithTheLongestAndKeepTheOrderOfEqualOnes) {
+  const std::vector<Box3> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{0, 8, 0}, {1, 9, 1}}};
+  EXPECT_EQ(axes_by_extent<3>(boxes), (std::array{1, 0, 2}));
+}
+
 TEST(CellSize, IsThatOfATypicalBox) { EXPECT_NEAR(cell_size<2>(row(100, 3), 2), 6, 1e-3); }
 
 TEST(CellSize, KeepsHugeBoxesFromFillingTheGrid) {

@@ -1,0 +1,19 @@
+// What a library's structure takes to be torn down is not part of a search.
+#pragma once
+
+namespace broadside::lab::peers {
+
+/// A finder that keeps its library's structure after the search, so that whoever times the search can have it
+/// torn down after the clock has stopped. A search tears down what is still there.
+class TearDown {
+ public:
+  virtual ~TearDown() = default;
+  virtual void tear_down() = 0;
+
+ protected:
+  TearDown() = default;
+  TearDown(const TearDown&) = default;
+  TearDown& operator=(const TearDown&) = default;
+};
+
+}  // namespace broadside::lab::peers
