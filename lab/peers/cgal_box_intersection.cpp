@@ -1,5 +1,7 @@
 // CGAL's box_self_intersection_d: Zomorodian and Edelsbrunner's hybrid of segment trees and sweeps.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -8,14 +10,23 @@
 #include <CGAL/version.h>
 
 #include "lab/peers/peers.hpp"
+#include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
 namespace {
 
+/// The cutoff that is fastest or within a third of it for 1,000 to 1,000,000 boxes, where cutoffs from 10 to
+/// 3200 were measured (docs/peers.md): the sweep costs a box its neighbours along one axis, the split the
+/// depth of the trees.
+std::ptrdiff_t cutoff_for(std::size_t boxes) {
+  return 4 + static_cast<std::ptrdiff_t>(4 * std::sqrt(static_cast<double>(boxes)));
+}
+
 template <int D>
 class CgalBoxIntersection final : public PairFinder<D> {
  public:
-  explicit CgalBoxIntersection(const Settings& settings) : cutoff_(settings.integer("cutoff")) {}
+  explicit CgalBoxIntersection(const Settings& settings)
+      : cutoff_(settings.is_auto("cutoff") ? 0 : settings.integer("cutoff")) {}
 
  private:
   using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
@@ -23,20 +34,24 @@ class CgalBoxIntersection final : public PairFinder<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     boxes_.clear();
     boxes_.reserve(boxes.size());
+    const std::array<int, D> axes = axes_by_extent(boxes);  // it sweeps along its first one
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       float min[D];
       float max[D];
-      std::ranges::copy(boxes[i].min, min);
-      std::ranges::copy(boxes[i].max, max);
+      for (int axis = 0; axis < D; ++axis) {
+        min[axis] = boxes[i].min[axes[axis]];
+        max[axis] = boxes[i].max[axes[axis]];
+      }
       boxes_.emplace_back(min, max, BoxId(i));
     }
     const auto report = [&pairs](const CgalBox& a, const CgalBox& b) { pairs.add(a.info(), b.info()); };
     // It sorts the boxes themselves; pointers to them, which it takes as well, are slower.
-    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report, cutoff_,
+    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
+                                  cutoff_ > 0 ? cutoff_ : cutoff_for(boxes.size()),
                                   CGAL::Box_intersection_d::CLOSED);
   }
 
-  std::ptrdiff_t cutoff_;
+  std::ptrdiff_t cutoff_;  // 0: by the number of boxes
   std::vector<CgalBox> boxes_;
 };
 
@@ -52,7 +67,7 @@ Algorithm cgal_box_intersection() {
       .version = "CGAL " CGAL_VERSION_STR,
       .tunables = {{.name = "cutoff",
                     .summary = "boxes, below which it sweeps instead of splitting",
-                    .standard = "10",
+                    .standard = "auto",
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1e9}},
