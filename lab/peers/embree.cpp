@@ -28,18 +28,21 @@ struct EmbreeRelease {
 template <typename Handle>
 using EmbreeOwned = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
 
-RTCBounds bounds_of(const Box3& box) {
+/// A box of 2D lies flat at 0.
+template <int D>
+RTCBounds bounds_of(const Box<D>& box) {
   return {.lower_x = box.min[0],
           .lower_y = box.min[1],
-          .lower_z = box.min[2],
+          .lower_z = D == 3 ? box.min[D - 1] : 0,
           .align0 = 0,
           .upper_x = box.max[0],
           .upper_y = box.max[1],
-          .upper_z = box.max[2],
+          .upper_z = D == 3 ? box.max[D - 1] : 0,
           .align1 = 0};
 }
 
-class EmbreeCollide final : public PairFinder<3> {
+template <int D>
+class EmbreeCollide final : public PairFinder<D> {
  public:
   EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
     if (!device_) throw_error(nullptr);
@@ -53,7 +56,7 @@ class EmbreeCollide final : public PairFinder<3> {
   }
 
  private:
-  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     if (boxes.size() < 2) return;
     boxes_ = boxes;
     pairs_ = &pairs;
@@ -62,10 +65,11 @@ class EmbreeCollide final : public PairFinder<3> {
     arena_.execute([this] {
       // Searched once, a hierarchy built fast is worth more than a good one. But the fast builder ends the
       // program where all boxes are one point.
-      const Box3& first = boxes_.front();
-      const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box3& box) {
-                                   return box.min == first.min && box.max == first.max;
-                                 });
+      const Box<D>& first = boxes_.front();
+      const bool all_one_point =
+          first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
+            return box.min == first.min && box.max == first.max;
+          });
       rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
       rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
       rtcCommitGeometry(geometry_.get());
@@ -109,7 +113,7 @@ class EmbreeCollide final : public PairFinder<3> {
   EmbreeOwned<RTCDevice> device_;
   EmbreeOwned<RTCScene> scene_;
   EmbreeOwned<RTCGeometry> geometry_;
-  std::span<const Box3> boxes_;  // of the search that is going on
+  std::span<const Box<D>> boxes_;  // of the search that is going on
   PairSink* pairs_ = nullptr;
   std::exception_ptr thrown_;
 };
@@ -232,7 +236,8 @@ Algorithm embree_collide() {
       .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
       .source = "Embree, rtcCollide",
       .version = "Embree " RTC_VERSION_STRING,
-      .finder_3d = [](const Settings&) { return std::make_unique<EmbreeCollide>(); },
+      .finder_2d = [](const Settings&) { return std::make_unique<EmbreeCollide<2>>(); },
+      .finder_3d = [](const Settings&) { return std::make_unique<EmbreeCollide<3>>(); },
       .infinite_boxes = false,
       .largest_coordinate = 1.8e18,  // beyond 1.844e18 it drops boxes as invalid
       .own_allocator = true,

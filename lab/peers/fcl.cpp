@@ -1,10 +1,9 @@
-// FCL's broad-phase managers as finders: all objects are registered at once, then collide() runs once.
-// description.
+// FCL's broad-phase managers as finders: all objects are registered at once, then collide() runs once. They
+// take boxes of 2D as slabs of one thickness.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <fcl/broadphase/broadphase_SaP.h>
 #include <fcl/broadphase/broadphase_collision_manager.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
 #include <fcl/broadphase/broadphase_spatialhash.h>
 #include <fcl/broadphase/detail/sparse_hash_table.h>
 #include <fcl/broadphase/detail/spatial_hash.h>
@@ -25,6 +25,7 @@
 #include "lab/peers/callback_sink.hpp"
 #include "lab/peers/peer_tracker.hpp"
 #include "lab/peers/peers.hpp"
+#include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
 
 namespace broadside::lab::peers {
@@ -38,10 +39,17 @@ class FclObject final : public fcl::CollisionObjectd {
       : fcl::CollisionObject<double>(geometry), id_(id) {}
 
   BoxId id() const { return id_; }
-  void set(const Box3& box) {
-    for (int axis = 0; axis < 3; ++axis) {
+
+  template <int D>
+  void set(const Box<D>& box) {
+    for (int axis = 0; axis < D; ++axis) {
       aabb.min_[axis] = box.min[axis];
       aabb.max_[axis] = box.max[axis];
+    }
+    if constexpr (D == 2) {
+      // Not flat: the Morton codes divide by the extent of all.
+      aabb.min_[2] = 0;
+      aabb.max_[2] = 1;
     }
   }
 
@@ -60,8 +68,9 @@ class FclObject final : public fcl::CollisionObjectd {
 
 /// What a search hands through to its callback, which drops what a manager tells beyond the overlapping
 /// pairs.
+template <int D>
 struct FclSearch {
-  std::span<const Box3> boxes;
+  std::span<const Box<D>> boxes;
   CallbackSink pairs;
 
   static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data) {
@@ -76,14 +85,19 @@ struct FclSearch {
 
 using FclManager = std::unique_ptr<fcl::BroadPhaseCollisionManagerd>;
 /// Makes an empty manager that suits `boxes`.
-using MakeManager = FclManager (*)(std::span<const Box3> boxes);
+template <int D>
+using MakeManager = FclManager (*)(std::span<const Box<D>> boxes);
 
-class FclFinder final : public PairFinder<3> {
+template <int D>
+class FclFinder final : public PairFinder<D>, public TearDown {
  public:
-  FclFinder(MakeManager make, bool widened) : make_(make), widened_(widened) {}
+  FclFinder(MakeManager<D> make, bool widened) : make_(make), widened_(widened) {}
+
+  void tear_down() override { manager_.reset(); }
 
  private:
-  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    tear_down();
     objects_.reserve(boxes.size());
     for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i));
     pointers_.clear();
@@ -92,44 +106,62 @@ class FclFinder final : public PairFinder<3> {
       if (widened_) objects_[i].widen();
       pointers_.push_back(&objects_[i]);
     }
-    const FclManager manager = make_(boxes);
-    manager->registerObjects(pointers_);
-    manager->setup();
-    FclSearch search{boxes, CallbackSink(pairs)};
-    manager->collide(&search, FclSearch::take);
+    manager_ = make_(boxes);
+    manager_->registerObjects(pointers_);
+    manager_->setup();
+    FclSearch<D> search{boxes, CallbackSink(pairs)};
+    manager_->collide(&search, FclSearch<D>::take);
     search.pairs.finish();
   }
 
-  MakeManager make_;
+  MakeManager<D> make_;
   bool widened_;
   std::vector<FclObject> objects_;  // by place; more than there are boxes, once there were more
   std::vector<fcl::CollisionObjectd*> pointers_;
+  FclManager manager_;  // of the last search; points into objects_
 };
 
 /// The description of a manager: a finder that fills a new one in each call. `widened` if it goes wrong where
 /// two bounds are equal.
-Algorithm fcl_manager(MakeManager make, bool widened = false) {
+Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widened = false) {
   return {
       .name = {},
       .summary = {},
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "FCL " FCL_VERSION,
-      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder>(make, widened); },
+      .finder_2d = [=](const Settings&) { return std::make_unique<FclFinder<2>>(make_2d, widened); },
+      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder<3>>(make_3d, widened); },
       .infinite_boxes = false,
   };
 }
 
-std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> make_tree() {
-  auto tree = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
+template <typename Manager, int D>
+FclManager make_plain(std::span<const Box<D>>) {
+  return std::make_unique<Manager>();
+}
+
+/// FCL's two trees of boxes, whose nodes are allocated one by one or stand in an array.
+using Tree = fcl::DynamicAABBTreeCollisionManagerd;
+using ArrayTree = fcl::DynamicAABBTreeCollisionManager_Array<double>;
+
+template <typename Manager>
+std::unique_ptr<Manager> make_tree() {
+  auto tree = std::make_unique<Manager>();
   tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
   return tree;
 }
 
-class FclTreeTracker final : public PeerTracker<3> {
+template <typename Manager, int D>
+FclManager make_tree_for(std::span<const Box<D>>) {
+  return make_tree<Manager>();
+}
+
+template <int D, typename Manager>
+class FclTreeTracker final : public PeerTracker<D> {
  private:
-  void build(std::span<const Box3> boxes, std::span<const Box3>) override {
-    tree_ = make_tree();
+  void build(std::span<const Box<D>> boxes, std::span<const Box<D>>) override {
+    tree_ = make_tree<Manager>();
     objects_.clear();
     pointers_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -139,7 +171,7 @@ class FclTreeTracker final : public PeerTracker<3> {
     tree_->setup();
   }
 
-  void move(const Change<3>& change) override {
+  void move(const Change<D>& change) override {
     pointers_.clear();
     std::vector<fcl::CollisionObjectd*> added;
     for (const BoxId id : change.changed) {
@@ -152,8 +184,8 @@ class FclTreeTracker final : public PeerTracker<3> {
     tree_->update(pointers_);
   }
 
-  void collide(const Change<3>& change, PairSink& pairs) override {
-    FclSearch search{change.now, CallbackSink(pairs)};
+  void collide(const Change<D>& change, PairSink& pairs) override {
+    FclSearch<D> search{change.now, CallbackSink(pairs)};
     // One by one where few changed: all against each other takes time for resting boxes as well.
     constexpr std::size_t few = 4;
     if (change.changed.size() < change.now.size() / few) {
@@ -162,14 +194,14 @@ class FclTreeTracker final : public PeerTracker<3> {
         if (is_present(change.now[index(id)])) tree_->collide(&objects_[index(id)], &query, Query::take);
       }
     } else {
-      tree_->collide(&search, FclSearch::take);
+      tree_->collide(&search, FclSearch<D>::take);
     }
     search.pairs.finish();
   }
 
   /// The search for the pairs of one object that changed.
   struct Query {
-    FclSearch* search;
+    FclSearch<D>* search;
     std::span<const std::uint8_t> changed;
 
     static bool take(fcl::CollisionObjectd* other, fcl::CollisionObjectd* asked, void* data) {
@@ -179,11 +211,11 @@ class FclTreeTracker final : public PeerTracker<3> {
       // It finds itself, and another one that changed will find it in turn.
       constexpr bool stop = true;
       if (a == b || (query.changed[index(a)] != 0 && a < b)) return !stop;
-      return FclSearch::take(other, asked, query.search);
+      return FclSearch<D>::take(other, asked, query.search);
     }
   };
 
-  FclObject& put(BoxId id, const Box3& box) {
+  FclObject& put(BoxId id, const Box<D>& box) {
     while (objects_.size() <= index(id)) objects_.emplace_back(BoxId(objects_.size()), geometry_);
     objects_[index(id)].set(box);
     return objects_[index(id)];
@@ -193,14 +225,15 @@ class FclTreeTracker final : public PeerTracker<3> {
   std::shared_ptr<fcl::CollisionGeometryd> geometry_ = std::make_shared<fcl::Sphered>(1);
   std::deque<FclObject> objects_;  // by place
   std::vector<fcl::CollisionObjectd*> pointers_;
-  std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> tree_;  // points into them
+  std::unique_ptr<Manager> tree_;  // points into them
 };
 
 // As in FCL's own tests: a table that grows, over the bounds of all objects.
 using Table = fcl::detail::SparseHashTable<fcl::AABBd, fcl::CollisionObjectd*, fcl::detail::SpatialHashd>;
-using Manager = fcl::SpatialHashingCollisionManager<double, Table>;
+using HashManager = fcl::SpatialHashingCollisionManager<double, Table>;
 
-FclManager make_hash(std::span<const Box3> boxes) {
+template <int D>
+FclManager make_hash(std::span<const Box<D>> boxes) {
   const double cell = std::exp2(std::ceil(std::log2(cell_size(boxes, 1))));
   // A box that ends on a cell's border is not inserted into the next cell, where a box that touches it
   // begins. With cells of a power of two that start at an odd multiple of 2^-30 cells, no float lies on a
@@ -208,27 +241,42 @@ FclManager make_hash(std::span<const Box3> boxes) {
   constexpr double offset = 0.40625 + 0x1p-30;
   fcl::Vector3d min = fcl::Vector3d::Zero();
   fcl::Vector3d max = fcl::Vector3d::Zero();
-  for (int axis = 0; axis < 3 && !boxes.empty(); ++axis) {
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -least;
-    for (const Box3& box : boxes) {
-      least = std::min<double>(least, box.min[axis]);
-      greatest = std::max<double>(greatest, box.max[axis]);
-    }
+  for (int axis = 0; axis < D; ++axis) {
+    const auto [least, greatest] = range_on(axis, boxes);
     min[axis] = (std::floor(least / cell) - 1 + offset) * cell;
     max[axis] = (std::ceil(greatest / cell) + 1 + offset) * cell;
   }
-  return std::make_unique<Manager>(cell, min, max);
+  if constexpr (D == 2) {
+    // One layer of cells around the slabs.
+    min[2] = -1;
+    max[2] = min[2] + std::max(cell, 4.0);
+  }
+  return std::make_unique<HashManager>(cell, min, max);
+}
+
+template <typename Manager>
+Algorithm fcl_tree() {
+  Algorithm algorithm = fcl_manager(make_tree_for<Manager, 2>, make_tree_for<Manager, 3>);
+  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<FclTreeTracker<2, Manager>>(); };
+  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker<3, Manager>>(); };
+  return algorithm;
 }
 
 }  // namespace
 
 Algorithm fcl_dynamic_aabb_tree() {
-  Algorithm algorithm = fcl_manager([](std::span<const Box3>) -> FclManager { return make_tree(); });
+  Algorithm algorithm = fcl_tree<Tree>();
   algorithm.name = "fcl_dynamic_aabb_tree";
   algorithm.summary = "FCL's dynamic tree of boxes, built at once in the order of Morton codes";
   algorithm.source = "FCL, DynamicAABBTreeCollisionManager";
-  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker>(); };
+  return algorithm;
+}
+
+Algorithm fcl_dynamic_aabb_tree_array() {
+  Algorithm algorithm = fcl_tree<ArrayTree>();
+  algorithm.name = "fcl_dynamic_aabb_tree_array";
+  algorithm.summary = "FCL's dynamic tree of boxes with its nodes in one array, built likewise";
+  algorithm.source = "FCL, DynamicAABBTreeCollisionManager_Array";
   return algorithm;
 }
 
@@ -236,10 +284,9 @@ Algorithm fcl_dynamic_aabb_tree() {
 // no order: therefore the widened bounds. Its update() looks for each pair through the list of all, and
 // taking an object out reads what was erased, so motion is followed by registering all again.
 Algorithm fcl_sap() {
+  using Manager = fcl::SaPCollisionManagerd;
   constexpr bool widened = true;
-  Algorithm algorithm = fcl_manager(
-      [](std::span<const Box3>) -> FclManager { return std::make_unique<fcl::SaPCollisionManagerd>(); },
-      widened);
+  Algorithm algorithm = fcl_manager(make_plain<Manager, 2>, make_plain<Manager, 3>, widened);
   algorithm.name = "fcl_sap";
   algorithm.summary = "FCL's sweep and prune: sorted lists of end points, from which the pairs are kept";
   algorithm.source = "FCL, SaPCollisionManager, after I-COLLIDE";
@@ -247,8 +294,8 @@ Algorithm fcl_sap() {
 }
 
 Algorithm fcl_ssap() {
-  Algorithm algorithm = fcl_manager(
-      [](std::span<const Box3>) -> FclManager { return std::make_unique<fcl::SSaPCollisionManagerd>(); });
+  using Manager = fcl::SSaPCollisionManagerd;
+  Algorithm algorithm = fcl_manager(make_plain<Manager, 2>, make_plain<Manager, 3>);
   algorithm.name = "fcl_ssap";
   algorithm.summary =
       "FCL's simple sweep and prune: lists of the boxes sorted on each axis, a sweep along one";
@@ -257,7 +304,7 @@ Algorithm fcl_ssap() {
 }
 
 Algorithm fcl_spatial_hash() {
-  Algorithm algorithm = fcl_manager(make_hash);
+  Algorithm algorithm = fcl_manager(make_hash<2>, make_hash<3>);
   algorithm.name = "fcl_spatial_hash";
   algorithm.summary =
       "FCL's spatial hashing: boxes in every cell they touch, each box looked up in all its cells";

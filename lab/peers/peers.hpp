@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -21,6 +22,10 @@ struct MissingPeer {
 /// The peers that were left out of this build, in the same order. Thread-safe.
 std::span<const MissingPeer> missing_peers();
 
+/// What is known of the build of the library behind a peer that its times should be read with, as a sentence
+/// (docs/peers.md); empty where nothing is.
+std::string_view build_note(std::string_view peer);
+
 // One for each algorithm. Peers that are not in the build are declared but not defined.
 
 Algorithm boost_rtree();
@@ -33,6 +38,7 @@ Algorithm ode_sap();
 Algorithm ode_hash();
 Algorithm ode_quadtree();
 Algorithm fcl_dynamic_aabb_tree();
+Algorithm fcl_dynamic_aabb_tree_array();
 Algorithm fcl_ssap();
 Algorithm fcl_sap();
 Algorithm fcl_spatial_hash();
