@@ -8,12 +8,16 @@
 
 #include "lab/peers/bullet_proxies.hpp"
 #include "lab/peers/peers.hpp"
+#include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab::peers {
 namespace {
 
 template <int D>
-class BulletDbvt final : public PairFinder<D> {
+class BulletDbvt final : public PairFinder<D>, public TearDown {
+ public:
+  void tear_down() override { tree_.clear(); }
+
  private:
   struct Report final : btDbvt::ICollide {
     explicit Report(PairSink& sink) : pairs(sink) {}
@@ -24,14 +28,16 @@ class BulletDbvt final : public PairFinder<D> {
   };
 
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    btDbvt tree;
+    tear_down();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      tree.insert(btDbvtVolume::FromMM(bullet_point(boxes[i].min), bullet_point(boxes[i].max)),
-                  bullet_data(BoxId(i)));
+      tree_.insert(btDbvtVolume::FromMM(bullet_point(boxes[i].min), bullet_point(boxes[i].max)),
+                   bullet_data(BoxId(i)));
     }
     Report report(pairs);
-    tree.collideTT(tree.m_root, tree.m_root, report);
+    tree_.collideTT(tree_.m_root, tree_.m_root, report);
   }
+
+  btDbvt tree_;  // of the last search
 };
 
 /// Bullet makes moving boxes larger by 0.05, being made for boxes of about 1: by a twentieth of what is usual
@@ -48,11 +54,16 @@ float margin_for(std::span<const Box<D>> boxes) {
   return *middle / 20;
 }
 
+/// When the pairs of boxes that moved are looked for.
+enum class Collide { at_once, deferred, by_motion };
+
 /// With a margin of its own, where Bullet has one for the whole program, and with its proxies, which Bullet
 /// leaves to its caller to take out one by one.
 class OwnDbvt final : public btDbvtBroadphase {
  public:
-  OwnDbvt(float margin, bool deferred) : margin_(margin) { m_deferedcollide = deferred; }
+  OwnDbvt(float margin, Collide collide) : margin_(margin), collide_(collide) {
+    m_deferedcollide = collide != Collide::at_once;  // at first all boxes are new
+  }
 
   ~OwnDbvt() override {
     for (btDbvtProxy* proxy : m_stageRoots) {
@@ -62,19 +73,38 @@ class OwnDbvt final : public btDbvtBroadphase {
 
   void setAabb(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max,
                btDispatcher* dispatcher) override {
+    const bool rested = static_cast<btDbvtProxy*>(proxy)->stage == STAGECOUNT;
+    const unsigned updates = m_updates_done;
     gDbvtMargin = margin_;
     btDbvtBroadphase::setAabb(proxy, min, max, dispatcher);
+    if (rested || m_updates_done != updates) ++left_margin_;
+  }
+
+  /// Where many boxes left their margins in this frame, many will in the next one.
+  void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+    btDbvtBroadphase::calculateOverlappingPairs(dispatcher);
+    const int boxes = m_sets[DYNAMIC_SET].m_leaves + m_sets[FIXED_SET].m_leaves;
+    if (collide_ == Collide::by_motion) m_deferedcollide = left_margin_ > many * boxes;
+    left_margin_ = 0;
   }
 
  private:
+  // The fraction of the boxes from which on deferred is as fast or faster (docs/peers.md).
+  static constexpr double many = 0.1;
+
   float margin_;
+  Collide collide_;
+  int left_margin_ = 0;  // boxes, since the last search
 };
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_dbvt_tracker(const Settings& settings) {
-  const auto make = [deferred = settings.text("collide") == "deferred"](std::span<const Box<D>> boxes,
-                                                                        unsigned) {
-    return std::make_unique<OwnDbvt>(margin_for(boxes), deferred);
+  const std::string& text = settings.text("collide");
+  const Collide collide = text == "auto"      ? Collide::by_motion
+                          : text == "at_once" ? Collide::at_once
+                                              : Collide::deferred;
+  const auto make = [collide](std::span<const Box<D>> boxes, unsigned) {
+    return std::make_unique<OwnDbvt>(margin_for(boxes), collide);
   };
   constexpr bool bounded = false;
   return std::make_unique<ProxyTracker<D>>(std::make_unique<BulletProxies<D>>(make, bounded));
@@ -93,8 +123,9 @@ Algorithm bullet_dbvt() {
       .source = "Bullet, btDbvt and btDbvtBroadphase, by Nathanael Presson",
       .version = bullet_version(),
       .tunables = {{.name = "collide",
-                    .summary = "in motion: each box as it moves, as Bullet does unless told, or all deferred",
-                    .standard = "at_once",
+                    .summary = "in motion: each box as it moves, as Bullet does unless told, or all at the "
+                               "end of the frame; auto: by how many left their margins in the frame before",
+                    .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"at_once", "deferred"}}},
       .finder_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
