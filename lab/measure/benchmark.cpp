@@ -13,6 +13,7 @@
 #include "broadside/version.hpp"
 
 #include "lab/numbers.hpp"
+#include "lab/peers/peers.hpp"
 
 namespace broadside::lab {
 
@@ -66,6 +67,10 @@ void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls,
   if (calls > 1) measurement.reason += fmt::format(", for {} frames", grouped(calls));
   measurement.reason += fmt::format("; budget {:g} s", budget);
   measurement.estimated_ms = estimate.seconds * 1e3 / static_cast<double>(calls);
+}
+
+std::string explanation_of(const Algorithm& algorithm, const std::string& of_this_call) {
+  return of_this_call.empty() ? std::string(peers::build_note(algorithm.name)) : of_this_call;
 }
 
 void count_memory(Measurement& measurement, const Algorithm& algorithm,

@@ -70,6 +70,10 @@ bool attempt(Measurement& measurement, const std::function<std::string()>& step)
 /// estimate is of all of them.
 void skip(Measurement& measurement, const Estimate& estimate, std::size_t calls, double budget);
 
+/// What a reader should know about the algorithm's time: its own explanation of what it did, or a note on the
+/// build of the library behind it; empty where there is neither.
+std::string explanation_of(const Algorithm& algorithm, const std::string& of_this_call);
+
 /// Notes the memory that was counted, if it was and if all that `algorithm` takes could be counted.
 void count_memory(Measurement& measurement, const Algorithm& algorithm,
                   const std::optional<Allocation>& allocation);

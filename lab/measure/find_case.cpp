@@ -14,6 +14,7 @@
 #include "lab/measure/memory.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
+#include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -131,7 +132,8 @@ class FindCase {
       measurement.pairs = pairs_.size();
       measurement.pair_hash = hash_of(pairs_);
       measurement.statistics = participant.finder->statistics();
-      measurement.explanation = participant.finder->explanation();
+      measurement.explanation =
+          explanation_of(*participant.entry->algorithm, participant.finder->explanation());
       return check(participant, 0);
     });
   }
@@ -190,7 +192,9 @@ class FindCase {
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
     finder.find(boxes, collector);
-    return watch.milliseconds();
+    const double milliseconds = watch.milliseconds();
+    if (auto* const peer = dynamic_cast<peers::TearDown*>(&finder)) peer->tear_down();
+    return milliseconds;
   }
 
   /// The fault of pairs_; empty if there is none.

@@ -92,7 +92,8 @@ struct Measurement {
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
   std::optional<Statistics> statistics;
-  std::string explanation{};                ///< of an algorithm that chooses: what it chose, and why
+  std::string explanation{};                ///< of an algorithm that chooses: what it chose, and why; of a
+                                            ///< peer: what its build costs it
   std::optional<std::uint64_t> own_bytes;   ///< what the algorithm holds between calls
   std::optional<std::uint64_t> peak_bytes;  ///< the most it holds at one moment, in or between calls
 
@@ -112,7 +113,7 @@ struct CaseResult {
 /// gap.
 struct Effort {
   double budget_seconds = 0.25;       ///< for one search; a slower algorithm is skipped
-  double history_seconds = 0.6;       ///< for a whole history, from its first frame to its last; likewise
+  double history_seconds = 1;         ///< for a whole history, from its first frame to its last; likewise
   double share_seconds = 0.1;         ///< timed calls of an algorithm end once they sum to this
   std::size_t least_rounds = 8;       ///< even if that takes longer
   std::size_t most_rounds = 100;      ///< even if that takes less time

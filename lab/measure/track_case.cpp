@@ -143,7 +143,8 @@ class TrackCase {
       measurement.outcome = Outcome::verified;
       measurement.pairs = static_cast<std::uint64_t>(participant.pairs);
       measurement.pair_hash = participant.hasher.hash();
-      measurement.explanation = participant.tracker->explanation();
+      measurement.explanation =
+          explanation_of(*participant.entry->algorithm, participant.tracker->explanation());
       participant.builds_ms.clear();
     }
   }
