@@ -11,13 +11,36 @@ import {
 import type { Comparison, Ratio } from "../../web/charts/data.ts";
 import type { Drawn, Place } from "../../web/charts/frame.ts";
 import { geometricMean, ratioText, rounded } from "../../web/charts/numbers.ts";
-import { intervalOf, intervalText, isFaster } from "../../web/charts/ratios.ts";
-import { greatest, least, leadsOf, type Facts } from "./facts.ts";
+import { intervalOf, intervalText, isFaster, isLevel, meanRatio } from "../../web/charts/ratios.ts";
+import { greatest, least, leadsOf, type Facts, type Lead } from "./facts.ts";
 import { plain, tableText } from "./markdown.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown } from "./words.ts";
 
 const mean = (all: readonly { ratio: Ratio }[]) => rounded(geometricMean(all.map(({ ratio }) => ratio.median)));
+
+/** "7.14 (7.05 to 7.23)": a mean of ratios with its interval, as far as it is known. */
+function meanText(all: readonly { ratio: Ratio }[]): string {
+  const found = meanRatio(all.map(({ ratio }) => ratio));
+  const interval = intervalOf(found);
+  return interval ? `${rounded(found.median)} (${interval.map(rounded).join(" to ")})` : rounded(found.median);
+}
+
+/** What templates may name of a group of leads; where there are none, `any` is false and the texts are not there. */
+function leadData(leads: readonly Lead[]): Record<string, unknown> {
+  if (leads.length === 0) return { any: false, cases: "0", mean: "-", mean_interval: "-", least: "-", least_case: "-", least_peer: "-" };
+  const worst = least(leads);
+  return {
+    any: true,
+    cases: shown(leads.length),
+    mean: mean(leads),
+    mean_interval: meanText(leads),
+    least: ratioText(worst.ratio.median),
+    least_interval: intervalText(worst.ratio),
+    least_case: worst.of.name,
+    least_peer: worst.peer.algorithm,
+  };
+}
 
 export function comparisonData(facts: Facts, comparison: Comparison): Record<string, unknown> {
   const { command, build, busy, measurements } = comparison;
@@ -36,6 +59,18 @@ export function comparisonData(facts: Facts, comparison: Comparison): Record<str
     peers: shown(peers.length),
     cases_with_a_peer: shown(leads.length),
     mean_lead: mean(leads),
+    mean_lead_interval: meanText(leads),
+    groups: Object.fromEntries(
+      Object.entries(facts.groups).map(([name, group]) =>
+        [name, { ...leadData(group.leads), auto: leadData(group.autoLeads) }]),
+    ),
+    auto_lead: leadData(facts.autoLeads),
+    literature: {
+      ...leadData(facts.literature),
+      algorithms: shown(facts.standings.filter(({ kind }) => kind === "literature").length),
+      lost: shown(facts.literature.filter(({ ratio }) => isFaster(ratio)).length),
+    },
+    date: comparison.date ?? "an unknown day",
     mean_lead_still: mean(leadsOf(facts.still)),
     mean_lead_moving: mean(leadsOf(facts.moving)),
     least_lead: ratioText(least(leads).ratio.median),
@@ -60,6 +95,41 @@ function casesNamed(facts: Facts, which: string): Case[] {
   const found = groups[which];
   if (!found) throw new Problem(`no cases '${which}'; there are ${listed(Object.keys(groups))}`);
   return found;
+}
+
+/** The leads of our fastest and of auto, a line a group of cases. */
+export function groupsTable({ groups, leads, autoLeads }: Facts): string {
+  const all = [...Object.values(groups), { name: "all", leads, autoLeads }].filter((group) => group.leads.length > 0);
+  const leastText = (some: readonly Lead[]) => (some.length === 0 ? "-" : intervalText(least(some).ratio));
+  return tableText(
+    ["cases", " how many", " best of ours, mean", " least", " `auto`, mean", " least", " lost", " level"],
+    all.map(({ name, leads: some, autoLeads: autos }) => [
+      name,
+      shown(some.length),
+      meanText(some),
+      leastText(some),
+      autos.length === 0 ? "-" : meanText(autos),
+      leastText(autos),
+      shown(some.filter(({ ratio }) => isFaster(ratio)).length),
+      shown(some.filter(({ ratio }) => isLevel(ratio)).length),
+    ]),
+  );
+}
+
+/** Our fastest against the fastest algorithm by the literature, case by case; a sentence where there is none. */
+export function literatureTable({ literature }: Facts): string {
+  if (literature.length === 0) return "No algorithm by the literature took part in this comparison.";
+  return tableText(
+    ["boxes", "ours", " ms", "fastest by the literature", " ms", " lead"],
+    literature.map(({ of, own, peer, ratio }) => [
+      plain(of.name),
+      `\`${own.algorithm}\``,
+      rounded(own.median_ms),
+      `\`${peer.algorithm}\``,
+      rounded(peer.median_ms),
+      isFaster(ratio) ? `**${intervalText(ratio)}**` : intervalText(ratio),
+    ]),
+  );
 }
 
 /** Which of ours other than auto, of the peers and of the draft's is fastest in each case. */
@@ -96,7 +166,9 @@ export function lostList({ lost }: Facts): string {
     .join("\n");
 }
 
-const kinds: Record<string, string> = { own: "ours", paper: "the draft's", literature: "literature", peer: "peer", user: "user's" };
+const kinds: Record<string, string> = {
+  own: "ours", paper: "the draft's", literature: "the literature's", peer: "peer", user: "user's",
+};
 
 export function standingsTable(facts: Facts): string {
   return tableText(
@@ -141,7 +213,7 @@ export function comparisonCharts(facts: Facts): Record<string, NamedChart> {
   for (const scene of scaledScenes(facts.still)) {
     charts[`scaling_${scene.scene}_${scene.dimension}d`] = {
       caption: `Time over the number of boxes: ${scene.scene}, ${scene.dimension}D; ours, the draft's and the peers'`,
-      draw: (place) => drawScaling(facts.still, scene, place, ["own", "paper", "peer"], 12),
+      draw: (place) => drawScaling(facts.still, scene, place, ["own", "paper", "peer", "literature"], 12),
     };
   }
   return charts;

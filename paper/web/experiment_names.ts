@@ -39,10 +39,24 @@ export function machineData(results: Experiments): Record<string, unknown> {
   };
 }
 
-export function verdictsTable({ experiments }: Experiments): string {
+export function verdictsTable({ experiments }: Experiments, address: (experiment: Experiment) => string): string {
   return tableText(
     [" claim", "what it says", "section", "verdict"],
-    experiments.map((one) => [String(one.number), `[${plain(one.title)}](#${one.name})`, plain(one.section), plain(verdictText(one))]),
+    experiments.map((one) => [String(one.number), `[${plain(one.title)}](${address(one)})`, plain(one.section), plain(verdictText(one))]),
+  );
+}
+
+/** Each verdict with its condition and what decided it. */
+export function findingsTable({ experiments }: Experiments, address: (experiment: Experiment) => string): string {
+  return tableText(
+    [" claim", "what it says", "section", "verdict", "what decided"],
+    experiments.map((one) => [
+      String(one.number),
+      `[${plain(one.title)}](${address(one)})`,
+      plain(one.section),
+      plain(verdictText(one)),
+      plain(one.reason),
+    ]),
   );
 }
 

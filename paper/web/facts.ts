@@ -1,7 +1,7 @@
 // What the comparison with other libraries comes to.
-import { casesOf, leadOf, ranking, standings, type Case, type Standing, type Timed } from "../../web/charts/comparison.ts";
+import { bestOwn, casesOf, leadOf, ranking, standings, type Case, type Standing, type Timed } from "../../web/charts/comparison.ts";
 import type { Comparison, Ratio } from "../../web/charts/data.ts";
-import { isFaster, isLevel } from "../../web/charts/ratios.ts";
+import { inverse, isFaster, isLevel } from "../../web/charts/ratios.ts";
 import { Problem } from "./problem.ts";
 
 /** A case that both ours and a peer have a time in. */
@@ -19,11 +19,26 @@ export interface Choice {
   ratio: Ratio;
 }
 
+/** Cases of one kind, and how far ahead we are in them. */
+export interface Group {
+  /** As sentences name it. */
+  name: string;
+  cases: Case[];
+  leads: Lead[];
+  /** Likewise of `auto`, in place of our fastest. */
+  autoLeads: Lead[];
+}
+
 export interface Facts {
   cases: Case[];
   /** Cases of boxes that rest, and of boxes that move. */
   still: Case[];
   moving: Case[];
+  /** All cases, each in one group: at rest in 2D and in 3D, moving by a scene's rule, recorded from an engine. */
+  groups: Record<"rest_2d" | "rest_3d" | "moving" | "recorded", Group>;
+  autoLeads: Lead[];
+  /** Cases in which an algorithm by the literature has a time, and the lead over the fastest of these. */
+  literature: Lead[];
   leads: Lead[];
   /** Leads that a peer has on us, and those in which nothing tells the two apart. */
   lost: Lead[];
@@ -34,8 +49,12 @@ export interface Facts {
   skipped: number;
 }
 
+function isAuto({ algorithm }: Timed): boolean {
+  return algorithm === "auto";
+}
+
 function choiceIn(of: Case): Choice[] {
-  const ratio = ranking(of).find((measurement) => measurement.algorithm === "auto")?.ratio_to_best_own;
+  const ratio = ranking(of).find(isAuto)?.ratio_to_best_own;
   return ratio ? [{ of, ratio }] : [];
 }
 
@@ -45,6 +64,35 @@ export function leadsOf(cases: readonly Case[]): Lead[] {
     const lead = leadOf(of);
     return lead ? [{ of, ...lead }] : [];
   });
+}
+
+/** The leads of `auto` over the fastest peer in some cases. */
+function autoLeadsOf(cases: readonly Case[]): Lead[] {
+  return cases.flatMap((of) => {
+    const ranked = ranking(of);
+    const own = ranked.find(isAuto);
+    const peer = ranked.find((measurement) => measurement.kind === "peer");
+    const ratio = own?.ratio_to_fastest_peer;
+    return own && peer && ratio ? [{ of, own, peer, ratio: inverse(ratio) }] : [];
+  });
+}
+
+/** The leads of our fastest over the fastest of the literature's. */
+function literatureLeadsOf(cases: readonly Case[]): Lead[] {
+  return cases.flatMap((of) => {
+    const own = bestOwn(of);
+    const peer = ranking(of).find((measurement) => measurement.kind === "literature");
+    return own && peer?.ratio_to_best_own ? [{ of, own, peer, ratio: peer.ratio_to_best_own }] : [];
+  });
+}
+
+/** Whether a scene is one that a physics engine made, which its name says. */
+function isRecorded({ scene }: Case): boolean {
+  return /^(box2d|bullet|jolt|rapier)_/.test(scene);
+}
+
+function groupOf(name: string, cases: Case[]): Group {
+  return { name, cases, leads: leadsOf(cases), autoLeads: autoLeadsOf(cases) };
 }
 
 /** The one with the least ratio of at least one. */
@@ -66,6 +114,12 @@ export function factsOf(comparison: Comparison, file: string): Facts {
     if (leadsOf(group).length === 0)
       throw new Problem(`${file}: no case of boxes that ${what} with times of ours and of a peer; expected at least one`);
   }
+  const groups = {
+    rest_2d: groupOf("2D, at rest", still.filter((of) => of.dimension === 2)),
+    rest_3d: groupOf("3D, at rest", still.filter((of) => of.dimension === 3)),
+    moving: groupOf("moving, generated", moving.filter((of) => !isRecorded(of))),
+    recorded: groupOf("moving, recorded from engines", moving.filter(isRecorded)),
+  };
   const choices = cases.flatMap(choiceIn);
   if (choices.length === 0) throw new Problem(`${file}: no case with a time of auto; expected at least one`);
   const leads = leadsOf(cases);
@@ -73,6 +127,9 @@ export function factsOf(comparison: Comparison, file: string): Facts {
     cases,
     still,
     moving,
+    groups,
+    autoLeads: autoLeadsOf(cases),
+    literature: literatureLeadsOf(cases),
     leads,
     lost: leads.filter((lead) => isFaster(lead.ratio)),
     level: leads.filter((lead) => isLevel(lead.ratio)),

@@ -2,8 +2,12 @@
 import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../../web/charts/data.ts";
 import type { Drawn, Place } from "../../web/charts/frame.ts";
 import { drawTableChart } from "../../web/charts/table_chart.ts";
-import { comparisonCharts, comparisonData, leadsTable, lostList, standingsTable } from "./comparison_names.ts";
-import { figuresTable, machineData, resultsTable, sectionText, verdictText, verdictsTable } from "./experiment_names.ts";
+import {
+  comparisonCharts, comparisonData, groupsTable, leadsTable, literatureTable, lostList, standingsTable,
+} from "./comparison_names.ts";
+import {
+  figuresTable, findingsTable, machineData, resultsTable, sectionText, verdictText, verdictsTable,
+} from "./experiment_names.ts";
 import { factsOf, type Facts } from "./facts.ts";
 import type { Names } from "./fill.ts";
 import { plain } from "./markdown.ts";
@@ -43,7 +47,12 @@ function captionOf(table: Table, chart: ChartSpec): string {
 export class Paper {
   /** Of the pass that is going on, by the name of its file. */
   readonly drawings = new Map<string, Drawing>();
-  private readonly figures = new Numbering("figure");
+  /** The page that is being filled: each has its own figures. */
+  private page = "";
+  private readonly figuresOf = new Map<string, Numbering>();
+  /** On which pages the sections of experiments and the sources are. */
+  private readonly sectionPages = new Map<string, string>();
+  private readonly sourcePages = new Map<string, string>();
   private readonly sources = new Numbering("source");
   private readonly cited = new Set<string>();
   private readonly experiments: Record<string, Experiment>;
@@ -61,12 +70,35 @@ export class Paper {
 
   /** Ends a pass over all templates: after the first, numbers of figures and sources are known. */
   endPass(): void {
-    this.figures.endPass();
+    for (const figures of this.figuresOf.values()) figures.endPass();
     this.sources.endPass();
   }
 
   beginPass(): void {
     this.drawings.clear();
+  }
+
+  beginPage(page: string): void {
+    this.page = page;
+    if (!this.figuresOf.has(page)) this.figuresOf.set(page, new Numbering("figure"));
+  }
+
+  private get figures(): Numbering {
+    return this.figuresOf.get(this.page)!;
+  }
+
+  /** How many figures a page has. */
+  figureCount(page: string): number {
+    return this.figuresOf.get(page)!.all().length;
+  }
+
+  /** A link's address: of a place on a page, from the page that is being filled. */
+  private address(place: string, page: string | undefined): string {
+    return page === undefined || page === this.page ? `#${place}` : `${page}#${place}`;
+  }
+
+  private addressOf(experiment: Experiment): string {
+    return this.address(experiment.name, this.sectionPages.get(experiment.name));
   }
 
   /** Sources that no template cites. */
@@ -114,9 +146,12 @@ export class Paper {
     return {
       data: { ...machineData(this.results), comparison: comparisonData(this.facts, this.comparison) },
       helpers: {
-        heading: (experiment) =>
-          `<a id="${of(experiment).name}"></a>Claim ${of(experiment).number}: ${plain(of(experiment).title)}`,
-        number: (experiment) => `[${of(experiment).number}](#${of(experiment).name})`,
+        heading: (experiment) => {
+          const { name, number, title } = of(experiment);
+          this.sectionPages.set(name, this.page);
+          return `<a id="${name}"></a>Claim ${number}: ${plain(title)}`;
+        },
+        number: (experiment) => `[${of(experiment).number}](${this.addressOf(of(experiment))})`,
         claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${sectionText(of(experiment).section)})`,
         measured: (experiment) => plain(of(experiment).measured),
         verdict: (experiment) => plain(verdictText(of(experiment))),
@@ -142,7 +177,8 @@ export class Paper {
               table.charts.map((chart) => drawingName(of(experiment), table, chart)),
             ),
           ),
-        verdicts: () => verdictsTable(this.results),
+        findings: () => findingsTable(this.results, (experiment) => this.addressOf(experiment)),
+        verdicts: () => verdictsTable(this.results, (experiment) => this.addressOf(experiment)),
         all_figures: () => figuresTable(this.results),
         holds: (experiment) => of(experiment).verdict === "holds",
         holds_when: (experiment) => of(experiment).verdict === "holds when",
@@ -155,6 +191,9 @@ export class Paper {
           return `\`${name}\``;
         },
         leads: (which) => leadsTable(this.facts, which),
+        groups: () => groupsTable(this.facts),
+        literature: () => literatureTable(this.facts),
+        any_literature: () => this.facts.literature.length > 0,
         lost: () => lostList(this.facts),
         any_lost: () => this.facts.lost.length > 0,
         any_level: () => this.facts.level.length > 0,
@@ -164,12 +203,16 @@ export class Paper {
           return this.show(path, `picture ${name}`, caption);
         },
         comparison_chart: (name) => this.draw(`comparison_${name}`, oneOf(comparison, name, "chart of the comparison")),
+        see_picture: (name) => this.see([`picture ${name}`]),
         see_comparison: (name) => this.see([`comparison_${name}`]),
         cite: (source) => {
           this.cited.add(source);
-          return `[[${this.sources.numberOf(source)}]](#${source})`;
+          return `[[${this.sources.numberOf(source)}]](${this.address(source, this.sourcePages.get(source))})`;
         },
-        source: (source) => `${this.sources.next(source)}. <a id="${source}"></a>`,
+        source: (source) => {
+          this.sourcePages.set(source, this.page);
+          return `${this.sources.next(source)}. <a id="${source}"></a>`;
+        },
       },
     };
   }

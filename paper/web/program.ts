@@ -1,8 +1,9 @@
 // The program that makes the paper: its arguments, files read and written.
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
-import { basename, dirname, join } from "node:path";
+import { basename, dirname, join, relative } from "node:path";
 
 import { documentOf, type Document } from "./document.ts";
+import type { Template } from "./fill.ts";
 import { listed, Problem } from "./problem.ts";
 
 /** Where texts go. */
@@ -11,10 +12,11 @@ export interface Print {
   error: (text: string) => void;
 }
 
-const usage = `usage: main.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER
-Fills TEMPLATES/*.md from the results of broadside experiment and broadside compare (JSON), and writes
-FOLDER/paper.md and FOLDER/figures/*.svg. With --check nothing is written: the exit status says whether
-they are what would be.
+const usage = `usage: main.mjs [--check] EXPERIMENTS COMPARISON TEMPLATES FOLDER [PAGE]...
+Fills templates from the results of broadside experiment and broadside compare (JSON), and writes
+FOLDER/paper.md from TEMPLATES/*.md, FOLDER/NAME.md from TEMPLATES/supplements/NAME.md, FOLDER/figures/*.svg,
+and the passages of each PAGE that quote TEMPLATES/quotes/*.md. With --check nothing is written: the exit
+status says whether they are what would be.
 `;
 
 function read(file: string, what: string): string {
@@ -68,13 +70,26 @@ function write(document: Document, folder: string): void {
   for (const path of stale) rmSync(join(folder, path));
 }
 
-function documentFrom(experiments: string, comparison: string, templates: string, folder: string): Document {
+/** The templates in a folder, which need not be there, by their names. */
+function templatesIn(folder: string): Record<string, Template> {
+  if (!existsSync(folder)) return {};
+  return Object.fromEntries(
+    namesIn(folder, ".md").map((name) => {
+      const file = join(folder, name);
+      return [name, { file, text: read(file, "a template") }];
+    }),
+  );
+}
+
+function documentFrom(experiments: string, comparison: string, templates: string, folder: string, pages: readonly string[]): Document {
   const pictures = join(folder, "..", "pictures");
   return documentOf({
-    templates: namesIn(templates, ".md").map((name) => {
-      const file = join(templates, name);
-      return { file, text: read(file, "a template") };
-    }),
+    templates: Object.values(templatesIn(templates)),
+    supplements: templatesIn(join(templates, "supplements")),
+    quotes: Object.fromEntries(
+      Object.entries(templatesIn(join(templates, "quotes"))).map(([name, template]) => [basename(name, ".md"), template]),
+    ),
+    quoting: Object.fromEntries(pages.map((page) => [relative(folder, page), read(page, "a page that quotes")])),
     experiments: { file: experiments, text: read(experiments, "results of broadside experiment --json") },
     comparison: { file: comparison, text: read(comparison, "results of broadside compare --json") },
     pictures: existsSync(pictures) ? namesIn(pictures, ".svg") : [],
@@ -84,20 +99,21 @@ function documentFrom(experiments: string, comparison: string, templates: string
 /** Returns the exit status: 0 fine, 1 not what would be written, 2 unusable arguments or input. */
 export function run(words: readonly string[], print: Print): number {
   const check = words[0] === "--check";
-  const [experiments, comparison, templates, folder, ...more] = check ? words.slice(1) : words;
-  if (!experiments || !comparison || !templates || !folder || more.length > 0) {
+  const [experiments, comparison, templates, folder, ...pages] = check ? words.slice(1) : words;
+  if (!experiments || !comparison || !templates || !folder) {
     print.error(usage);
     return 2;
   }
   try {
-    const document = documentFrom(experiments, comparison, templates, folder);
+    const document = documentFrom(experiments, comparison, templates, folder, pages);
+    const figures = [...document.keys()].filter((path) => path.endsWith(".svg")).length;
     const different = differences(document, folder);
     if (check && different.length > 0) {
       print.error(`${folder} is not what make paper writes: ${listed(different)}; expected no difference\n`);
       return 1;
     }
     if (!check) write(document, folder);
-    print.out(`${join(folder, "paper.md")}: ${document.size - 1} figures, ${different.length} files new or changed\n`);
+    print.out(`${join(folder, "paper.md")}: ${figures} figures on its pages, ${different.length} files new or changed\n`);
     return 0;
   } catch (error) {
     if (!(error instanceof Problem)) throw error;

@@ -103,6 +103,7 @@ export interface Measurement {
   teleport: number | null;
   algorithm: string;
   version: string;
+  /** Broadside's own, the draft's listings, those of the literature, other libraries', or one that a user added. */
   kind: "own" | "paper" | "literature" | "peer" | "user";
   mode: "find" | "track";
   threads: number;

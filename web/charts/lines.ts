@@ -21,6 +21,8 @@ export interface LinesSpec {
   lines: readonly Line[];
   /** Without marks on the points, which are many. */
   plain?: boolean;
+  /** What y is compared with, marked by a line: 1 where y is a ratio. */
+  reference?: number;
 }
 
 /** A text and the unit of it, where it has one. */
@@ -53,6 +55,7 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const description = describe(spec, lines);
   const all = lines.flatMap((line) => line.points);
   const levels = lines.flatMap((line) => (line.level === undefined ? [] : [line.level[1]]));
+  if (spec.reference !== undefined) levels.push(spec.reference);
   const numeric = all.every(([x]) => typeof x === "number");
   const categories = [...new Set(all.map(([x]) => String(x)))];
   const x = numeric
@@ -82,6 +85,12 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
       },
       series: lines.map((line, i) => {
         const { symbol, dash } = mark(i);
+        const marked = [
+          ...(line.level === undefined ? [] : [{ yAxis: line.level[1], name: line.level[0] }]),
+          ...(i > 0 || spec.reference === undefined ? [] : [{
+            yAxis: spec.reference, name: "", lineStyle: { color: place.theme.text, type: "dashed" as const, width: 1 },
+          }]),
+        ];
         return {
           type: "line" as const,
           name: line.name,
@@ -92,13 +101,13 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
           showSymbol: spec.plain !== true,
           lineStyle: { width: 2, type: line.dashed === true ? "dashed" as const : dash },
           emphasis: { focus: "series" as const },
-          ...(line.level === undefined ? {} : {
+          ...(marked.length === 0 ? {} : {
             markLine: {
               silent: true,
               symbol: "none",
               lineStyle: { type: "dashed" as const, width: 1, opacity: 0.8 },
               label: { show: false },
-              data: [{ yAxis: line.level[1], name: line.level[0] }],
+              data: marked,
             },
           }),
         };

@@ -1,12 +1,30 @@
 // Ratios of times with their intervals, and how they are shown.
 import type { Ratio } from "./data.ts";
-import { ratioText } from "./numbers.ts";
+import { geometricMean, ratioText } from "./numbers.ts";
 
 export type Interval = readonly [low: number, high: number];
 
 /** The interval of a ratio; undefined where there is none, as of an algorithm's ratio to itself, which is just 1. */
 export function intervalOf({ low, high }: Ratio): Interval | undefined {
   return low === null || high === null || low === high ? undefined : [low, high];
+}
+
+/** The geometric mean of ratios, with the 95 % interval that follows from theirs, which are of measurements apart. */
+export function meanRatio(ratios: readonly Ratio[]): Ratio {
+  const median = geometricMean(ratios.map((ratio) => ratio.median));
+  // Half widths of logarithms add up by their squares. A ratio without an interval is not known so well.
+  let squares = 0;
+  for (const { median: ratio, low, high } of ratios) {
+    if (low === null || high === null) return { of: "", median, low: null, high: null, rounds: null };
+    if (ratio !== 1) squares += (Math.log(high / low) / 2) ** 2;
+  }
+  const width = Math.exp(Math.sqrt(squares) / ratios.length);
+  return { of: "", median, low: median / width, high: median * width, rounds: null };
+}
+
+/** One over a ratio, the other way round. */
+export function inverse({ of, median, low, high, rounds }: Ratio): Ratio {
+  return { of, median: 1 / median, low: high === null ? null : 1 / high, high: low === null ? null : 1 / low, rounds };
 }
 
 /** Whether nothing tells the two apart: the interval holds 1. */

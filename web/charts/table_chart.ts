@@ -1,6 +1,6 @@
 // A chart of an experiment's table.
 import { drawBars } from "./bars.ts";
-import type { Cell, ChartSpec, Table } from "./data.ts";
+import type { Cell, ChartSpec, Column, Table } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
 import { drawLines } from "./lines.ts";
 import { drawMap } from "./map.ts";
@@ -14,6 +14,11 @@ export function columnOf(table: Table, name: string): number {
     throw new Error(`table '${table.name}' has no column '${name}'; expected one of ${names}`);
   }
   return at;
+}
+
+/** Whether a column holds ratios, by its name: "time over best". */
+function isRatio({ name, unit }: Column): boolean {
+  return unit === "" && name.includes(" over ");
 }
 
 export function cellText(cell: Cell): string {
@@ -69,6 +74,7 @@ export function drawTableChart(table: Table, chart: ChartSpec, place: Place): Dr
       x: x_column,
       y: { ...y_column, log: chart.log_y },
       labels,
+      ...(isRatio(y_column) && chart.log_y ? { from: 1 } : {}),
       series: names.map((name) => ({
         name,
         values: labels.map((label) => {
@@ -82,6 +88,7 @@ export function drawTableChart(table: Table, chart: ChartSpec, place: Place): Dr
     title: chart.title,
     x: { ...x_column, log: chart.log_x },
     y: { ...y_column, log: chart.log_y },
+    ...(isRatio(y_column) ? { reference: 1 } : {}),
     lines: names.map((name) => {
       const points = rows.filter((row) => nameOf(row) === name).flatMap((row): [number | string, number][] => {
         const [at, value] = [row[x], row[y]];

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { documentOf } from "../document.ts";
+import { documentOf, type Sources } from "../document.ts";
 import { Problem } from "../problem.ts";
 import { run } from "../program.ts";
 import { comparison, experiments, oldComparison } from "./fixture.ts";
@@ -13,11 +13,17 @@ import { comparison, experiments, oldComparison } from "./fixture.ts";
 interface Given {
   experiments?: string;
   comparison?: string;
+  supplements?: Sources["supplements"];
+  quotes?: Sources["quotes"];
+  quoting?: Sources["quoting"];
 }
 
 function paper(template: string, given: Given = {}): Map<string, string> {
   return documentOf({
     templates: [{ file: "07_testing.md", text: template }],
+    supplements: given.supplements ?? {},
+    quotes: given.quotes ?? {},
+    quoting: given.quoting ?? {},
     experiments: { file: "e.json", text: given.experiments ?? JSON.stringify(experiments()) },
     comparison: { file: "c.json", text: given.comparison ?? JSON.stringify(comparison()) },
     pictures: ["grid.svg"],
