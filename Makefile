@@ -17,12 +17,14 @@ help: ## List the targets
 compare: program ## Build the program and run the quick comparison
 	build/release/broadside compare
 
-paper: program ## Make docs/paper/paper.md and its figures from the committed results
+paper: program ## Make the paper (Markdown, PDF, HTML) and what README quotes from the committed results
 	mkdir -p build/paper
 	build/release/broadside experiment --from $(results)/experiments.json --json build/paper/experiments.json \
 	  >build/paper/verdicts.txt
 	node web/build.mjs --paper build/paper
-	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json paper/templates docs/paper
+	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json paper/templates docs/paper \
+	  README.md docs/results.md
+	scripts/print_paper
 
 paper-results: program ## Measure what the paper quotes, on this machine: half an hour
 	mkdir -p build/paper $(results)
@@ -73,6 +75,8 @@ clean: ## Remove everything that was built or fetched
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
 compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+
+paper: setup_options := --paper
 
 setup:
 	@scripts/setup $(setup_options)

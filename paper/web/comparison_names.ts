@@ -15,7 +15,7 @@ import { intervalOf, intervalText, isFaster, isLevel, meanRatio } from "../../we
 import { greatest, least, leadsOf, type Facts, type Lead } from "./facts.ts";
 import { plain, tableText } from "./markdown.ts";
 import { listed, Problem } from "./problem.ts";
-import { shown } from "./words.ts";
+import { processorName, shown } from "./words.ts";
 
 const mean = (all: readonly { ratio: Ratio }[]) => rounded(geometricMean(all.map(({ ratio }) => ratio.median)));
 
@@ -86,7 +86,11 @@ export function comparisonData(facts: Facts, comparison: Comparison): Record<str
     auto_worst: ratioText(worst.ratio.median),
     auto_worst_case: worst.of.name,
     command: command.join(" "),
-    revision: build.revision,
+    revision: build.revision ?? "unknown",
+    compiler: build.compiler,
+    cpu: processorName(comparison.machine),
+    cores: shown(comparison.machine.cores ?? 0),
+    os: comparison.machine.os ?? "an unknown system",
   };
 }
 
@@ -196,7 +200,7 @@ export function comparisonCharts(facts: Facts): Record<string, NamedChart> {
       draw: (place) => drawStandings(facts.cases, place),
     },
     libraries: {
-      caption: "`auto` and the best algorithm of each other library: times as multiples of the fastest algorithm's, " +
+      caption: "Auto and the best algorithm of each other library: times as multiples of the fastest algorithm's, " +
         "geometric mean of the cases that an algorithm does",
       draw: (place) => drawLibraries(facts.cases, place),
     },

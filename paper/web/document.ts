@@ -26,8 +26,6 @@ export interface Sources {
 export type Document = Map<string, string>;
 
 const notice = "<!-- Made by `make paper` from paper/templates/ and paper/results/; edit those. -->\n\n";
-const width = 760;
-
 /** More would not be printed. */
 export const mostFigures = 25;
 
@@ -60,7 +58,7 @@ export function documentOf(sources: Sources): Document {
     throw new Problem(`paper.md: ${figures} figures; expected at most ${mostFigures}: move some to a supplement`);
 
   const document: Document = new Map([...texts].map(([page, text]) => [page, `${notice}${wrapped(text)}\n`]));
-  for (const [name, { caption, draw }] of paper.drawings) {
+  for (const [name, { caption, width, draw }] of paper.drawings) {
     const drawn = draw({ theme: light, width });
     document.set(`figures/${name}.svg`, svgOf(drawn, { width, background: light.background, title: caption }));
   }

@@ -2,7 +2,7 @@
 import type { Experiment, Experiments, Table } from "../../web/charts/data.ts";
 import { bytesText, timeText } from "../../web/charts/numbers.ts";
 import { plain, tableText } from "./markdown.ts";
-import { shown, withUnit } from "./words.ts";
+import { processorName, shown, withUnit } from "./words.ts";
 
 /** The verdict with its condition, which goes on after "holds when". */
 export function verdictText({ verdict, condition }: Experiment): string {
@@ -18,7 +18,7 @@ export function machineData(results: Experiments): Record<string, unknown> {
   const count = (verdict: string) => shown(experiments.filter((one) => one.verdict === verdict).length);
   return {
     machine: {
-      cpu: (machine.cpu ?? "").replace(/\((R|TM)\)/g, ""),
+      cpu: processorName(machine),
       cores: shown(machine.cores ?? 0),
       memory: bytesText(machine.memory_bytes ?? 0),
       os: machine.os,

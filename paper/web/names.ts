@@ -15,9 +15,14 @@ import { Numbering } from "./numbering.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown, withUnit } from "./words.ts";
 
+const narrow = 420;
+const wide = 760;
+
 /** A figure of the paper. */
 export interface Drawing {
   caption: string;
+  /** In pixels: two narrow ones stand beside each other in print. */
+  width: number;
   draw: (place: Place) => Drawn;
 }
 
@@ -131,7 +136,7 @@ export class Paper {
 
   private drawChart(experiment: Experiment, table: Table, chart: ChartSpec): string {
     const draw = (place: Place) => drawTableChart(table, chart, place);
-    return this.draw(drawingName(experiment, table, chart), { caption: captionOf(table, chart), draw });
+    return this.draw(drawingName(experiment, table, chart), { caption: captionOf(table, chart), width: narrow, draw });
   }
 
   private see(names: readonly string[]): string {
@@ -202,7 +207,8 @@ export class Paper {
           const path = `../pictures/${oneOf(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
           return this.show(path, `picture ${name}`, caption);
         },
-        comparison_chart: (name) => this.draw(`comparison_${name}`, oneOf(comparison, name, "chart of the comparison")),
+        comparison_chart: (name) =>
+          this.draw(`comparison_${name}`, { ...oneOf(comparison, name, "chart of the comparison"), width: wide }),
         see_picture: (name) => this.see([`picture ${name}`]),
         see_comparison: (name) => this.see([`comparison_${name}`]),
         cite: (source) => {

@@ -13,7 +13,7 @@ export function quoted(file: string, page: string, quotes: ReadonlyMap<string, s
   const filled = page.replace(passage, (_all, begin: string, name: string, _old: string, end: string) => {
     const text = quotes.get(name);
     if (text === undefined) throw new Problem(`${file}: no quote '${name}'; there are ${listed([...quotes.keys()])}`);
-    return `${begin}${text}\n${end}`;
+    return `${begin}${text}\n\n${end}`;  // a table ends at an empty line
   });
   const whole = page.match(passage)?.length ?? 0;
   if (begins === 0 || whole !== begins)

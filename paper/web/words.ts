@@ -1,5 +1,11 @@
 // Numbers as the paper's sentences have them.
+import type { Machine } from "../../web/charts/data.ts";
 import { bytesText, grouped, rounded } from "../../web/charts/numbers.ts";
+
+/** Without the marks that makers add to it. */
+export function processorName({ cpu }: Machine): string {
+  return (cpu ?? "an unknown processor").replace(/\((R|TM)\)/g, "");
+}
 
 /** Whole numbers as they are, others with three significant digits. */
 export function shown(number: number): string {

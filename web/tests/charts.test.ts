@@ -10,6 +10,7 @@ import {
   inTodaysShape, intervalText, ratioText, timeText,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
+import { inverse, meanRatio } from "../charts/ratios.ts";
 import { logTicks } from "../charts/frame.ts";
 import { svgOf } from "../charts/render.ts";
 import { project } from "../../paper/web/tests/fixture.ts";
@@ -213,4 +214,25 @@ test("every chart is drawn in Node, in both themes, the same each time, whatever
       }
     }
   }
+});
+
+test("the mean of ratios has an interval that is narrower than theirs", () => {
+  const ratio = { of: "a", median: 2, low: 1.6, high: 2.5, rounds: 8 };
+  const mean = meanRatio([ratio, ratio, ratio, ratio]);
+  assert.equal(mean.median.toFixed(3), "2.000");
+  assert.deepEqual([mean.low!.toFixed(3), mean.high!.toFixed(3)], ["1.789", "2.236"]);
+  assert.equal(meanRatio([ratio, { ...ratio, low: null, high: null }]).low, null);
+});
+
+test("a ratio the other way round keeps its interval in order", () => {
+  assert.deepEqual(inverse({ of: "a", median: 2, low: 1, high: 4, rounds: 8 }), { of: "a", median: 0.5, low: 0.25, high: 1, rounds: 8 });
+});
+
+test("lines of ratios have a line at 1, which is in sight", () => {
+  const lines = (y: string): string => {
+    const columns = [{ name: "cell size", unit: "" }, { name: y, unit: "" }];
+    return JSON.stringify(drawTableChart({ ...table, columns, rows: [[1, 3], [10, 5]] }, spec({ y, series: "" }), place).option);
+  };
+  assert.match(lines("time over best"), /"min":1,.*"data":\[\{"yAxis":1,/);
+  assert.doesNotMatch(lines("tests a box"), /"yAxis":1,/);
 });

@@ -99,6 +99,48 @@ test("sources are numbered in their order, and cited by number", () => {
   assert.match(textOf('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
 });
 
+test("supplements have figures of their own, and link to the paper's sources; it links to their sections", () => {
+  const given = { supplements: { "claims.md": { file: "claims.md", text: '## {{heading "tests"}}\n\n{{cite "a"}}\n\n{{charts "tests"}}' } } };
+  const made = paper('{{number "tests"}}{{cite "a"}}\n\n{{charts "tests"}}\n\n{{source "a"}}A', given);
+  assert.match(made.get("paper.md")!, /\[1\]\(claims\.md#tests\)\[\[1\]\]\(#a\)[\s\S]*\*Figure 1\./);
+  assert.match(made.get("claims.md")!, /<a id="tests"><\/a>[\s\S]*\[\[1\]\]\(paper\.md#a\)[\s\S]*\*Figure 1\./);
+});
+
+const page = (name: string) => `# Page\n\n<!-- quote: ${name} -->\nold\n<!-- end of quote -->\n\nrest\n`;
+const lead = { lead: { file: "lead.md", text: "{{comparison.least_lead}}\n" } };
+
+test("pages quote the same results, and keep the rest of their text", () => {
+  const made = paper("a", { quotes: lead, quoting: { "../../README.md": page("lead") } });
+  assert.equal(made.get("../../README.md"), page("lead").replace("old", "0.40\n"));
+});
+
+refuses("a quote that is not there", "a", /^p\.md: no quote 'leads'; there are lead$/, {
+  quotes: lead, quoting: { "p.md": page("leads") + page("lead") },
+});
+refuses("a quote without an end", "a", /^p\.md: 2 quotes begin and 1 end/, {
+  quotes: lead, quoting: { "p.md": `${page("lead")}<!-- quote: lead -->\n` },
+});
+refuses("a quote that no page has", "a", /no page quotes lead; expected each on a page/, { quotes: lead });
+
+test("leads are given by group, of our best and of auto", () => {
+  const { groups } = { groups: textOf("{{groups}}").split("\n").slice(2).map((line) => line.split(" | ").slice(1, 6)) };
+  assert.deepEqual(groups, [
+    ["1", "8.00 (7.55 to 8.48)", "8.0 (7.5 to 8.5)", "7.27 (6.86 to 7.71)", "7.3 (6.9 to 7.7)"],
+    ["1", "0.400 (0.377 to 0.424)", "0.40 (0.38 to 0.42)", "0.500 (0.472 to 0.530)", "0.50 (0.47 to 0.53)"],
+    ["2", "1.79 (1.72 to 1.86)", "0.40 (0.38 to 0.42)", "1.91 (1.83 to 1.99)", "0.50 (0.47 to 0.53)"],
+  ]);
+  assert.equal(textOf("{{comparison.groups.rest_3d.any}} {{comparison.groups.rest_2d.auto.mean}}"), "false 7.27");
+});
+
+test("the literature's algorithms are compared where there are any", () => {
+  const template = "{{#if (any_literature)}}{{comparison.literature.algorithms}}, {{comparison.literature.mean}}{{else}}none{{/if}}";
+  assert.equal(textOf(template), "none");
+  assert.match(textOf("{{literature}}"), /No algorithm by the literature/);
+  const given = { comparison: JSON.stringify(comparison()).replace(/"paper_grid"(.*?)"kind":"paper"/, '"karras_lbvh"$1"kind":"literature"') };
+  assert.equal(textOf(template, given), "1, 4");
+  assert.match(textOf("{{literature}}", given), /\| `karras_lbvh` \| 4 \| 4\.0 \(3\.8 to 4\.2\) \|/);
+});
+
 test("leads are those of our best other than auto, with intervals, and lost cases are named", () => {
   assert.equal(textOf("{{comparison.mean_lead_still}} {{comparison.least_lead}}"), "8.00 0.40");
   assert.equal(textOf("{{comparison.least_lead_interval}}"), "0.40 (0.38 to 0.42)");

@@ -7,7 +7,10 @@ import { test } from "node:test";
 import { typedDigits } from "../typed_digits.ts";
 import { project } from "./fixture.ts";
 
-const chapters = ["00_abstract", "07_testing", "08_conclusion", "09_threats", "10_reproduce"];
+const chapters = [
+  "00_abstract", "07a_method", "07b_claims", "07c_comparison", "08_conclusion", "09_threats", "10_reproduce",
+  "supplements/claims", "supplements/comparison", "supplements/quoted", "quotes/caption", "quotes/figures", "quotes/leads",
+];
 
 const fileOf = (chapter: string) => `paper/templates/${chapter}.md`;
 const textOf = (chapter: string) => readFileSync(join(project, fileOf(chapter)), "utf8");

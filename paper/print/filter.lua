@@ -1,0 +1,154 @@
+-- Prepares the paper's Markdown for LaTeX and HTML: figures with their captions, two beside each other where they are
+-- narrow; listings under their titles on one page; columns as wide as what stands in them.
+local narrow = 500  -- an SVG up to this wide, in its pixels, takes half a line
+local latex = FORMAT == "latex"
+
+-- <a id="name"></a>, to which links lead.
+local function anchor(element)
+  local id = element.format == "html" and element.text:match('^<a id="([%w_]+)">$')
+  if id then return pandoc.Span({}, {id = id}) end
+  if element.format == "html" then return {} end
+end
+
+-- Other pages of the repository are not beside what is printed: their names stay.
+local function link(element)
+  if element.target:match("^#") or element.target:match("^%a+:") then return nil end
+  return element.content
+end
+
+local function size_of(path)
+  local file = assert(io.open(path))
+  local head = file:read(400)
+  file:close()
+  local width, height = head:match('<svg[^>]- width="([%d.]+)"'), head:match('<svg[^>]- height="([%d.]+)"')
+  return tonumber(width), tonumber(height)
+end
+
+-- An image that is a paragraph of its own, and the paragraph behind it: *Figure 3. What it shows*.
+local function figure_at(blocks, i)
+  local image, caption = blocks[i], blocks[i + 1]
+  if not image or image.t ~= "Para" or #image.content ~= 1 or image.content[1].t ~= "Image" then return nil end
+  if not caption or caption.t ~= "Para" or caption.content[1].t ~= "Emph" then
+    error("an image without a caption behind it: " .. image.content[1].src)
+  end
+  local source = image.content[1].src
+  local width, height = size_of(source)
+  return {source = source, width = width, height = height, caption = caption.content[1].content}
+end
+
+local function tex(inlines)
+  return (pandoc.write(pandoc.Pandoc({pandoc.Plain(inlines)}), "latex"):gsub("%s+$", ""))
+end
+
+-- Where scripts/print_paper puts the PDF of an SVG.
+local function printed(source)
+  return (source:gsub("^%.%./", ""):gsub("%.svg$", ".pdf"))
+end
+
+local function tex_figure(figure, width)
+  return string.format("\\begin{minipage}[t]{%s}\\centering\\vspace{0pt}\\includegraphics[width=\\linewidth]{%s}\\par" ..
+    "\\vspace{2pt}{\\footnotesize\\itshape %s\\par}\\end{minipage}", width, printed(figure.source), tex(figure.caption))
+end
+
+-- Figures that follow each other: narrow ones in pairs, others on a line of their own, each line a float.
+local function tex_figures(figures)
+  local floats, i = {}, 1
+  while i <= #figures do
+    local one, other = figures[i], figures[i + 1]
+    local line
+    if other and one.width <= narrow and other.width <= narrow then
+      line = tex_figure(one, "0.485\\linewidth") .. "\\hfill" .. tex_figure(other, "0.485\\linewidth")
+      i = i + 2
+    else
+      line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.92\\linewidth")
+      i = i + 1
+    end
+    table.insert(floats, pandoc.RawBlock("latex", "\\begin{figure}[tbp]\\centering " .. line .. "\\end{figure}"))
+  end
+  return floats
+end
+
+local function html_figures(figures)
+  local all = {}
+  for _, figure in ipairs(figures) do
+    local image = pandoc.Image(figure.caption, figure.source, "", {class = figure.width <= narrow and "narrow" or "wide"})
+    local caption = pandoc.write(pandoc.Pandoc({pandoc.Plain(figure.caption)}), "html")
+    table.insert(all, pandoc.RawBlock("html", "<figure>"))
+    table.insert(all, pandoc.Plain({image}))
+    table.insert(all, pandoc.RawBlock("html", "<figcaption>" .. caption .. "</figcaption></figure>"))
+  end
+  return all
+end
+
+-- A listing is never cut in two, nor from its title.
+local function tex_listing(title, code)
+  local head = title and ("\\textbf{\\small " .. tex(title.content[1].content) .. "}\\par") or ""
+  return pandoc.RawBlock("latex", "\\medskip\\noindent\\begin{minipage}{\\linewidth}" .. head ..
+    "\\begin{Verbatim}[fontsize=\\listingsize]\n" .. code.text .. "\n\\end{Verbatim}\n\\end{minipage}\\medskip")
+end
+
+local function is_title(block)
+  return block and block.t == "Para" and #block.content == 1 and block.content[1].t == "Strong"
+end
+
+local function blocks_of(blocks)
+  local done, i = pandoc.List(), 1
+  while i <= #blocks do
+    local figures = {}
+    local figure = figure_at(blocks, i)
+    while figure do
+      table.insert(figures, figure)
+      i = i + 2
+      figure = figure_at(blocks, i)
+    end
+    if #figures > 0 then
+      done:extend(latex and tex_figures(figures) or html_figures(figures))
+    elseif latex and is_title(blocks[i]) and blocks[i + 1] and blocks[i + 1].t == "CodeBlock" then
+      done:insert(tex_listing(blocks[i], blocks[i + 1]))
+      i = i + 2
+    elseif latex and blocks[i].t == "CodeBlock" then
+      done:insert(tex_listing(nil, blocks[i]))
+      i = i + 1
+    else
+      done:insert(blocks[i])
+      i = i + 1
+    end
+  end
+  return done
+end
+
+-- Columns by what stands in them: what is short keeps its width, the rest share what is left.
+local function table_of(element)
+  local most, sums = {}, {}
+  for column = 1, #element.colspecs do most[column], sums[column] = 1, 1 end
+  local function look(rows)
+    for _, row in ipairs(rows) do
+      for column, cell in ipairs(row.cells) do
+        local length = #pandoc.utils.stringify(cell.contents)
+        most[column] = math.max(most[column], length)
+        sums[column] = sums[column] + length
+      end
+    end
+  end
+  look(element.head.rows)
+  for _, body in ipairs(element.bodies) do look(body.body) end
+  local whole = 0
+  for _, length in ipairs(most) do whole = whole + length end
+  local line = 128  -- characters
+  if whole <= line then return nil end
+  local short, left, shares = 30, line, 0
+  for column, length in ipairs(most) do
+    if length <= short then left = left - length - 2 else shares = shares + math.sqrt(sums[column]) end
+  end
+  for column, length in ipairs(most) do
+    local width = length <= short and (length + 2) or left * math.sqrt(sums[column]) / shares
+    element.colspecs[column] = {element.colspecs[column][1], width / line}
+  end
+  return element
+end
+
+return {
+  {RawInline = anchor, RawBlock = function(element) if element.format == "html" then return {} end end},
+  {Link = link, Table = latex and table_of or nil},
+  {Pandoc = function(document) return pandoc.Pandoc(blocks_of(document.blocks), document.meta) end},
+}
