@@ -3,6 +3,7 @@ import { bestOwn, ranking, type Case } from "../../web/charts/comparison.ts";
 import {
   drawLeads,
   drawLibraries,
+  drawMeanLeads,
   drawScaling,
   drawStandings,
   drawWinners,
@@ -192,6 +193,14 @@ export interface NamedChart {
   draw: (place: Place) => Drawn;
 }
 
+/** For each group of cases, and for all: the mean lead of our best, and of auto. */
+function meanLeads({ groups, leads, autoLeads }: Facts): Parameters<typeof drawMeanLeads>[0] {
+  return [...Object.values(groups), { name: "all", leads, autoLeads }].flatMap(({ name, leads: ours, autoLeads: autos }) => [
+    ...(ours.length > 0 ? [{ label: `${name}, best`, auto: false, ratio: meanRatio(ours.map(({ ratio }) => ratio)) }] : []),
+    ...(autos.length > 0 ? [{ label: `${name}, auto`, auto: true, ratio: meanRatio(autos.map(({ ratio }) => ratio)) }] : []),
+  ]);
+}
+
 /** The charts of the comparison, by name. */
 export function comparisonCharts(facts: Facts): Record<string, NamedChart> {
   const charts: Record<string, NamedChart> = {
@@ -203,6 +212,11 @@ export function comparisonCharts(facts: Facts): Record<string, NamedChart> {
       caption: "Auto and the best algorithm of each other library: times as multiples of the fastest algorithm's, " +
         "geometric mean of the cases that an algorithm does",
       draw: (place) => drawLibraries(facts.cases, place),
+    },
+    groups: {
+      caption: "Time of the fastest peer over that of our best, and over that of auto (black): geometric means by " +
+        "group of cases, with intervals; at 1 a peer is as fast",
+      draw: (place) => drawMeanLeads(meanLeads(facts), place),
     },
     leads_still: {
       caption: "Boxes that rest: time of the fastest peer over that of our best, in the colour of the latter",

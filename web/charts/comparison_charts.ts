@@ -89,6 +89,19 @@ export function drawLeads(cases: readonly Case[], place: Place): Drawn {
   }, place);
 }
 
+/** Mean leads over the fastest peer, each with its interval: of auto, which has its own colour, and of others. */
+export function drawMeanLeads(means: readonly { label: string; auto: boolean; ratio: Ratio }[], place: Place): Drawn {
+  return drawBars({
+    title: "The fastest peer's time over ours, geometric mean",
+    x: { name: "cases", unit: "" },
+    y: { name: "times as fast", unit: "", log: true },
+    labels: means.map(({ label }) => label),
+    ...ratioBars(means.map(({ ratio }) => ratio)),
+    colours: means.map(({ auto }) => (auto ? colourOf({ algorithm: "auto" }, place.theme) : place.theme.palette[0]!)),
+    from: 1,
+  }, place);
+}
+
 /** A case in as few characters as tell it: "uniform 2D 10k". */
 export function shortName(of: Case): string {
   return `${of.scene.replace(":boxes=", " ")} ${of.dimension}D ${sizeText(of)}`;

@@ -74,6 +74,10 @@ test("what would be Markdown in results is shown as it is", () => {
   assert.match(textOf("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
 });
 
+test("findings give each claim's verdict and what decided it", () => {
+  assert.match(textOf("{{findings}}"), /\| 1 \| \[Tests grow .*\]\(#tests\) \| II \| holds when there are more than 12 boxes \| 12,000 tests\. \|/);
+});
+
 test("tables have a row a line and nothing where nothing is known", () => {
   assert.equal(
     textOf('{{table "tests" "times"}}'),
@@ -176,6 +180,17 @@ refuses("loops", '{{#each machine}}a{{/each}}', /no such helper/);
 refuses("what is no template", "{{#if}}", /07_testing\.md: Parse error/);
 refuses("an unknown source", '{{cite "b"}} {{source "a"}}', /no source 'b'; there are a$/);
 refuses("a source that nothing cites", '{{source "a"}}', /nothing cites the source a/);
+refuses("more figures than can be printed", '{{charts "tests"}}', /^paper\.md: 26 figures; expected at most 25/, {
+  experiments: JSON.stringify({
+    ...experiments(),
+    experiments: experiments().experiments.map((one) => ({
+      ...one,
+      tables: one.tables.map((table) => ({
+        ...table, charts: Array.from({ length: 26 }, (_, i) => ({ ...table.charts[0]!, title: `Chart ${i}` })),
+      })),
+    })),
+  }),
+});
 refuses("a chart that stands there twice", '{{charts "tests"}}{{charts "tests"}}', /stands in the paper already/);
 
 const changed = (change: (results: ReturnType<typeof experiments>) => void) => {
