@@ -60,7 +60,7 @@ local function tex_figures(figures)
       line = tex_figure(one, "0.485\\linewidth") .. "\\hfill" .. tex_figure(other, "0.485\\linewidth")
       i = i + 2
     else
-      line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.92\\linewidth")
+      line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.82\\linewidth")
       i = i + 1
     end
     table.insert(floats, pandoc.RawBlock("latex", "\\begin{figure}[tbp]\\centering " .. line .. "\\end{figure}"))
@@ -87,6 +87,20 @@ local function tex_listing(title, code)
     "\\begin{Verbatim}[fontsize=\\listingsize]\n" .. code.text .. "\n\\end{Verbatim}\n\\end{minipage}\\medskip")
 end
 
+-- The sources stand close together, in small print.
+local function tex_sources(list)
+  for _, item in ipairs(list.content) do
+    for i, block in ipairs(item) do
+      if block.t == "Para" then item[i] = pandoc.Plain(block.content) end
+    end
+  end
+  return {pandoc.RawBlock("latex", "\\begingroup\\footnotesize"), list, pandoc.RawBlock("latex", "\\endgroup")}
+end
+
+local function is_sources(block)
+  return block and block.t == "Header" and pandoc.utils.stringify(block) == "References"
+end
+
 local function is_title(block)
   return block and block.t == "Para" and #block.content == 1 and block.content[1].t == "Strong"
 end
@@ -106,6 +120,9 @@ local function blocks_of(blocks)
     elseif latex and is_title(blocks[i]) and blocks[i + 1] and blocks[i + 1].t == "CodeBlock" then
       done:insert(tex_listing(blocks[i], blocks[i + 1]))
       i = i + 2
+    elseif latex and is_sources(blocks[i - 1]) and blocks[i].t == "OrderedList" then
+      done:extend(tex_sources(blocks[i]))
+      i = i + 1
     elseif latex and blocks[i].t == "CodeBlock" then
       done:insert(tex_listing(nil, blocks[i]))
       i = i + 1
@@ -118,7 +135,7 @@ local function blocks_of(blocks)
 end
 
 -- Columns by what stands in them: what is short keeps its width, the rest share what is left.
-local function table_of(element)
+local function fit(element)
   local most, sums = {}, {}
   for column = 1, #element.colspecs do most[column], sums[column] = 1, 1 end
   local function look(rows)
@@ -135,7 +152,7 @@ local function table_of(element)
   local whole = 0
   for _, length in ipairs(most) do whole = whole + length end
   local line = 128  -- characters
-  if whole <= line then return nil end
+  if whole <= line then return end
   local short, left, shares = 30, line, 0
   for column, length in ipairs(most) do
     if length <= short then left = left - length - 2 else shares = shares + math.sqrt(sums[column]) end
@@ -144,7 +161,18 @@ local function table_of(element)
     local width = length <= short and (length + 2) or left * math.sqrt(sums[column]) / shares
     element.colspecs[column] = {element.colspecs[column][1], width / line}
   end
-  return element
+end
+
+-- A table of a few rows is never cut in two; pandoc's own may be, and runs into the foot of a page that has figures.
+local function table_of(element)
+  fit(element)
+  local rows = 0
+  for _, body in ipairs(element.bodies) do rows = rows + #body.body end
+  if rows > 14 then return element end
+  local text = pandoc.write(pandoc.Pandoc({element}), "latex")
+    :gsub("\\begin{longtable}%[%]", "\\begin{center}\\footnotesize\\begin{tabular}")
+    :gsub("\\end{longtable}", "\\end{tabular}\\end{center}"):gsub("\\endhead\n", "")
+  return pandoc.RawBlock("latex", text)
 end
 
 return {
