@@ -18,7 +18,7 @@ export interface Sources {
   /** Passages that other pages quote, by name, and these pages, by their paths from docs/paper/. */
   quotes: Record<string, Template>;
   quoting: Record<string, string>;
-  /** The names of those in docs/pictures/. */
+  /** The paths of drawings that are there already. */
   pictures: string[];
 }
 

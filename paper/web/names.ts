@@ -204,7 +204,7 @@ export class Paper {
         any_level: () => this.facts.level.length > 0,
         standings: () => standingsTable(this.facts),
         picture: (name, caption) => {
-          const path = `../pictures/${oneOf(by(this.pictures, (picture) => picture), `${name}.svg`, "picture")}`;
+          const path = oneOf(by(this.pictures, (picture) => picture.split("/").at(-1)!), `${name}.svg`, "picture");
           return this.show(path, `picture ${name}`, caption);
         },
         comparison_chart: (name) =>

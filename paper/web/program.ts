@@ -82,7 +82,8 @@ function templatesIn(folder: string): Record<string, Template> {
 }
 
 function documentFrom(experiments: string, comparison: string, templates: string, folder: string, pages: readonly string[]): Document {
-  const pictures = join(folder, "..", "pictures");
+  // What the program drew, and what was drawn by hand.
+  const pictures = ["../pictures", "diagrams"].filter((path) => existsSync(join(folder, path)));
   return documentOf({
     templates: Object.values(templatesIn(templates)),
     supplements: templatesIn(join(templates, "supplements")),
@@ -92,7 +93,7 @@ function documentFrom(experiments: string, comparison: string, templates: string
     quoting: Object.fromEntries(pages.map((page) => [relative(folder, page), read(page, "a page that quotes")])),
     experiments: { file: experiments, text: read(experiments, "results of broadside experiment --json") },
     comparison: { file: comparison, text: read(comparison, "results of broadside compare --json") },
-    pictures: existsSync(pictures) ? namesIn(pictures, ".svg") : [],
+    pictures: pictures.flatMap((path) => namesIn(join(folder, path), ".svg").map((name) => `${path}/${name}`)),
   });
 }
 

@@ -26,7 +26,7 @@ function paper(template: string, given: Given = {}): Map<string, string> {
     quoting: given.quoting ?? {},
     experiments: { file: "e.json", text: given.experiments ?? JSON.stringify(experiments()) },
     comparison: { file: "c.json", text: given.comparison ?? JSON.stringify(comparison()) },
-    pictures: ["grid.svg"],
+    pictures: ["../pictures/grid.svg"],
   });
 }
 
