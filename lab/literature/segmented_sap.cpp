@@ -381,7 +381,7 @@ Algorithm segmented_sap() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "region",
                     .summary = "boxes to a region of the grid",
-                    .standard = "200",
+                    .standard = "50",
                     .type = Tunable::Type::number,
                     .least = 1,
                     .most = 1e12},
