@@ -1,5 +1,6 @@
 // broadside experiment: the paper's claims, tested.
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,14 +32,14 @@ struct ExperimentArguments {
   ResultFiles files;
 };
 
-/// The named experiments, each once, by number; all if none was named.
+/// The named experiments, each once, in the order of the list; all if none was named.
 std::vector<const lab::Experiment*> chosen(const std::vector<std::string>& names) {
   std::vector<const lab::Experiment*> all;
   if (names.empty()) {
     for (const lab::Experiment& experiment : lab::experiments()) all.push_back(&experiment);
   }
   for (const std::string& name : names) all.push_back(&lab::find_experiment(name));
-  std::ranges::sort(all, {}, &lab::Experiment::number);
+  std::ranges::sort(all, std::less<>());  // they are elements of one list
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -60,8 +61,8 @@ NamedText read_whole(const std::string& path) {
 
 void print_list() {
   for (const lab::Experiment& experiment : lab::experiments())
-    print(fmt::format("{:2}  {:20}  {} ({})\n", experiment.number, experiment.name, experiment.title,
-                      experiment.section == "beyond" ? "beyond the paper" : "section " + experiment.section));
+    print(fmt::format("{:>2}  {:20}  {} ({})\n", experiment.label(), experiment.name, experiment.title,
+                      experiment.is_own() ? "our own claim" : "section " + experiment.section));
 }
 
 void print_result(const lab::ExperimentResult& result) {
@@ -147,8 +148,9 @@ Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
       "experiment",
       "Tests the claims of the paper, each by an experiment with a verdict. All of them take up to twenty "
       "minutes, with --quick up to three.");
-  verb->add_option("names", arguments->names,
-                   "Names or numbers of experiments, as --list shows them (default: all)");
+  verb->add_option(
+      "names", arguments->names,
+      "Names or numbers of experiments, as --list shows them; B1 is our own claim (default: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
   verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
   verb->add_option(

@@ -11,7 +11,7 @@ namespace broadside::lab {
 struct PageContent {
   std::string date;         ///< "2026-11-21"; plain text, no JSON
   std::string comparison;   ///< by the schema "broadside.results/1"
-  std::string experiments;  ///< by the schema "broadside.experiments/1"
+  std::string experiments;  ///< by the schema "broadside.experiments/2"
   std::string drawings;     ///< a list of scenes, as lab/report/drawing.hpp draws them
 };
 

@@ -175,12 +175,19 @@ Finding judge(const std::vector<Table>& tables) {
   const double printed_bytes = std::max(0.0, matrix.cell_bytes * printed);
 
   Finding finding;
-  if (explodes && is_defeated) {
-    finding.verdict = Verdict::holds;
-  } else if (explodes) {
-    finding.verdict = Verdict::holds_when;
-    finding.condition = "cells do not grow with the world";
-  }
+  finding.statements = {
+      {.name = "matrix",
+       .text = "the matrix of cells grows with the world until no memory holds it",
+       .verdict = explodes ? Verdict::not_testable : Verdict::refuted,
+       .condition =
+           explodes ? "a tautology, Algorithm 2 makes as many cells as the world is large; what a cell costs "
+                      "is measured"
+                    : "",
+       .evidence = {"memory_growth", "bytes_a_cell", "full_at_world"}},
+      {.name = "purpose",
+       .text = "cells that grow with the world defeat the purpose of small collections",
+       .verdict = is_defeated ? Verdict::confirmed : Verdict::refuted,
+       .evidence = {"capped_tests_growth"}}};
   finding.reason = fmt::format(
       "Memory grows with the side of the world to the power {:.2f}, {:.1f} bytes a cell: a world {} cells "
       "wide would take {}, and {} are full at {} cells. A hash keeps {} cells at most. Capped, as erratum 2c "

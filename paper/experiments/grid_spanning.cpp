@@ -88,24 +88,43 @@ Finding judge(const std::vector<Table>& tables) {
   const std::optional<double> kept = limit_of(smallest, "adding");
   const std::optional<double> fresh = limit_of(smallest, "adding to new cells");
 
-  Finding finding;
+  Statement adding{.name = "adding", .text = "then most of the time is spent in adding references"};
+  for (const double neighbours : smallest.numbers("neighbours"))
+    adding.evidence.push_back(fmt::format("adding_with_{:.0f}_neighbours", neighbours));
   const auto fewer = [](const std::optional<double>& limit) {
     return limit ? fmt::format("a box touches fewer than about {} others", rounded(*limit)) : std::string();
   };
   if (!kept) {
-    finding.verdict = Verdict::holds;
+    adding.verdict = Verdict::confirmed;
   } else if (*kept > 0) {
-    finding.verdict = Verdict::holds_when;
-    finding.condition = fewer(kept);
+    adding.verdict = Verdict::within_bounds;
+    adding.condition = fewer(kept);
   } else if (!fresh || *fresh > 0) {
-    finding.verdict = Verdict::holds_when;
-    finding.condition = "each search makes its cells anew" + (fresh ? ", and " + fewer(fresh) : "");
+    adding.verdict = Verdict::within_bounds;
+    adding.condition = "each search makes its cells anew" + (fresh ? ", and " + fewer(fresh) : "");
   }
 
   // How both grow where boxes have as many neighbours as in the standard scene.
   const Table middle = shares.where("neighbours", 4.0);
   const double references = growth_of(last_three(middle.points("cells across a box", "references a box")));
   const double tests = growth_of(last_three(middle.points("cells across a box", "tests a box")));
+  const auto [longest, of_longest] = middle.points("cells across a box", "references a box").back();
+  const double over_product = of_longest / (longest * longest);
+
+  Finding finding;
+  Statement slots{.name = "slots",
+                  .text = "a box has a reference in its width times its height of cells",
+                  .evidence = {"references_over_product"}};
+  if (over_product < 1.02) {
+    slots.verdict = Verdict::confirmed;
+  } else if (over_product < 1.25) {
+    slots.verdict = Verdict::within_bounds;
+    slots.condition = fmt::format(
+        "boxes are much longer than cells; {} cells long they are in {:.2f} times as many "
+        "(erratum T3)",
+        rounded(longest), over_product);
+  }
+  finding.statements = {slots, adding};
   finding.reason = fmt::format(
       "With boxes up to {:.0f} cells long, adding takes {} neighbours a box; where the cells' memory is made "
       "anew for each search, {}. For references grow with the length in cells to the power {:.2f}, as is "
@@ -122,6 +141,7 @@ Finding judge(const std::vector<Table>& tables) {
   }
   finding.figures.push_back({"references_growth", references});
   finding.figures.push_back({"tests_growth", tests});
+  finding.figures.push_back({"references_over_product", over_product});
   finding.figures.push_back(
       {"most_references_a_box", std::ranges::max(smallest.numbers("references a box"))});
   if (kept) finding.figures.push_back({"neighbours_below", *kept});

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "lab/measure/compare.hpp"
+#include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/samples.hpp"
 
 namespace broadside::lab {
@@ -93,6 +94,14 @@ const Measurement& measurement_of(const CaseResult& result, std::string_view spe
 
 Cell time_cell(const Measurement& measurement) {
   return measurement.samples_ms.empty() ? Cell() : Cell(median(measurement.samples_ms));
+}
+
+std::vector<Cell> ratio_cells(const CaseResult& result, const Measurement& measurement,
+                              const Measurement& other) {
+  if (measurement.samples_ms.empty() || other.samples_ms.empty()) return {Cell(), Cell(), Cell()};
+  const PairedRatio ratio = paired_ratio(result.of, measurement, other);
+  const Interval interval = ratio.interval.value_or(Interval{ratio.median, ratio.median});
+  return {ratio.median, interval.low, interval.high};
 }
 
 Cell tests_cell(const Measurement& measurement) { return count_cell(measurement, &Statistics::tests); }

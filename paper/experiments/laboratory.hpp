@@ -23,7 +23,7 @@ namespace broadside::lab {
 /// Where an experiment is done: how thorough it is, and what watches it.
 class Laboratory {
  public:
-  /// `quick` for a first impression: smaller numbers and fewer samples. All fifteen experiments then take
+  /// `quick` for a first impression: smaller numbers and fewer samples. All experiments then take
   /// less than three minutes on two cores, and less than twenty otherwise.
   Laboratory(const Catalogue& catalogue, bool quick, Watch watch = {})
       : catalogue_(&catalogue), quick_(quick), watch_(std::move(watch)) {}
@@ -74,6 +74,11 @@ const Measurement& measurement_of(const CaseResult& result, std::string_view spe
 
 /// The median time in milliseconds; nothing where it was skipped.
 Cell time_cell(const Measurement& measurement);
+
+/// The time of one over that of another of the same case, in the rounds of both: three cells for the columns
+/// of ratio_columns(). Nothing where one was skipped.
+std::vector<Cell> ratio_cells(const CaseResult& result, const Measurement& measurement,
+                              const Measurement& other);
 
 /// Tests of pairs, and references, a call or a frame; nothing where they are not counted.
 Cell tests_cell(const Measurement& measurement);

@@ -10,6 +10,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
+#include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/samples.hpp"
 #include "paper/experiments/laboratory.hpp"
 #include "paper/listings/coherent_tracker.hpp"
@@ -51,20 +52,9 @@ std::vector<FrameEvents> expected_events(const History<D>& history) {
   return all;
 }
 
-struct Samples {
-  std::vector<double> mending_ms;
-  std::vector<double> structure_ms;
-  std::vector<double> searching_ms;
-  std::vector<double> frame_ms;
-  double moved = 0;
-  double visited = 0;
-  double movers = 0;
-  double references = 0;
-};
-
 template <int D>
 void play(const std::string& spec, const History<D>& history, const std::vector<FrameEvents>& expected,
-          Samples& samples) {
+          MendingCost& cost) {
   const auto tracker = make_tracker<D>(spec);
   const auto& coherent = dynamic_cast<const paper::CoherentTracker<D>&>(*tracker);
   std::vector<Box<D>> boxes = history.boxes;
@@ -78,15 +68,15 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
     events.ended.clear();
     const Stopwatch watch;
     tracker->update({boxes, history.steps[i].changed}, begun, ended);
-    samples.frame_ms.push_back(watch.milliseconds());
+    cost.frame.all.push_back(watch.milliseconds());
     const paper::UpdateParts& parts = coherent.parts();
-    samples.mending_ms.push_back(parts.detecting_ms + parts.mending_ms);
-    samples.structure_ms.push_back(parts.mending_ms);
-    samples.searching_ms.push_back(parts.searching_ms);
-    samples.moved += static_cast<double>(parts.moved);
-    samples.visited += static_cast<double>(parts.visited);
-    samples.movers += static_cast<double>(parts.movers);
-    samples.references +=
+    cost.detecting.all.push_back(parts.detecting_ms);
+    cost.mending.all.push_back(parts.mending_ms);
+    cost.searching.all.push_back(parts.searching_ms);
+    cost.moved += static_cast<double>(parts.moved);
+    cost.visited += static_cast<double>(parts.visited);
+    cost.movers += static_cast<double>(parts.movers);
+    cost.references +=
         static_cast<double>(tracker->statistics()->references) / static_cast<double>(boxes.size());
     if (events != expected[i])
       throw std::runtime_error(
@@ -96,34 +86,54 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
   }
 }
 
+/// The times, none of them nothing: what a clock of whole nanoseconds did not see took less than one.
+std::vector<double> positive(std::vector<double> times) {
+  for (double& time : times) time = std::max(time, 1e-6);
+  return times;
+}
+
 }  // namespace
+
+double FrameTimes::median() const { return lab::median(all); }
+
+FrameTimes operator+(const FrameTimes& a, const FrameTimes& b) {
+  FrameTimes sum = a;
+  for (std::size_t i = 0; i < sum.all.size(); ++i) sum.all[i] += b.all[i];
+  return sum;
+}
+
+double MendingCost::mover_ns() const { return 1e6 * mending.median() / std::max(1.0, movers); }
+
+std::vector<Cell> ratio_cells(const FrameTimes& times, const FrameTimes& others) {
+  // Frames are to a history what seeds are to a scene.
+  const RatiosBySeed ratios(positive(times.all), positive(others.all), times.frames);
+  const double middle = ratios.median();
+  const Interval interval = ratios.interval().value_or(Interval{middle, middle});
+  return {middle, interval.low, interval.high};
+}
 
 template <int D>
 std::vector<MendingCost> measure_mending(const Laboratory& laboratory, const std::vector<std::string>& specs,
                                          const std::string& name, const History<D>& history) {
   const std::vector<FrameEvents> expected = expected_events<D>(history);
-  std::vector<Samples> all(specs.size());
+  std::vector<MendingCost> costs(specs.size());
   const Stopwatch watch;
   const double budget_ms = laboratory.either(1000.0, 100.0) * static_cast<double>(specs.size());
   const std::size_t rounds = laboratory.either<std::size_t>(7, 2);
   for (std::size_t round = 0; round < rounds && (round < 2 || watch.milliseconds() < budget_ms); ++round) {
     for (std::size_t i = 0; i < specs.size(); ++i) {
       laboratory.at(fmt::format("{} on {} of {} boxes", specs[i], name, history.boxes.size()));
-      play<D>(specs[i], history, expected, all[i]);
+      play<D>(specs[i], history, expected, costs[i]);
     }
   }
-  std::vector<MendingCost> costs;
-  for (const Samples& samples : all) {
-    const auto frames = static_cast<double>(samples.frame_ms.size());
-    const double mending = median(samples.mending_ms);
-    costs.push_back({.mending_ms = mending,
-                     .structure_ms = median(samples.structure_ms),
-                     .searching_ms = median(samples.searching_ms),
-                     .frame_ms = median(samples.frame_ms),
-                     .moved = samples.moved / std::max(1.0, samples.movers),
-                     .visited = samples.visited / std::max(1.0, samples.movers),
-                     .references = samples.references / frames,
-                     .mover_ns = 1e6 * mending / std::max(1.0, samples.movers / frames)});
+  for (MendingCost& cost : costs) {
+    const auto frames = static_cast<double>(cost.frame.all.size());
+    for (FrameTimes* const times : {&cost.detecting, &cost.mending, &cost.searching, &cost.frame})
+      times->frames = history.steps.size();
+    cost.moved /= std::max(1.0, cost.movers);
+    cost.visited /= std::max(1.0, cost.movers);
+    cost.movers /= frames;
+    cost.references /= frames;
   }
   return costs;
 }

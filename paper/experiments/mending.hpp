@@ -1,4 +1,5 @@
-// How the experiments on section VI time the paper's trackers: mending, searching and the whole frame apart.
+// How the experiments on section VI time the paper's trackers: finding out what changed, mending the
+// structure and searching it apart, and the whole frame.
 #pragma once
 
 #include <cstddef>
@@ -6,20 +7,38 @@
 #include <vector>
 
 #include "paper/experiments/laboratory.hpp"
+#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 
-/// One of the paper's trackers on a history: the median frame, and counts of a mean one.
+/// The milliseconds of each frame, round by round.
+struct FrameTimes {
+  std::vector<double> all{};
+  std::size_t frames = 0;  ///< a round
+
+  double median() const;
+
+  friend FrameTimes operator+(const FrameTimes& a, const FrameTimes& b);
+};
+
+/// One of the paper's trackers on a history: its times, and counts of a mean frame.
 struct MendingCost {
-  double mending_ms = 0;    ///< to find out what changed and mend the structure, or to build it anew
-  double structure_ms = 0;  ///< the second part of that alone
-  double searching_ms = 0;
-  double frame_ms = 0;    ///< the whole update, the comparison with the pairs before in it
+  FrameTimes detecting{};  ///< finding out which boxes changed
+  FrameTimes mending{};    ///< the structure alone: mended, or built anew
+  FrameTimes searching{};
+  FrameTimes frame{};     ///< the whole update, the comparison with the pairs before in it
   double moved = 0;       ///< entries moved, a mover (UpdateParts::moved)
   double visited = 0;     ///< likewise (UpdateParts::visited)
   double references = 0;  ///< a box
-  double mover_ns = 0;    ///< mending_ms for each box that changes
+  double movers = 0;      ///< boxes that change
+
+  /// Nanoseconds of mending for each box that changes.
+  double mover_ns() const;
 };
+
+/// The times of one tracker over those of another, frame by frame, as three cells: the median ratio, and the
+/// bounds of its 95 % interval.
+std::vector<Cell> ratio_cells(const FrameTimes& times, const FrameTimes& others);
 
 /// The costs of `specs`, trackers of the paper's listings, in that order; they take turns, round by round, on
 /// the history that the request describes. The events of every timed frame are checked. Throws

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
 #include "paper/experiments/descriptions.hpp"
 #include "paper/experiments/table.hpp"
@@ -39,12 +40,12 @@ Table measure_capacities(const Laboratory& laboratory, const std::string& algori
                           {"boxes"},
                           {"tests a box"},
                           {"references a box"},
-                          {"time", "ms"},
-                          {"time over best"}},
+                          {"time", "ms"}},
               .charts = {log_log_chart(fmt::format("Time of {} over the capacity of a leaf", algorithm),
                                        "capacity", "time over best", "density"),
                          log_log_chart(fmt::format("References of {} over the capacity of a leaf", algorithm),
                                        "capacity", "references a box", "density")}};
+  append(table.columns, ratio_columns("time over best"));
   const auto boxes = laboratory.either<std::size_t>(10'000, 3'000);
   for (const double neighbours : {1.0, 4.0, 16.0, 64.0, 256.0}) {
     std::vector<std::string> specs;
@@ -53,19 +54,21 @@ Table measure_capacities(const Laboratory& laboratory, const std::string& algori
     const CaseResult result = laboratory.measure(
         list_of(specs), {.scene = fmt::format("uniform:neighbours={}", neighbours), .boxes = boxes});
     const auto count = static_cast<double>(boxes);
-    const std::size_t first = table.rows.size();
+    const Measurement& best = std::ranges::min(result.measurements, {}, [](const Measurement& measured) {
+      return measured.samples_ms.empty() ? INFINITY : median(measured.samples_ms);
+    });
     std::size_t capacity = least;
-    double best = INFINITY;
     for (const Measurement& measured : result.measurements) {
-      const Cell time = time_cell(measured);
-      if (const double* const milliseconds = std::get_if<double>(&time)) best = std::min(best, *milliseconds);
-      table.add({fmt::format("{} neighbours", neighbours), neighbours, static_cast<double>(capacity), count,
-                 over(tests_cell(measured), count), over(references_cell(measured), count), time, Cell()});
+      std::vector<Cell> row = {fmt::format("{} neighbours", neighbours),
+                               neighbours,
+                               static_cast<double>(capacity),
+                               count,
+                               over(tests_cell(measured), count),
+                               over(references_cell(measured), count),
+                               time_cell(measured)};
+      append(row, ratio_cells(result, measured, best));
+      table.add(std::move(row));
       capacity *= 2;
-    }
-    for (std::size_t row = first; row < table.rows.size(); ++row) {
-      if (const double* const milliseconds = std::get_if<double>(&table.rows[row][6]))
-        table.rows[row][7] = *milliseconds / best;
     }
   }
   return table;
@@ -84,31 +87,31 @@ struct Density {
   double usual_references = 0;  // of the usual capacity, likewise below
   double usual_tests = 0;
   double fewest_tests = 0;
-  double penalty = 0;  // time of the usual capacity over the best time
+  RatioAt penalty{};  // time of the usual capacity over the best time
 };
 
 std::vector<Density> densities(const Table& table, double usual) {
   std::vector<Density> all;
   for (const double neighbours : table.distinct_numbers("neighbours")) {
     const Table rows = table.where("neighbours", neighbours);
-    const auto times = rows.points("capacity", "time");
-    if (times.size() < 3) {
-      throw std::invalid_argument(fmt::format("table '{}': {} times at {} neighbours; expected 3 or more",
-                                              table.name, times.size(), neighbours));
+    const std::vector<RatioAt> times = ratios_over(rows, "capacity", "time over best");
+    const auto best = std::ranges::find_if(times, [](const RatioAt& at) { return at.ratio <= as_good; });
+    const auto at = std::ranges::find(times, usual, &RatioAt::x);
+    if (times.size() < 3 || best == times.end() || at == times.end()) {
+      throw std::invalid_argument(fmt::format(
+          "table '{}': {} times at {} neighbours; expected 3 or more, one of them the best and one "
+          "of a capacity of {}",
+          table.name, times.size(), neighbours, usual));
     }
-    const double best_time =
-        std::ranges::min_element(times, {}, [](const auto& point) { return point.second; })->second;
-    const auto best = std::ranges::find_if(
-        times, [best_time](const auto& point) { return point.second <= as_good * best_time; });
-    const Table at_best = rows.where("capacity", best->first);
+    const Table at_best = rows.where("capacity", best->x);
     const Table at_usual = rows.where("capacity", usual);
     all.push_back({.neighbours = neighbours,
-                   .best_capacity = best->first,
+                   .best_capacity = best->x,
                    .best_references = at_best.number("references a box"),
                    .usual_references = at_usual.number("references a box"),
                    .usual_tests = at_usual.number("tests a box"),
                    .fewest_tests = std::ranges::min(rows.numbers("tests a box")),
-                   .penalty = at_usual.number("time") / best_time});
+                   .penalty = *at});
   }
   if (all.size() < 2)
     throw std::invalid_argument(
@@ -125,33 +128,37 @@ Finding judge(const std::vector<Table>& tables) {
   std::size_t dense = 0;
   std::size_t slowed_dense = 0;
   std::vector<double> slowed;
-  double worst = 0;
-  double worst_at = 0;
+  const Density& worst =
+      std::ranges::max(listed, {}, [](const Density& density) { return density.penalty.ratio; });
   for (const Density& density : listed) {
-    if (density.penalty > worst) {
-      worst = density.penalty;
-      worst_at = density.neighbours;
-    }
     const bool is_alleviated =
         density.best_capacity > usual_capacity && density.best_references < density.usual_references;
-    const bool is_slowed = density.penalty >= notable && is_alleviated;
+    const bool is_slowed = density.penalty.ratio >= notable && is_alleviated;
     if (is_slowed) slowed.push_back(density.neighbours);
     if (density.usual_references < 2 * listed.front().usual_references) continue;
     ++dense;
     slowed_dense += is_slowed ? 1 : 0;
   }
   double own_worst = 0;
-  for (const Density& density : owned) own_worst = std::max(own_worst, density.penalty);
+  for (const Density& density : owned) own_worst = std::max(own_worst, density.penalty.ratio);
 
   Finding finding;
-  finding.verdict = slowed_dense == 0       ? Verdict::does_not_hold
-                    : slowed_dense == dense ? Verdict::holds
-                                            : Verdict::holds_when;
-  if (finding.verdict == Verdict::holds_when) {
-    finding.condition =
+  Statement larger{.name = "larger_leaves",
+                   .text = "these slow it down, and larger leaves alleviate that",
+                   .verdict = slowed_dense == 0       ? Verdict::refuted
+                              : slowed_dense == dense ? Verdict::confirmed
+                                                      : Verdict::within_bounds,
+                   .evidence = {"worst_time_over_best", "time_over_best_in_densest"}};
+  if (larger.verdict == Verdict::within_bounds) {
+    larger.condition =
         fmt::format("a box overlaps from {} to {} others; beyond, the pairs themselves take the time",
                     slowed.front(), slowed.back());
   }
+  finding.statements = {{.name = "references",
+                         .text = "in a dense world a box has references in numerous nodes",
+                         .verdict = dense > 0 ? Verdict::confirmed : Verdict::refuted,
+                         .evidence = {"references_in_sparsest", "references_in_densest"}},
+                        larger};
   const Density& sparsest = listed.front();
   const Density& densest = listed.back();
   constexpr double margin = 100 * (as_good - 1);
@@ -162,13 +169,13 @@ Finding judge(const std::vector<Table>& tables) {
       "world they take {} tests a box where {} would do{}. The own quadtree takes up to {:.2f} times its "
       "best time in leaves of {}; in the "
       "sparsest world the smallest leaf within {:.0f} % of it holds {}.",
-      usual_capacity, worst, worst_at, sparsest.neighbours, densest.neighbours, sparsest.usual_references,
-      densest.usual_references, margin, sparsest.best_capacity, densest.best_capacity,
-      rounded(densest.usual_tests), rounded(densest.fewest_tests),
+      usual_capacity, worst.penalty.ratio, worst.neighbours, sparsest.neighbours, densest.neighbours,
+      sparsest.usual_references, densest.usual_references, margin, sparsest.best_capacity,
+      densest.best_capacity, rounded(densest.usual_tests), rounded(densest.fewest_tests),
       densest.usual_tests > 1.05 * densest.fewest_tests ? ", since a pair meets in many leaves" : "",
       own_worst, own_capacity, margin, owned.front().best_capacity);
-  finding.figures = {{"worst_time_over_best", worst},
-                     {"worst_at", worst_at, "neighbours"},
+  finding.figures = {{"worst_time_over_best", worst.penalty.ratio, "", worst.penalty.interval},
+                     {"worst_at", worst.neighbours, "neighbours"},
                      {"references_in_sparsest", sparsest.usual_references, "references a box"},
                      {"references_in_densest", densest.usual_references, "references a box"},
                      {"references_of_best_in_densest", densest.best_references, "references a box"},
@@ -176,7 +183,7 @@ Finding judge(const std::vector<Table>& tables) {
                      {"best_capacity_in_densest", densest.best_capacity, "boxes"},
                      {"tests_in_densest", densest.usual_tests, "tests a box"},
                      {"fewest_tests_in_densest", densest.fewest_tests, "tests a box"},
-                     {"time_over_best_in_densest", densest.penalty},
+                     {"time_over_best_in_densest", densest.penalty.ratio, "", densest.penalty.interval},
                      {"own_best_capacity_in_sparsest", owned.front().best_capacity, "boxes"},
                      {"own_best_capacity_in_densest", owned.back().best_capacity, "boxes"},
                      {"own_worst_standard_over_best", own_worst},

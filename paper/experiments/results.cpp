@@ -68,18 +68,42 @@ Finding judged_by(const Experiment& experiment, const std::vector<Table>& tables
   }
 }
 
+void check_statements(const Finding& finding, const std::set<std::string>& figures) {
+  if (finding.statements.empty()) throw std::invalid_argument("no statement; expected one at least");
+  std::set<std::string> names;
+  for (const Statement& statement : finding.statements) {
+    if (!names.insert(statement.name).second)
+      throw std::invalid_argument(fmt::format("statement '{}' twice; expected it once", statement.name));
+    const bool has_condition =
+        statement.verdict == Verdict::within_bounds || statement.verdict == Verdict::not_testable;
+    if (statement.condition.empty() == has_condition)
+      throw std::invalid_argument(fmt::format("statement '{}' is {} and its condition '{}'; expected {}",
+                                              statement.name, name(statement.verdict), statement.condition,
+                                              has_condition ? "one" : "none"));
+    for (const std::string& figure : statement.evidence) {
+      if (!figures.contains(figure))
+        throw std::invalid_argument(fmt::format(
+            "statement '{}' rests on the figure '{}'; expected one that there is", statement.name, figure));
+    }
+  }
+}
+
 }  // namespace
 
 Finding judged(const Experiment& experiment, const std::vector<Table>& tables) {
   Finding finding = judged_by(experiment, tables);
   std::set<std::string> names;
   for (const Figure& figure : finding.figures) {
-    if (!std::isfinite(figure.value))
-      throw std::invalid_argument(
-          fmt::format("figure '{}' comes to {}; expected a finite number", figure.name, figure.value));
+    const Interval interval = figure.interval.value_or(Interval{figure.value, figure.value});
+    for (const double number : {figure.value, interval.low, interval.high}) {
+      if (!std::isfinite(number))
+        throw std::invalid_argument(
+            fmt::format("figure '{}' comes to {}; expected a finite number", figure.name, number));
+    }
     if (!names.insert(figure.name).second)
       throw std::invalid_argument(fmt::format("figure '{}' twice; expected it once", figure.name));
   }
+  check_statements(finding, names);
   return finding;
 }
 
@@ -116,21 +140,29 @@ void do_experiments(std::span<const Experiment* const> chosen, const Laboratory&
 
 std::string text_of(const ExperimentResult& result) {
   const Experiment& experiment = *result.experiment;
-  std::string text = fmt::format("{}. {} ({}, section {})\n", experiment.number, experiment.title,
-                                 experiment.name, experiment.section);
+  std::string text = fmt::format("{}. {} ({}, {})\n", experiment.label(), experiment.title, experiment.name,
+                                 experiment.is_own() ? "our own claim" : "section " + experiment.section);
   text += wrapped("Claim: " + experiment.claim) + wrapped("Measured: " + experiment.measured);
   for (const Table& table : result.tables) text += table_text(table);
-  text += "\n" + wrapped("Verdict: " + result.finding.verdict_text() + ". " + result.finding.reason);
-  return text;
+  text += "\n";
+  for (std::size_t i = 0; i < result.finding.statements.size(); ++i) {
+    const Statement& statement = result.finding.statements[i];
+    text += wrapped(fmt::format("Verdict {}, {}: {}.", experiment.label_of(result.finding, i), statement.text,
+                                statement.verdict_text()));
+  }
+  return text + wrapped(result.finding.reason);
 }
 
 std::string summary_of(const ExperimentResults& results) {
-  Columns columns("><<>");
+  Columns columns("<<<>");
   double seconds = 0;
   Steadiness steadiness;
   for (const ExperimentResult& result : results.results) {
-    columns.add({std::to_string(result.experiment->number), result.experiment->name,
-                 result.finding.verdict_text(), duration(result.seconds)});
+    for (std::size_t i = 0; i < result.finding.statements.size(); ++i) {
+      const Statement& statement = result.finding.statements[i];
+      columns.add({result.experiment->label_of(result.finding, i), result.experiment->name,
+                   statement.verdict_text(), i == 0 ? duration(result.seconds) : ""});
+    }
     seconds += result.seconds;
     steadiness.add(result.steadiness.value_or(Steadiness{}));
   }

@@ -35,7 +35,8 @@ struct ExperimentResults {
 };
 
 /// What the experiment finds in these tables. Throws std::invalid_argument if the tables are not what it
-/// judges by, or it comes to a figure that is not finite or has the name of another.
+/// judges by, or it comes to a figure that is not finite or has the name of another, or to a statement that
+/// lacks its condition or names a figure that there is not.
 Finding judged(const Experiment& experiment, const std::vector<Table>& tables);
 
 /// What there is to say of a run that begins now, with no results yet.
@@ -47,22 +48,24 @@ void do_experiments(std::span<const Experiment* const> chosen, const Laboratory&
                     ExperimentResults& results,
                     const std::function<void(const ExperimentResult&)>& finished = {});
 
-/// One experiment as text for a terminal: the claim, the tables, the verdict and why.
+/// One experiment as text for a terminal: the claim, the tables, the verdict on each statement and why.
 std::string text_of(const ExperimentResult& result);
 
-/// A line for each: number, name, verdict; and one that says how many measurements were unsteady, if any.
+/// A line for each statement: label, name, verdict; and one that says how many measurements were unsteady,
+/// if any.
 std::string summary_of(const ExperimentResults& results);
 
-/// One object by the schema "broadside.experiments/1": schema, machine, build, target, date, command, quick,
+/// One object by the schema "broadside.experiments/2": schema, machine, build, target, date, command, quick,
 /// stopped, processor_share and busy where they are known, and a list of experiments, each with its texts,
 /// its tables (columns, charts, rows), its finding and, where it is known, how many measurements there were
 /// and how many of them unsteady. docs/schemas/ describes every field.
 std::string json_of(const ExperimentResults& results);
 
-/// What json_of() wrote, read back from the JSON in `text`; findings are not read but made anew from the
-/// tables. `name` is what errors call the file. Throws FileError, with what was found and expected where, if
-/// it is no such JSON, of another schema, holds no results, an unknown experiment, or a cell that is neither
-/// a finite number, a text nor null; or if the tables are not what their experiment judges by.
+/// What json_of() wrote, today or by the schema before, read back from the JSON in `text`; findings are not
+/// read but made anew from the tables. `name` is what errors call the file. Throws FileError, with what was
+/// found and expected where, if it is no such JSON, of another schema, holds no results, an unknown
+/// experiment, or a cell that is neither a finite number, a text nor null; or if the tables are not what
+/// their experiment judges by.
 ExperimentResults read_experiments(std::string_view text, const std::string& name);
 
 }  // namespace broadside::lab

@@ -16,7 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view schema = "broadside.experiments/1";
+constexpr std::string_view schema = "broadside.experiments/2";
+
+/// Its tables are as today's, and findings are made anew from those.
+constexpr std::string_view schema_before = "broadside.experiments/1";
 
 Json json_of(const Cell& cell) {
   if (const auto* const number = std::get_if<double>(&cell)) return *number;
@@ -56,13 +59,27 @@ std::string json_text_of(const ExperimentResult& result) {
   const Experiment& experiment = *result.experiment;
   const Finding& finding = result.finding;
   Json figures = Json::object();
-  for (const Figure& figure : finding.figures)
-    figures[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
-  Json head = {
-      {"number", experiment.number}, {"name", experiment.name},          {"title", experiment.title},
-      {"claim", experiment.claim},   {"section", experiment.section},    {"measured", experiment.measured},
-      {"seconds", result.seconds},   {"verdict", name(finding.verdict)}, {"condition", finding.condition},
-      {"reason", finding.reason},    {"figures", std::move(figures)}};
+  for (const Figure& figure : finding.figures) {
+    figures[figure.name] = {{"value", figure.value},
+                            {"unit", figure.unit},
+                            {"low", figure.interval ? Json(figure.interval->low) : Json()},
+                            {"high", figure.interval ? Json(figure.interval->high) : Json()}};
+  }
+  Json statements = Json::array();
+  for (std::size_t i = 0; i < finding.statements.size(); ++i) {
+    const Statement& statement = finding.statements[i];
+    statements.push_back({{"label", experiment.label_of(finding, i)},
+                          {"name", statement.name},
+                          {"text", statement.text},
+                          {"verdict", name(statement.verdict)},
+                          {"condition", statement.condition},
+                          {"evidence", statement.evidence}});
+  }
+  Json head = {{"label", experiment.label()},   {"name", experiment.name},
+               {"title", experiment.title},     {"claim", experiment.claim},
+               {"section", experiment.section}, {"measured", experiment.measured},
+               {"seconds", result.seconds},     {"statements", std::move(statements)},
+               {"reason", finding.reason},      {"figures", std::move(figures)}};
   if (result.steadiness)
     head["steadiness"] = {{"measurements", result.steadiness->measurements},
                           {"unsteady", result.steadiness->unsteady}};
@@ -285,7 +302,7 @@ std::string json_of(const ExperimentResults& results) {
 ExperimentResults read_experiments(std::string_view text, const std::string& name) {
   const Json json = parsed(text, name);
   const Reader reader(json, name);
-  if (const auto found = reader.get<std::string>("schema", schema); found != schema)
+  if (const auto found = reader.get<std::string>("schema", schema); found != schema && found != schema_before)
     throw FileError(fmt::format("{}: schema '{}'; expected '{}'", name, found, schema));
   ExperimentResults results{
       .machine = read_part(reader, "machine", read_machine),

@@ -237,10 +237,19 @@ Finding judge(const std::vector<Table>& tables) {
   const double stripes = grows("sweep_and_prune 2D");
 
   Finding finding;
-  finding.verdict = !far.is_none()      ? Verdict::does_not_hold
-                    : endless.is_none() ? Verdict::holds
-                                        : Verdict::holds_when;
-  if (finding.verdict == Verdict::holds_when) finding.condition = "no box is infinite";
+  finding.statements = {
+      {.name = "no_bounds",
+       .text = "a sweep needs no bounds of the world",
+       .verdict = !far.is_none()      ? Verdict::refuted
+                  : endless.is_none() ? Verdict::confirmed
+                                      : Verdict::within_bounds,
+       .condition = far.is_none() && !endless.is_none() ? "no box is infinite" : "",
+       .evidence = {"tests_without_bounds", "time_without_bounds", "tests_of_infinite_boxes"}},
+      {.name = "one_axis",
+       .text = "only one axis has been chosen, the x axis",
+       .verdict = Verdict::not_testable,
+       .condition = "a choice of the draft, which says nothing of its worth; what it costs is measured",
+       .evidence = {"worst_axis_over_best"}}};
   finding.reason = fmt::format(
       "Boxes far away, or a world 1,000 times as wide, cost a sweep at most {:.2f} times the tests, {:.2f} "
       "times the memory and {:.2f} times the time; infinite boxes {:.2f} times the tests. The paper's grid "

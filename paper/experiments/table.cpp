@@ -2,6 +2,7 @@
 #include "paper/experiments/table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -176,6 +177,73 @@ std::optional<double> crossover(const std::vector<std::pair<double, double>>& fi
   const double begin = logarithm(first[from - 1].first);
   const double end = logarithm(first[from].first);
   return std::exp(begin + (end - begin) * -lead[from - 1] / (lead[from] - lead[from - 1]));
+}
+
+Interval growth_interval_of(const std::vector<std::pair<double, double>>& points) {
+  const double exponent = growth_of(points);
+  if (points.size() < 3) return {exponent, exponent};
+  double mean_x = 0;
+  double mean_y = 0;
+  const auto count = static_cast<double>(points.size());
+  for (const auto& [x, y] : points) {
+    mean_x += std::log(x) / count;
+    mean_y += std::log(y) / count;
+  }
+  double residue = 0;
+  double square = 0;
+  for (const auto& [x, y] : points) {
+    const double distance = std::log(x) - mean_x;
+    const double error = std::log(y) - mean_y - exponent * distance;
+    residue += error * error;
+    square += distance * distance;
+  }
+  // Student's t at 97.5 %, by the degrees of freedom from 1 on.
+  constexpr std::array<double, 10> student = {12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23};
+  const std::size_t freedom = points.size() - 2;
+  const double t = student[std::min(freedom, student.size()) - 1];
+  const double error = t * std::sqrt(residue / static_cast<double>(freedom) / square);
+  return {exponent - error, exponent + error};
+}
+
+std::vector<Column> ratio_columns(const std::string& name) {
+  return {{name}, {name + " low"}, {name + " high"}};
+}
+
+std::vector<RatioAt> ratios_over(const Table& table, std::string_view x, const std::string& ratio) {
+  const std::size_t at_x = table.column(x);
+  const std::size_t at_ratio = table.column(ratio);
+  const std::size_t at_low = table.column(ratio + " low");
+  const std::size_t at_high = table.column(ratio + " high");
+  std::vector<RatioAt> ratios;
+  for (const std::vector<Cell>& row : table.rows) {
+    const auto number = [&row](std::size_t at) { return std::get_if<double>(&row[at]); };
+    if (number(at_x) == nullptr || number(at_ratio) == nullptr || number(at_low) == nullptr ||
+        number(at_high) == nullptr)
+      continue;
+    ratios.push_back({*number(at_x), *number(at_ratio), {*number(at_low), *number(at_high)}});
+    if (!ratios.back().interval.includes(ratios.back().ratio))
+      throw std::invalid_argument(fmt::format("table '{}': '{}' is {}, from {} to {}; expected it between",
+                                              table.name, ratio, ratios.back().ratio,
+                                              ratios.back().interval.low, ratios.back().interval.high));
+  }
+  if (ratios.size() < 2)
+    throw std::invalid_argument(fmt::format("table '{}': {} rows with '{}' and its interval; expected two",
+                                            table.name, ratios.size(), ratio));
+  std::ranges::sort(ratios, {}, &RatioAt::x);
+  return ratios;
+}
+
+Crossing rises_above(double level, const std::vector<RatioAt>& ratios) {
+  std::vector<std::pair<double, double>> flat;
+  for (const RatioAt& at : ratios) flat.emplace_back(at.x, level);
+  const auto crossing = [&](const auto& height) {
+    std::vector<std::pair<double, double>> rising;
+    for (const RatioAt& at : ratios) rising.emplace_back(at.x, height(at));
+    return crossover(flat, rising);
+  };
+  return {crossing([](const RatioAt& at) { return at.ratio; }),
+          crossing([](const RatioAt& at) { return at.interval.high; }),
+          crossing([](const RatioAt& at) { return at.interval.low; })};
 }
 
 std::optional<double> crossover_in(const Table& table, std::string_view x, std::string_view first,

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "lab/measure/measurement.hpp"
+
 namespace broadside::lab {
 
 /// A column: what it is, in lower case as it stands in a heading, and the unit of its numbers ("ms", "bytes";
@@ -102,6 +104,47 @@ double growth_of(const std::vector<std::pair<double, double>>& points);
 /// that is not above 0.
 std::optional<double> crossover(const std::vector<std::pair<double, double>>& first,
                                 const std::vector<std::pair<double, double>>& second);
+
+/// The 95 % interval of growth_of(): how far the exponent may be off, by how far the points lie from the
+/// line. Of two points it is the exponent alone.
+Interval growth_interval_of(const std::vector<std::pair<double, double>>& points);
+
+/// The columns of a ratio with its interval: `name`, and the same with " low" and " high" behind it.
+std::vector<Column> ratio_columns(const std::string& name);
+
+/// A ratio as tables have it: in a column, and the bounds of its interval in columns of that name with " low"
+/// and " high" behind it.
+struct RatioAt {
+  double x = 0;
+  double ratio = 0;
+  Interval interval{};
+
+  bool is_above(double level) const { return interval.low > level; }
+  bool is_below(double level) const { return interval.high < level; }
+};
+
+/// Of the rows that have all of it, by x. Throws std::invalid_argument if there are fewer than two, or a
+/// bound is on the wrong side.
+std::vector<RatioAt> ratios_over(const Table& table, std::string_view x, const std::string& ratio);
+
+/// Where a ratio comes to stay above a level, and the range that its interval leaves.
+struct Crossing {
+  std::optional<double> at;  ///< the first x of all if it is always above; empty if it is not at the last
+  std::optional<double> earliest;
+  std::optional<double> latest;
+
+  /// The crossing as a figure's interval, up to `most` where there is none.
+  Interval interval(double most) const { return {earliest.value_or(most), latest.value_or(most)}; }
+};
+
+/// Throws std::invalid_argument as crossover().
+Crossing rises_above(double level, const std::vector<RatioAt>& ratios);
+
+/// Adds elements at the end.
+template <typename Element>
+void append(std::vector<Element>& elements, const std::vector<Element>& more) {
+  elements.insert(elements.end(), more.begin(), more.end());
+}
 
 /// The least x from which on `first` stays below `second`, two columns of a table over the column `x`; as
 /// crossover(), of the rows that have both.

@@ -1,5 +1,5 @@
-// What experiment 15 measures: which algorithm is the fastest where, and what instruction sets and threads
-// add.
+// What is measured for our own claim: which algorithm is the fastest where, and what instruction sets and
+// threads add.
 #pragma once
 
 #include <string>

@@ -1,21 +1,56 @@
 // What the experiments and their machine come to, as texts and tables.
-import type { Experiment, Experiments, Table } from "../../web/charts/data.ts";
+import type { Experiment, Experiments, Statement, Table, Verdict } from "../../web/charts/data.ts";
 import { bytesText, timeText } from "../../web/charts/numbers.ts";
 import { plain, tableText } from "./markdown.ts";
 import { processorName, shown, withUnit } from "./words.ts";
 
-/** The verdict with its condition, which goes on after "holds when". */
-export function verdictText({ verdict, condition }: Experiment): string {
-  return verdict === "holds when" ? `holds when ${condition}` : verdict;
+export const isOwn = ({ section }: Experiment): boolean => section === "beyond";
+
+/** The verdict with its condition. */
+export function verdictText({ verdict, condition }: Statement): string {
+  return condition === "" ? verdict : `${verdict}: ${condition}`;
 }
 
 export function sectionText(section: string): string {
-  return section === "beyond" ? "beyond the draft" : `section ${section}`;
+  return section === "beyond" ? "our own claim" : `section ${section}`;
+}
+
+/** What a statement says and what became of it, a line each. */
+export function statementsList({ statements }: Experiment): string {
+  return statements
+    .map((one) => `- *${plain(one.text)}*: ${outcome(one)}${one.condition === "" ? "" : `: ${plain(one.condition)}`}.`)
+    .join("\n");
+}
+
+const outcome = ({ verdict }: Statement): string => `**${verdict}**`;
+
+/** "mending growth 1.50 (1.45 to 1.55)". */
+function evidenceText(experiment: Experiment, name: string): string {
+  const { value, unit, low, high } = experiment.figures[name]!;
+  const words = name.replaceAll("_", " ");
+  if (low === null || high === null) return `${words} ${withUnit(value, unit)}`;
+  const interval = `(${shown(low)} to ${shown(high)})`;
+  return unit === "" ? `${words} ${shown(value)} ${interval}` : `${words} ${shown(value)} ${interval} ${unit}`;
+}
+
+/** How many claims and statements there are, and what became of the statements. */
+function counts(experiments: readonly Experiment[]): Record<string, string> {
+  const statements = experiments.flatMap((one) => one.statements);
+  const count = (verdict: Verdict) => shown(statements.filter((one) => one.verdict === verdict).length);
+  return {
+    claims: shown(experiments.length),
+    statements: shown(statements.length),
+    confirmed: count("confirmed"),
+    within_bounds: count("holds within bounds"),
+    refuted: count("refuted"),
+    not_testable: count("not testable"),
+  };
 }
 
 export function machineData(results: Experiments): Record<string, unknown> {
   const { machine, build, experiments } = results;
-  const count = (verdict: string) => shown(experiments.filter((one) => one.verdict === verdict).length);
+  const draft = experiments.filter((one) => !isOwn(one));
+  const own = experiments.filter(isOwn);
   return {
     machine: {
       cpu: processorName(machine),
@@ -27,11 +62,8 @@ export function machineData(results: Experiments): Record<string, unknown> {
     build: { version: build.version, revision: build.revision, compiler: build.compiler, flags: build.flags },
     date: results.date,
     experiments: {
-      count: shown(experiments.length),
-      hold: count("holds"),
-      hold_when: count("holds when"),
-      fail: count("does not hold"),
-      any_fail: experiments.some((one) => one.verdict === "does not hold"),
+      ...counts(draft),
+      own: counts(own),
       time: timeText(1000 * experiments.reduce((sum, one) => sum + one.seconds, 0)),
       command: results.command.join(" "),
       quick: results.quick,
@@ -39,36 +71,34 @@ export function machineData(results: Experiments): Record<string, unknown> {
   };
 }
 
-export function verdictsTable({ experiments }: Experiments, address: (experiment: Experiment) => string): string {
+/** The statements of these claims, with what became of each and the figures that decided. */
+export function verdictsTable(
+  experiments: readonly Experiment[], address: (experiment: Experiment) => string,
+): string {
   return tableText(
-    [" claim", "what it says", "section", "verdict"],
-    experiments.map((one) => [String(one.number), `[${plain(one.title)}](${address(one)})`, plain(one.section), plain(verdictText(one))]),
-  );
-}
-
-/** Each verdict with its condition and what decided it. */
-export function findingsTable({ experiments }: Experiments, address: (experiment: Experiment) => string): string {
-  return tableText(
-    [" claim", "what it says", "section", "verdict", "what decided"],
-    experiments.map((one) => [
-      String(one.number),
-      `[${plain(one.title)}](${address(one)})`,
-      plain(one.section),
-      plain(verdictText(one)),
-      plain(one.reason),
-    ]),
+    ["claim", "what it says", "outcome", "condition", "evidence"],
+    experiments.flatMap((one) =>
+      one.statements.map((statement) => [
+        `[${statement.label}](${address(one)})`,
+        plain(statement.text),
+        outcome(statement),
+        statement.condition === "" ? "-" : plain(statement.condition),
+        statement.evidence.map((name) => plain(evidenceText(one, name))).join("; ") || "-",
+      ]),
+    ),
   );
 }
 
 /** Every figure that an experiment came to. */
 export function figuresTable({ experiments }: Experiments): string {
   return tableText(
-    ["experiment", "figure", " value"],
+    ["experiment", "figure", " value", " interval"],
     experiments.flatMap(({ name: experiment, figures }) =>
-      Object.entries(figures).map(([name, { value, unit }]) => [
+      Object.entries(figures).map(([name, { value, unit, low, high }]) => [
         `\`${experiment}\``,
         `\`${name}\``,
         withUnit(value, unit),
+        low === null || high === null ? "-" : `${shown(low)} to ${shown(high)}`,
       ]),
     ),
   );

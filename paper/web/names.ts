@@ -1,12 +1,12 @@
 // What templates may name: the machine, the experiments and what they came to, the comparison, figures and sources.
-import type { ChartSpec, Comparison, Experiment, Experiments, Table } from "../../web/charts/data.ts";
+import type { ChartSpec, Comparison, Experiment, Experiments, Figure, Statement, Table, Verdict } from "../../web/charts/data.ts";
 import type { Drawn, Place } from "../../web/charts/frame.ts";
 import { drawTableChart } from "../../web/charts/table_chart.ts";
 import {
   comparisonCharts, comparisonData, groupsTable, leadsTable, literatureTable, lostList, standingsTable,
 } from "./comparison_names.ts";
 import {
-  figuresTable, findingsTable, machineData, resultsTable, sectionText, verdictText, verdictsTable,
+  figuresTable, isOwn, machineData, resultsTable, sectionText, statementsList, verdictText, verdictsTable,
 } from "./experiment_names.ts";
 import { factsOf, type Facts } from "./facts.ts";
 import type { Names } from "./fill.ts";
@@ -120,7 +120,12 @@ export class Paper {
     return oneOf(tables, name, `table in the experiment '${experiment}':`);
   }
 
-  private figure(experiment: string, name: string): { value: number; unit: string } {
+  private statement(experiment: string, name: string): Statement {
+    const statements = by(this.experiment(experiment).statements, (statement) => statement.name);
+    return oneOf(statements, name, `statement in the experiment '${experiment}':`);
+  }
+
+  private figure(experiment: string, name: string): Figure {
     return oneOf(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
   }
 
@@ -147,19 +152,24 @@ export class Paper {
   names(): Names {
     const of = (name: string) => this.experiment(name);
     const value = (experiment: string, name: string) => this.figure(experiment, name).value;
+    const is = (verdict: Verdict) => (experiment: string, name: string) =>
+      this.statement(experiment, name).verdict === verdict;
     const comparison = comparisonCharts(this.facts);
+    const verdicts = (shown: (experiment: Experiment) => boolean) =>
+      verdictsTable(this.results.experiments.filter(shown), (experiment) => this.addressOf(experiment));
     return {
       data: { ...machineData(this.results), comparison: comparisonData(this.facts, this.comparison) },
       helpers: {
         heading: (experiment) => {
-          const { name, number, title } = of(experiment);
+          const { name, label, title } = of(experiment);
           this.sectionPages.set(name, this.page);
-          return `<a id="${name}"></a>Claim ${number}: ${plain(title)}`;
+          return `<a id="${name}"></a>Claim ${label}: ${plain(title)}`;
         },
-        number: (experiment) => `[${of(experiment).number}](${this.addressOf(of(experiment))})`,
+        number: (experiment) => `[${of(experiment).label}](${this.addressOf(of(experiment))})`,
         claim: (experiment) => `> ${plain(of(experiment).claim)}\n>\n> (${sectionText(of(experiment).section)})`,
         measured: (experiment) => plain(of(experiment).measured),
-        verdict: (experiment) => plain(verdictText(of(experiment))),
+        statements: (experiment) => statementsList(of(experiment)),
+        verdict: (experiment, name) => plain(verdictText(this.statement(experiment, name))),
         reason: (experiment) => plain(of(experiment).reason),
         figure: (experiment, name) => {
           const figure = this.figure(experiment, name);
@@ -182,12 +192,13 @@ export class Paper {
               table.charts.map((chart) => drawingName(of(experiment), table, chart)),
             ),
           ),
-        findings: () => findingsTable(this.results, (experiment) => this.addressOf(experiment)),
-        verdicts: () => verdictsTable(this.results, (experiment) => this.addressOf(experiment)),
+        draft_verdicts: () => verdicts((one) => !isOwn(one)),
+        own_verdicts: () => verdicts(isOwn),
         all_figures: () => figuresTable(this.results),
-        holds: (experiment) => of(experiment).verdict === "holds",
-        holds_when: (experiment) => of(experiment).verdict === "holds when",
-        fails: (experiment) => of(experiment).verdict === "does not hold",
+        confirmed: is("confirmed"),
+        within_bounds: is("holds within bounds"),
+        refuted: is("refuted"),
+        not_testable: is("not testable"),
         given: (experiment, name) => Object.hasOwn(of(experiment).figures, name),
         less: (experiment, first, second) => value(experiment, first) < value(experiment, second),
         scene: (name) => {

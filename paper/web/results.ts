@@ -1,5 +1,5 @@
 // The results that the paper quotes, read from JSON and checked: what is not as the program writes it is refused.
-import type { Comparison, Experiments } from "../../web/charts/data.ts";
+import type { Comparison, Experiments, Verdict } from "../../web/charts/data.ts";
 import { inTodaysShape, type OldComparison } from "../../web/charts/old_results.ts";
 import { Problem } from "./problem.ts";
 
@@ -109,18 +109,27 @@ function checkTable(table: Place): void {
   }
 }
 
+const verdicts: readonly Verdict[] = ["confirmed", "holds within bounds", "refuted", "not testable"];
+
 function checkExperiment(experiment: Place): void {
-  experiment.has("a text", "name", "title", "claim", "section", "measured", "condition", "reason");
-  experiment.has("a finite number", "number", "seconds");
-  experiment.at("verdict").isOneOf(["holds", "holds when", "does not hold"]);
+  experiment.has("a text", "label", "name", "title", "claim", "section", "measured", "reason");
+  experiment.has("a finite number", "seconds");
   for (const figure of experiment.at("figures").entries())
-    figure.has("a finite number", "value").has("a text", "unit");
+    figure.has("a finite number", "value").has("a text", "unit").hasOrNull("a finite number", "low", "high");
+  const statements = experiment.at("statements").list();
+  if (statements.length === 0) experiment.at("statements").refuse("at least one statement");
+  for (const statement of statements) {
+    statement.has("a text", "label", "name", "text", "condition");
+    statement.at("verdict").isOneOf(verdicts);
+    for (const figure of statement.at("evidence").list())
+      experiment.at("figures").has("an object", figure.is("a text").value as string);
+  }
   for (const table of experiment.at("tables").list()) checkTable(table);
 }
 
 /** Reads what `broadside experiment --json` wrote. Throws Problem. */
 export function readExperiments(text: string, file: string): Experiments {
-  const root = rootOf(text, file, "broadside.experiments/1");
+  const root = rootOf(text, file, "broadside.experiments/2");
   root.has("a text", "target", "date").has("true or false", "quick");
   const experiments = root.at("experiments").list();
   if (experiments.length === 0) root.at("experiments").refuse("at least one experiment");

@@ -39,7 +39,7 @@ OrderedJson results() {
       {"rows", {{1'000, 1'000'000, 499'500, 499'500, 1}, {2'000, 4'000'000, 1'999'000, 1'999'000, 4}}}};
   const OrderedJson experiment = {
       {"name", "brute_force_tests"}, {"seconds", 1}, {"tables", OrderedJson::array({table})}};
-  return {{"schema", "broadside.experiments/1"},
+  return {{"schema", "broadside.experiments/2"},
           {"machine", OrderedJson::object()},
           {"build", OrderedJson::object()},
           {"target", "AVX2"},
@@ -55,10 +55,9 @@ TEST(ExperimentVerb, ListsEveryExperimentWithoutMeasuring) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.errors, IsEmpty());
   for (const lab::Experiment& experiment : lab::experiments())
-    EXPECT_THAT(ended.output,
-                AllOf(HasSubstr(experiment.name), HasSubstr(experiment.title),
-                      HasSubstr(experiment.section == "beyond" ? "(beyond the paper)"
-                                                               : "(section " + experiment.section + ")")));
+    EXPECT_THAT(ended.output, AllOf(HasSubstr(experiment.name), HasSubstr(experiment.title),
+                                    HasSubstr(experiment.is_own() ? "(our own claim)"
+                                                                  : "(section " + experiment.section + ")")));
 }
 
 TEST(ExperimentVerb, MeasuresWhatIsNamedAndWritesWhatCanBeJudgedAgain) {
@@ -68,16 +67,17 @@ TEST(ExperimentVerb, MeasuresWhatIsNamedAndWritesWhatCanBeJudgedAgain) {
       run({"experiment", "--quick", "1", "brute_force_tests", "--json", folder.file("out.json")});
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.errors, IsEmpty());
-  EXPECT_THAT(ended.output, AllOf(HasSubstr("Claim: To test all pairs"), HasSubstr("Verdict: holds. "),
-                                  HasSubstr("1 experiment in "), Not(HasSubstr("\x1b"))));
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("Claim: To test all pairs"), HasSubstr("Verdict 1a, n items"),
+                                  HasSubstr("not testable: a tautology"), HasSubstr("1 experiment in "),
+                                  Not(HasSubstr("\x1b"))));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.json"});
   const OrderedJson json = OrderedJson::parse(text_of(folder.file("out.json")));
-  EXPECT_EQ(json["schema"], "broadside.experiments/1");
+  EXPECT_EQ(json["schema"], "broadside.experiments/2");
   EXPECT_EQ(json["command"][1], "experiment");
   EXPECT_EQ(json["quick"], true);
   EXPECT_EQ(json["stopped"], false);
   ASSERT_EQ(json["experiments"].size(), 1u);
-  EXPECT_EQ(json["experiments"][0]["verdict"], "holds");
+  EXPECT_EQ(json["experiments"][0]["statements"][0]["verdict"], "not testable");
   EXPECT_GT(json["experiments"][0]["steadiness"]["measurements"], 0);
   EXPECT_NEAR(json["experiments"][0]["figures"]["share_of_all_pairs"]["value"].get<double>(), 0.5, 0.01);
 
@@ -92,20 +92,22 @@ TEST(ExperimentVerb, JudgesAFileByItsTables) {
   const TemporaryFolder folder;
   OrderedJson json = results();
   const std::string whole = folder.put("whole.json", json.dump());
-  const Ended holds = run({"experiment", "--from", whole});
-  EXPECT_EQ(holds.status, 0) << holds.errors;
-  EXPECT_THAT(holds.output, HasSubstr("Verdict: holds. 2 of 2 numbers"));
+  const Ended as_measured = run({"experiment", "--from", whole});
+  EXPECT_EQ(as_measured.status, 0) << as_measured.errors;
+  EXPECT_THAT(as_measured.output,
+              AllOf(HasSubstr("quadratic: confirmed.\n2 of 2 numbers"), HasSubstr("not testable: a")));
   json["experiments"][0]["tables"][0]["rows"][1][3] = 4'000'000;
   const Ended refuted = run({"experiment", "--from", folder.put("altered.json", json.dump())});
   EXPECT_EQ(refuted.status, 0) << refuted.errors;
-  EXPECT_THAT(refuted.output, HasSubstr("Verdict: does not hold. 1 of 2 numbers"));
+  EXPECT_THAT(refuted.output, AllOf(HasSubstr("unique: refuted.\n"), HasSubstr("1 of 2 numbers")));
 }
 
 TEST(ExperimentVerb, JudgesResultsOfAnEarlierVersionAsTheyAre) {
   const std::string old = BROADSIDE_SOURCE_DIR "/tests/fixtures/experiments_v1_hierarchical_grid.json";
   const Ended judged = run({"experiment", "--from", old});
   EXPECT_EQ(judged.status, 0) << judged.errors;
-  EXPECT_THAT(judged.output, AllOf(HasSubstr("hierarchical_grid in 3D"), HasSubstr("Verdict: holds. ")));
+  EXPECT_THAT(judged.output,
+              AllOf(HasSubstr("hierarchical_grid in 3D"), HasSubstr("collections: confirmed.")));
 }
 
 TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
@@ -119,7 +121,7 @@ TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
                                   "$BROADSIDE experiment --from - < " + whole + " --json "}) {
     const Ended ended = shell(line + folder.file("b.json"));
     EXPECT_EQ(ended.status, 0) << ended.errors;
-    EXPECT_THAT(ended.output, AllOf(HasSubstr("Verdict: holds. 2 of 2 numbers"), judged.output));
+    EXPECT_THAT(ended.output, AllOf(HasSubstr("2 of 2 numbers"), judged.output));
     EXPECT_TRUE(text_of(folder.file("b.json")) == text_of(folder.file("a.json")));
   }
   for (const auto& [line, part] :
@@ -156,8 +158,8 @@ TEST(ExperimentVerb, RefusesNamesAndFilesThatItCannotUse) {
   text.replace(text.find("499500"), 6, "NaN");
   const std::string nan = folder.put("nan.json", text);
   expect_refused("experiment",
-                 {{{"phlogiston"}, {"no experiment 'phlogiston'", "1 brute_force_tests", "15 winners"}},
-                  {{"1", "16"}, {"no experiment '16'"}},
+                 {{{"phlogiston"}, {"no experiment 'phlogiston'", "1 brute_force_tests", "B1 winners"}},
+                  {{"1", "15"}, {"no experiment '15'"}},
                   {{"--from", folder.file("nothing.json")}, {"nothing.json", "cannot be read", "expected"}},
                   {{"--from", folder.file(".")}, {"cannot be read", "expected"}},
                   {{"--from", whole, "winners"}, {"whole.json", "no results of winners"}},
@@ -166,7 +168,7 @@ TEST(ExperimentVerb, RefusesNamesAndFilesThatItCannotUse) {
                   {{"--from", empty}, {"empty.json", "expected JSON"}},
                   {{"--from", half}, {"half.json", "expected JSON"}},
                   {{"--from", none}, {"none.json", "0 experiments", "at least one"}},
-                  {{"--from", other}, {"other.json", "'broadside.results/1'", "'broadside.experiments/1'"}},
+                  {{"--from", other}, {"other.json", "'broadside.results/1'", "'broadside.experiments/2'"}},
                   {{"--from", unknown}, {"unknown.json", "'phlogiston'", "brute_force_tests"}},
                   {{"--from", no_number}, {"null.json", "'brute_force_tests'", "expected"}},
                   {{"--from", nan}, {"nan.json", "expected JSON"}},
@@ -190,7 +192,7 @@ TEST(ExperimentVerb, WritesWhatHadEndedWhereItIsInterrupted) {
   const TemporaryFolder folder;
   const std::string file = folder.file("out.json");
   Process process({"experiment", "--quick", "1", "winners", "--json", file});
-  for (int i = 0; i < 6'000 && process.output().find("Verdict: ") == std::string::npos; ++i)
+  for (int i = 0; i < 6'000 && process.output().find("Verdict 1a") == std::string::npos; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   process.signal(SIGTERM);
   const Ended ended = process.wait();

@@ -36,7 +36,7 @@ class Report : public testing::Test {
 
 /// Results of one experiment, of which a little is given.
 std::string experiments_json(const std::string& rows) {
-  return R"({"schema": "broadside.experiments/1", "machine": {}, "build": {"version": "0", "compiler": "c"},
+  return R"({"schema": "broadside.experiments/2", "machine": {}, "build": {"version": "0", "compiler": "c"},
     "target": "AVX2", "date": "2026-11-21", "command": ["broadside"], "quick": true, "stopped": false,
     "experiments": [{"name": "brute_force_tests", "seconds": 1, "tables": [{"name": "tests", "title": "Tests",
     "columns": [{"name": "boxes", "unit": ""}, {"name": "all pairs", "unit": ""}, {"name": "unique pairs", "unit": ""},
@@ -67,7 +67,7 @@ TEST_F(Report, OfExperimentsHoldsWhatTheyCameTo) {
   ASSERT_TRUE(document.is_object());
   EXPECT_EQ(document["comparison"], nullptr);
   EXPECT_EQ(document["date"], "2026-11-21");
-  EXPECT_EQ(document["experiments"]["experiments"][0]["verdict"], "holds");
+  EXPECT_EQ(document["experiments"]["experiments"][0]["statements"][0]["verdict"], "not testable");
 }
 
 TEST_F(Report, CannotBeEndedByWhatItQuotes) {
@@ -100,11 +100,11 @@ TEST_F(Report, IsAnotherFileThanTheResults) {
 }
 
 TEST_F(Report, IsNotTouchedWhereResultsCannotBeRead) {
-  const std::string results = folder_.put("results.json", "{\"schema\": \"broadside.experiments/2\"}");
+  const std::string results = folder_.put("results.json", "{\"schema\": \"broadside.experiments/3\"}");
   folder_.put("page.html", "as it was");
   const Ended ended = run({"experiment", "--from", results, "--report", page_});
   EXPECT_NE(ended.status, 0);
-  EXPECT_THAT(ended.errors, HasSubstr("broadside.experiments/2"));
+  EXPECT_THAT(ended.errors, HasSubstr("broadside.experiments/3"));
   EXPECT_EQ(text_of(page_), "as it was");
 }
 

@@ -1,4 +1,4 @@
-// What the program writes: experiments ("broadside.experiments/1") and comparisons ("broadside.results/2").
+// What the program writes: experiments ("broadside.experiments/2") and comparisons ("broadside.results/2").
 // docs/schemas/ describes every field.
 
 export type Cell = number | string | null;
@@ -29,18 +29,41 @@ export interface Table {
   rows: Cell[][];
 }
 
+export type Verdict = "confirmed" | "holds within bounds" | "refuted" | "not testable";
+
+/** One statement of a claim, and what became of it. */
+export interface Statement {
+  /** The claim's, with a letter behind it where the claim has several. */
+  label: string;
+  name: string;
+  text: string;
+  verdict: Verdict;
+  /** Where it holds within bounds, or why it is not testable; else empty. */
+  condition: string;
+  /** Names of figures. */
+  evidence: string[];
+}
+
+/** What an experiment came to; without an interval if it was counted. */
+export interface Figure {
+  value: number;
+  unit: string;
+  low: number | null;
+  high: number | null;
+}
+
 export interface Experiment {
-  number: number;
+  /** Of a claim of the draft its number; of our own with a B before it. */
+  label: string;
   name: string;
   title: string;
   claim: string;
   section: string;
   measured: string;
   seconds: number;
-  verdict: "holds" | "holds when" | "does not hold";
-  condition: string;
+  statements: Statement[];
   reason: string;
-  figures: Record<string, { value: number; unit: string }>;
+  figures: Record<string, Figure>;
   /** Not in results of before it was noted. */
   steadiness?: { measurements: number; unsteady: number };
   tables: Table[];
@@ -62,7 +85,7 @@ export interface Build {
 }
 
 export interface Experiments {
-  schema: "broadside.experiments/1";
+  schema: "broadside.experiments/2";
   machine: Machine;
   build: Build;
   target: string;

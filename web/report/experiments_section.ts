@@ -1,5 +1,5 @@
 // The experiments: each claim, its verdict and what it rests on.
-import type { Cell, Experiment, Experiments, Table } from "../charts/data.ts";
+import type { Cell, Experiment, Experiments, Figure, Statement, Table, Verdict } from "../charts/data.ts";
 import { bytesText, grouped, rounded } from "../charts/numbers.ts";
 import { cellText, drawTableChart } from "../charts/table_chart.ts";
 import { dataTable } from "./data_table.ts";
@@ -9,12 +9,22 @@ import { chartFigure } from "./figure.ts";
 import { facts, tile } from "./summary.ts";
 import type { Doubts } from "./summary.ts";
 
-const looks = { "holds": ["good", "✓"], "holds when": ["fair", "◐"], "does not hold": ["bad", "✕"] } as const;
+const looks = {
+  "confirmed": ["good", "✓"],
+  "holds within bounds": ["fair", "◐"],
+  "refuted": ["bad", "✕"],
+  "not testable": ["none", "–"],
+} as const;
 
-function badge(experiment: Experiment): HTMLElement {
-  const [look, sign] = looks[experiment.verdict];
-  const text = experiment.verdict === "holds when" ? `holds when ${experiment.condition}` : experiment.verdict;
-  return el("span", { class: `badge ${look}` }, el("span", { "aria-hidden": "true" }, `${sign} `), text);
+function badge({ verdict }: Statement): HTMLElement {
+  const [look, sign] = looks[verdict];
+  return el("span", { class: `badge ${look}` }, el("span", { "aria-hidden": "true" }, `${sign} `), verdict);
+}
+
+/** What a claim says, one statement a line, with its verdict. */
+function statementList(experiment: Experiment): HTMLElement {
+  return el("ul", {}, ...experiment.statements.map((one) =>
+    el("li", {}, `${one.label}: ${one.text}. `, badge(one), one.condition === "" ? "" : ` ${one.condition}`)));
 }
 
 function tableView(table: Table): HTMLElement {
@@ -31,27 +41,29 @@ function tableView(table: Table): HTMLElement {
     downloadButton("Save as CSV", `${table.name}.csv`, "text/csv", () => csvOfTable(table))));
 }
 
-function figureText(value: number, unit: string): string {
+function figureText({ value, unit, low, high }: Figure): string {
   if (unit === "bytes" && value >= 1000) return bytesText(value);
-  return rounded(value) + (unit === "" ? "" : ` ${unit}`);
+  const interval = low === null || high === null ? "" : ` (${rounded(low)} to ${rounded(high)})`;
+  return rounded(value) + interval + (unit === "" ? "" : ` ${unit}`);
 }
 
 function figures(experiment: Experiment): HTMLElement | null {
   const all = Object.entries(experiment.figures);
   if (all.length === 0) return null;
-  return el("ul", { class: "figures" }, ...all.map(([name, { value, unit }]) =>
-    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, figureText(value, unit)))));
+  return el("ul", { class: "figures" }, ...all.map(([name, figure]) =>
+    el("li", {}, `${name.replaceAll("_", " ")} `, el("b", {}, figureText(figure)))));
 }
 
 function view(experiment: Experiment): HTMLElement {
   const charts = experiment.tables.flatMap((table) => table.charts.map((chart) =>
     chartFigure(chart.title, (place) => drawTableChart(table, chart, place)).element));
   const rows = experiment.tables.reduce((sum, table) => sum + table.rows.length, 0);
-  const section = experiment.section === "beyond" ? "beyond the paper" : `section ${experiment.section} of the paper`;
+  const section = experiment.section === "beyond" ? "our own claim" : `section ${experiment.section} of the paper`;
   return el("article", { class: "card", id: experiment.name, "aria-labelledby": `${experiment.name}-title` },
-    el("h3", { id: `${experiment.name}-title` }, `${experiment.number}. ${experiment.title}`),
-    el("p", {}, badge(experiment), el("span", { class: "note" }, `  ${section}`)),
+    el("h3", { id: `${experiment.name}-title` }, `${experiment.label}. ${experiment.title}`),
+    el("p", { class: "note" }, section),
     el("blockquote", {}, experiment.claim),
+    statementList(experiment),
     el("p", {}, experiment.reason),
     figures(experiment),
     el("p", { class: "note" }, `Measured: ${experiment.measured}`),
@@ -70,16 +82,19 @@ export function doubtsOfExperiments({ experiments, busy, processor_share }: Expe
 /** The sections of experiments, each [id, title, element]. */
 export function experimentSections(results: Experiments): [string, string, HTMLElement][] {
   const { experiments } = results;
-  const count = (verdict: Experiment["verdict"]): string => String(experiments.filter((one) => one.verdict === verdict).length);
+  const statements = experiments.flatMap((one) => one.statements);
+  const count = (verdict: Verdict): string => String(statements.filter((one) => one.verdict === verdict).length);
   const seconds = experiments.reduce((sum, one) => sum + one.seconds, 0);
   const summary = el("section", {},
     el("dl", { class: "tiles" },
-      tile("Claims that hold", count("holds"), `of ${experiments.length}`),
-      tile("That hold under a condition", count("holds when")),
-      tile("That do not hold", count("does not hold")),
+      tile("Statements confirmed", count("confirmed"), `of ${statements.length}`),
+      tile("That hold within bounds", count("holds within bounds")),
+      tile("Refuted", count("refuted")),
+      tile("Not testable", count("not testable")),
       tile("Measured in", `${rounded(seconds)} s`, (results.quick ? "quickly: fewer boxes, fewer samples" : "thoroughly") + (results.stopped ? "; stopped before the end" : ""))),
-    el("div", { class: "card" }, el("h3", {}, "Verdicts"), el("ol", { class: "verdicts" }, ...experiments.map((one) =>
-      el("li", {}, el("span", {}, `${one.number}.`), el("a", { href: `#${one.name}` }, one.title), el("span", {}, badge(one)))))),
+    el("div", { class: "card" }, el("h3", {}, "Verdicts"), el("ol", { class: "verdicts" }, ...experiments.flatMap((one) =>
+      one.statements.map((statement) => el("li", {}, el("span", {}, statement.label),
+        el("a", { href: `#${one.name}` }, statement.text), el("span", {}, badge(statement))))))),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts(results),
       el("p", { class: "downloads", style: "margin: 1rem 0 0" },
         downloadButton("Save as JSON", "experiments.json", "application/json", () => JSON.stringify(results)))));

@@ -28,7 +28,7 @@ function checker(name: string): (document: unknown) => string {
 }
 
 const faultOfResults = checker("results-2");
-const faultOfExperiments = checker("experiments-1");
+const faultOfExperiments = checker("experiments-2");
 const faultOfAdvice = checker("advice-1");
 
 const [first] = comparison.measurements;
@@ -67,7 +67,7 @@ test("experiments fit their schema, those of before it was noted how busy the ma
   assert.equal(faultOfExperiments(readJson(join(project, "paper/results/experiments.json"))), "");
   assert.match(faultOfExperiments({ ...results, busy: true }), /must have property processor_share/);
   assert.match(faultOfExperiments({ ...results, experiments: [] }), /must NOT have fewer than 1 items/);
-  assert.match(faultOfExperiments({ ...results, schema: "broadside.experiments/2" }), /schema must be equal to constant/);
+  assert.match(faultOfExperiments({ ...results, schema: "broadside.experiments/1" }), /schema must be equal to constant/);
 });
 
 describe("the program", { skip: missing }, () => {

@@ -21,7 +21,7 @@ const build = { version: "0.1.0", revision: "abc", compiler: "GNU 12", type: "Re
 
 export function experiments(): Experiments {
   return {
-    schema: "broadside.experiments/1",
+    schema: "broadside.experiments/2",
     machine,
     build,
     target: "AVX2",
@@ -31,17 +31,30 @@ export function experiments(): Experiments {
     stopped: false,
     experiments: [
       {
-        number: 1,
+        label: "1",
         name: "tests",
         title: "Tests grow | squarely",
         claim: "There are n*n tests.",
         section: "II",
         measured: "Tests.",
         seconds: 1.5,
-        verdict: "holds when",
-        condition: "there are more than 12 boxes",
+        statements: [
+          {
+            label: "1a",
+            name: "growth",
+            text: "tests grow | squarely",
+            verdict: "holds within bounds",
+            condition: "there are more than 12 boxes",
+            evidence: ["crossover", "slope"],
+          },
+          { label: "1b", name: "square", text: "n items make n*n", verdict: "not testable", condition: "a tautology", evidence: [] },
+        ],
         reason: "12,000 tests.",
-        figures: { crossover: { value: 12, unit: "boxes" }, memory: { value: 2_761_234, unit: "bytes" } },
+        figures: {
+          crossover: { value: 12, unit: "boxes", low: null, high: null },
+          slope: { value: 1.5, unit: "", low: 1.25, high: 1.75 },
+          memory: { value: 2_761_234, unit: "bytes", low: null, high: null },
+        },
         tables: [
           {
             name: "times",

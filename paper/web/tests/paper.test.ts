@@ -54,14 +54,33 @@ test("figures are quoted with their unit", () => {
 });
 
 test("a verdict is quoted with its condition", () => {
-  assert.equal(textOf('{{verdict "tests"}}'), "holds when there are more than 12 boxes");
+  assert.equal(textOf('{{verdict "tests" "growth"}}'), "holds within bounds: there are more than 12 boxes");
+});
+
+test("verdicts stand in a table with the figures that decided and their intervals, ours apart", () => {
+  const row = "[1a](#tests) | tests grow \\| squarely | **holds within bounds** | there are more than 12 boxes | " +
+    "crossover 12 boxes; slope 1.50 (1.25 to 1.75) |";
+  assert.ok(textOf("{{draft_verdicts}}").includes(row), textOf("{{draft_verdicts}}"));
+  assert.doesNotMatch(textOf("{{own_verdicts}}"), /1a/);
+  const own = experiments();
+  own.experiments[0]!.section = "beyond";
+  const given = { experiments: JSON.stringify(own) };
+  assert.ok(textOf("{{own_verdicts}}", given).includes(row));
+  assert.equal(textOf("{{experiments.claims}} {{experiments.own.statements}}", given), "0 2");
+});
+
+test("outcomes are counted by statement", () => {
+  assert.equal(
+    textOf("{{experiments.claims}} {{experiments.statements}} {{experiments.within_bounds}} {{experiments.not_testable}} {{experiments.refuted}}"),
+    "1 2 1 1 0");
 });
 
 test("text follows the verdict", () => {
-  const template = '{{#if (holds_when "tests")}}sometimes{{else}}{{#if (fails "tests")}}never{{/if}}{{/if}}';
+  const template =
+    '{{#if (within_bounds "tests" "growth")}}sometimes{{else}}{{#if (refuted "tests" "growth")}}never{{/if}}{{/if}}';
   assert.equal(textOf(template), "sometimes");
   const other = experiments();
-  other.experiments[0]!.verdict = "does not hold";
+  other.experiments[0]!.statements[0]!.verdict = "refuted";
   assert.equal(textOf(template, { experiments: JSON.stringify(other) }), "never");
 });
 
@@ -71,11 +90,7 @@ test("the machine is named", () => {
 
 test("what would be Markdown in results is shown as it is", () => {
   assert.match(textOf('{{claim "tests"}}'), /n\\\*n tests/);
-  assert.match(textOf("{{verdicts}}"), /\| \[Tests grow \\\| squarely\]\(#tests\) \|/);
-});
-
-test("findings give each claim's verdict and what decided it", () => {
-  assert.match(textOf("{{findings}}"), /\| 1 \| \[Tests grow .*\]\(#tests\) \| II \| holds when there are more than 12 boxes \| 12,000 tests\. \|/);
+  assert.match(textOf('{{statements "tests"}}'), /\*n items make n\\\*n\*: \*\*not testable\*\*: a tautology\./);
 });
 
 test("tables have a row a line and nothing where nothing is known", () => {
@@ -166,16 +181,17 @@ test("the same sources give the same bytes", () => {
   assert.deepEqual(paper(template), paper(template));
 });
 
-refuses("an unknown experiment", 'a\n{{verdict "test"}}', /^07_testing\.md:2: \{\{verdict "test"\}\}: .*there are tests$/);
-refuses("an unknown figure", '{{figure "tests" "x"}}', /no figure .* 'x'; there are crossover and memory$/);
+refuses("an unknown experiment", 'a\n{{claim "test"}}', /^07_testing\.md:2: \{\{claim "test"\}\}: .*there are tests$/);
+refuses("an unknown statement", '{{verdict "tests" "x"}}', /no statement .*'x'; there are growth and square$/);
+refuses("an unknown figure", '{{figure "tests" "x"}}', /no figure .* 'x'; there are crossover, slope and memory$/);
 refuses("an unknown chart", '{{chart "tests" "times" "Tim"}}', /no chart .*'Tim'; there are Time over boxes$/);
 refuses("an unknown table", '{{table "tests" "x"}}', /no table .* 'x'; there are times$/);
 refuses("an unknown name", "a\n\n{{machine.cpus}}", /^07_testing\.md:3: \{\{machine\.cpus\}\}: no 'cpus' in machine; .*cpu/);
 refuses("an unknown helper", '{{figures "tests"}}', /no such helper; there are .*figure/);
 refuses("a group for a name", "{{machine}}", /a group of names; expected one of cpu/);
-refuses("an unknown name in a condition", '{{#if (holds "x")}}a{{/if}}', /no experiment 'x'/);
-refuses("a word too many", '{{verdict "tests" "now"}}', /2 words; expected 1/);
-refuses("a number in place of a name", "{{verdict 1}}", /expected a text in quotes/);
+refuses("an unknown name in a condition", '{{#if (confirmed "x" "y")}}a{{/if}}', /no experiment 'x'/);
+refuses("a word too many", '{{claim "tests" "now"}}', /2 words; expected 1/);
+refuses("a number in place of a name", "{{claim 1}}", /expected a text in quotes/);
 refuses("loops", '{{#each machine}}a{{/each}}', /no such helper/);
 refuses("what is no template", "{{#if}}", /07_testing\.md: Parse error/);
 refuses("an unknown source", '{{cite "b"}} {{source "a"}}', /no source 'b'; there are a$/);
@@ -213,14 +229,20 @@ refuses("null for a figure", "a", /figures: crossover: value: null; expected a f
 refuses("no experiments", "a", /experiments: \[\]; expected at least one experiment/, changed((results) => {
   results.experiments = [];
 }));
+refuses("a verdict that is none", "a", /verdict: "holds"; expected 'confirmed' or 'holds within bounds' or/, {
+  experiments: JSON.stringify(experiments()).replace('"verdict":"not testable"', '"verdict":"holds"'),
+});
+refuses("evidence that is no figure", "a", /figures: slopes: nothing; expected an object/, {
+  experiments: JSON.stringify(experiments()).replace('"crossover","slope"', '"crossover","slopes"'),
+});
 refuses("a row that is too short", "a", /rows\[0\]: \[10\]; expected 2 cells/, changed((results) => {
   results.experiments[0]!.tables[0]!.rows[0]!.pop();
 }));
 refuses("a run that was stopped", "a", /stopped: true; expected false/, changed((results) => {
   results.stopped = true;
 }));
-refuses("another schema version", "a", /schema: "broadside\.experiments\/2"; expected 'broadside\.experiments\/1'/, {
-  experiments: JSON.stringify(experiments()).replace("experiments/1", "experiments/2"),
+refuses("another schema version", "a", /schema: "broadside\.experiments\/1"; expected 'broadside\.experiments\/2'/, {
+  experiments: JSON.stringify(experiments()).replace("experiments/2", "experiments/1"),
 });
 refuses("a comparison of another schema", "a", /^c\.json: schema: .*expected 'broadside\.results\/2' or 'broadside\.results\/1'/, {
   comparison: JSON.stringify(experiments()),
@@ -240,7 +262,7 @@ function tryProgram(check: (folder: string, make: (...words: string[]) => number
   const folder = mkdtempSync(join(tmpdir(), "paper-"));
   try {
     mkdirSync(join(folder, "templates"));
-    writeFileSync(join(folder, "templates", "01.md"), '{{verdict "tests"}}\n\n{{charts "tests"}}\n');
+    writeFileSync(join(folder, "templates", "01.md"), '{{claim "tests"}}\n\n{{charts "tests"}}\n');
     writeFileSync(join(folder, "e.json"), JSON.stringify(experiments()));
     writeFileSync(join(folder, "c.json"), JSON.stringify(comparison()));
     let printed = "";
@@ -271,7 +293,7 @@ test("the program writes the paper, drops figures that are gone, and then finds 
 
 for (const [what, file, text] of [
   ["results that cannot be read", "e.json", "{"],
-  ["a template with an unknown experiment", "templates/01.md", '{{verdict "x"}}'],
+  ["a template with an unknown experiment", "templates/01.md", '{{claim "x"}}'],
 ] as const) {
   test(`${what} leave the old paper as it was`, () => {
     tryProgram((folder, make, printed) => {

@@ -128,10 +128,10 @@ TEST(ExperimentResults, SayWhetherTheMachineWasBusyWhereThatIsKnown) {
 
 TEST(ExperimentResults, AreJudgedAnewWhenTheyAreRead) {
   Json json = Json::parse(json_of(results()));
-  ASSERT_EQ(first(json)["verdict"], "holds");
+  ASSERT_EQ(first(json)["statements"][0]["verdict"], "not testable");
   table(json)["rows"][1][3] = 7;
   const ExperimentResults read = read_experiments(json.dump(), "x.json");
-  EXPECT_EQ(read.results[0].finding.verdict, Verdict::does_not_hold);
+  EXPECT_EQ(read.results[0].finding.statements[0].verdict, Verdict::refuted);
 }
 
 TEST(ExperimentResults, AreRefusedWhereTheyAreNoJson) {
@@ -153,11 +153,19 @@ TEST(ExperimentResults, AreRefusedAtEveryLengthButTheWhole) {
 
 TEST(ExperimentResults, AreRefusedWhereTheyAreOfAnotherSchema) {
   EXPECT_THAT(refusal_after([](Json& json) { json["schema"] = "broadside.results/1"; }),
-              AllOf(HasSubstr("'broadside.results/1'"), HasSubstr("expected 'broadside.experiments/1'")));
-  EXPECT_THAT(refusal_after([](Json& json) { json["schema"] = "broadside.experiments/2"; }),
-              HasSubstr("'broadside.experiments/2'"));
+              AllOf(HasSubstr("'broadside.results/1'"), HasSubstr("expected 'broadside.experiments/2'")));
+  EXPECT_THAT(refusal_after([](Json& json) { json["schema"] = "broadside.experiments/3"; }),
+              HasSubstr("'broadside.experiments/3'"));
   EXPECT_THAT(refusal_after([](Json& json) { json.erase("schema"); }), HasSubstr("no 'schema'"));
   EXPECT_THAT(refusal_after([](Json& json) { json["schema"] = 1; }), HasSubstr("schema: 1"));
+}
+
+TEST(ExperimentResults, OfTheSchemaBeforeAreJudgedByTheirTables) {
+  Json json = Json::parse(json_of(results()));
+  json["schema"] = "broadside.experiments/1";
+  first(json).erase("statements");
+  first(json)["verdict"] = "holds";
+  EXPECT_EQ(read_experiments(json.dump(), "x.json").results[0].finding, results().results[0].finding);
 }
 
 TEST(ExperimentResults, AreRefusedWhereThereAreNone) {
@@ -254,20 +262,45 @@ TEST(ExperimentResults, AreRefusedWithAnyFieldMissingOrOfAnotherKind) {
   EXPECT_THAT(refusal_after([&](Json& json) { json["build"]["flags"] = 7; }), HasSubstr("build"));
 }
 
+/// What is said of a finding.
+std::string refusal_of(const std::vector<Statement>& statements, const std::vector<Figure>& figures = {}) {
+  Experiment experiment = find_experiment("1");
+  experiment.judge = [&](const std::vector<Table>&) {
+    return Finding{.statements = statements, .reason = "", .figures = figures};
+  };
+  return message_of<std::invalid_argument>([&] { judged(experiment, {}); });
+}
+
+Statement statement(Verdict verdict, const std::string& condition = "") {
+  return {.name = "a", .text = "", .verdict = verdict, .condition = condition};
+}
+
 TEST(ExperimentResults, HaveFindingsWithFiniteFiguresOfDifferentNames) {
   Experiment experiment = find_experiment("1");
-  const auto with = [&](std::vector<Figure> figures) {
-    experiment.judge = [figures](const std::vector<Table>&) {
-      return Finding{.reason = "", .figures = figures};
-    };
-    return message_of<std::invalid_argument>([&] { judged(experiment, {}); });
+  const auto with = [](const std::vector<Figure>& figures) {
+    return refusal_of({statement(Verdict::confirmed)}, figures);
   };
   EXPECT_THAT(with({{"growth", 0.0 / 0.0}}), AllOf(HasSubstr("'growth'"), HasSubstr("finite")));
-  experiment.judge = [](const std::vector<Table>& none) {
-    return Finding{.reason = none.at(0).name, .figures = {}};
-  };
+  EXPECT_THAT(with({{"growth", 1, "", Interval{0, 1 / 0.0}}}),
+              AllOf(HasSubstr("'growth'"), HasSubstr("finite")));
+  experiment.judge = [](const std::vector<Table>& none) { return Finding{.reason = none.at(0).name}; };
   EXPECT_THAT(message_of<std::invalid_argument>([&] { judged(experiment, {}); }), HasSubstr("too few rows"));
   EXPECT_THAT(with({{"growth", 1}, {"share", 1}, {"growth", 2}}), HasSubstr("'growth' twice"));
+}
+
+TEST(ExperimentResults, HaveStatementsWithAConditionWhereTheirVerdictHasOneAndEvidenceThatIsThere) {
+  EXPECT_THAT(refusal_of({}), HasSubstr("no statement"));
+  EXPECT_THAT(refusal_of({statement(Verdict::refuted), statement(Verdict::confirmed)}),
+              HasSubstr("'a' twice"));
+  for (const Verdict verdict : {Verdict::within_bounds, Verdict::not_testable})
+    EXPECT_THAT(refusal_of({statement(verdict)}),
+                AllOf(HasSubstr("'a' is " + std::string(name(verdict))), HasSubstr("expected one")));
+  for (const Verdict verdict : {Verdict::confirmed, Verdict::refuted})
+    EXPECT_THAT(refusal_of({statement(verdict, "if")}), HasSubstr("expected none"));
+  Statement unfounded = statement(Verdict::refuted);
+  unfounded.evidence = {"growth"};
+  EXPECT_THAT(refusal_of({unfounded}),
+              AllOf(HasSubstr("the figure 'growth'"), HasSubstr("expected one that")));
 }
 
 }  // namespace

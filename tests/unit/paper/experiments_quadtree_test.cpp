@@ -40,41 +40,50 @@ Table sizes(double growth) {
   return table;
 }
 
-TEST(QuadtreeSizesExperiment, HoldsWhereLargeBoxesPropagateFourfoldAndFillTheTree) {
+TEST(QuadtreeSizesExperiment, IsConfirmedWhereLargeBoxesPropagateFourfoldAndFillTheTree) {
   const Finding finding = judged("quadtree_sizes", {levels(3.88), sizes(10)});
-  EXPECT_EQ(finding.verdict, Verdict::holds);
+  for (const char* const statement : {"unit_size", "fourfold", "book_keeping"})
+    EXPECT_EQ(verdict(finding, statement), "confirmed");
   EXPECT_NE(finding.reason.find("3.88 times"), std::string::npos) << finding.reason;
   EXPECT_NE(finding.reason.find("10.0 times"), std::string::npos) << finding.reason;
 }
 
-TEST(QuadtreeSizesExperiment, DoesNotHoldWhereALargeBoxPropagatesLessOrMore) {
-  EXPECT_EQ(judged("quadtree_sizes", {levels(1.5), sizes(10)}).verdict, Verdict::does_not_hold);
-  EXPECT_EQ(judged("quadtree_sizes", {levels(5), sizes(10)}).verdict, Verdict::does_not_hold);
+TEST(QuadtreeSizesExperiment, IsRefutedWhereALargeBoxPropagatesLessOrMore) {
+  EXPECT_EQ(verdict(judged("quadtree_sizes", {levels(1.5), sizes(10)}), "fourfold"), "refuted");
+  EXPECT_EQ(verdict(judged("quadtree_sizes", {levels(5), sizes(10)}), "fourfold"), "refuted");
 }
 
-TEST(QuadtreeSizesExperiment, HoldsWhenThereAreMoreWhereOneInAHundredIsNoBurden) {
-  EXPECT_EQ(judged("quadtree_sizes", {levels(3.88), sizes(1.1)}).verdict_text(),
-            "holds when more than one box in a hundred is large");
+TEST(QuadtreeSizesExperiment, IsRefutedWhereBoxesOfAUnitPropagateAsWell) {
+  Table small = levels(3.88);
+  small.rows[1][2] = 3.5;
+  EXPECT_EQ(verdict(judged("quadtree_sizes", {small, sizes(10)}), "unit_size"), "refuted");
 }
 
-/// A density: what leaves of 8 and the best ones take.
+TEST(QuadtreeSizesExperiment, IsABurdenOnlyWhereThereAreMoreWhereOneInAHundredIsNone) {
+  EXPECT_EQ(verdict(judged("quadtree_sizes", {levels(3.88), sizes(1.1)}), "book_keeping"),
+            "holds within bounds: more than one box in a hundred is large");
+}
+
+/// A density: what leaves of 8 take over the best ones.
 struct Density {
   double neighbours;
   double references;
   double time;
   double best_capacity;
-  double best_time = 1;
 };
 
 Table capacities(const char* name, const std::vector<Density>& densities) {
   Table table{.name = name,
               .title = {},
-              .columns = {{"neighbours"}, {"capacity"}, {"tests a box"}, {"references a box"}, {"time"}}};
+              .columns = {{"neighbours"}, {"capacity"}, {"tests a box"}, {"references a box"}}};
+  append(table.columns, ratio_columns("time over best"));
   for (const Density& density : densities) {
     for (const double capacity : {8.0, 32.0, 128.0, 512.0}) {
       const bool is_best = capacity == density.best_capacity;
-      const double time = is_best ? density.best_time : capacity == 8 ? density.time : 2 * density.best_time;
-      table.add({density.neighbours, capacity, capacity, capacity == 8 ? density.references : 1.0, time});
+      std::vector<Cell> row = {density.neighbours, capacity, capacity,
+                               capacity == 8 ? density.references : 1.0};
+      append(row, ratio(is_best ? 1 : capacity == 8 ? density.time : 2));
+      table.add(row);
     }
   }
   return table;
@@ -82,11 +91,12 @@ Table capacities(const char* name, const std::vector<Density>& densities) {
 
 Table own() { return capacities("own", {{1, 2, 2, 512}, {64, 4, 2, 512}}); }
 
-TEST(QuadtreeCapacityExperiment, HoldsWhereLargerLeavesAlleviateAllDenseWorlds) {
+TEST(QuadtreeCapacityExperiment, IsConfirmedWhereLargerLeavesAlleviateAllDenseWorlds) {
   const Finding finding =
       judged("quadtree_capacity",
              {capacities("paper", {{1, 1.5, 1.2, 32}, {16, 10, 2, 32}, {64, 12, 3, 128}}), own()});
-  EXPECT_EQ(finding.verdict, Verdict::holds);
+  EXPECT_EQ(verdict(finding, "references"), "confirmed");
+  EXPECT_EQ(verdict(finding, "larger_leaves"), "confirmed");
   EXPECT_NE(finding.reason.find("smallest leaf within 10 % of the best time from 32 to 128 boxes"),
             std::string::npos)
       << finding.reason;
@@ -96,17 +106,20 @@ TEST(QuadtreeCapacityExperiment, HoldsWhenTheDensestWorldsAreNotAlleviatedAnyMor
   const Finding finding =
       judged("quadtree_capacity",
              {capacities("paper", {{1, 1.5, 1.4, 32}, {16, 10, 2, 32}, {64, 12, 1.1, 128}}), own()});
-  EXPECT_EQ(finding.verdict, Verdict::holds_when);
-  EXPECT_EQ(finding.condition.find("a box overlaps from 1 to 16 others"), 0U) << finding.condition;
+  EXPECT_TRUE(verdict(finding, "larger_leaves")
+                  .starts_with("holds within bounds: a box overlaps from 1 to 16 others"))
+      << verdict(finding, "larger_leaves");
 }
 
-TEST(QuadtreeCapacityExperiment, DoesNotHoldWhereSmallLeavesAreTheBestOrDenseWorldsHaveNoMoreReferences) {
-  EXPECT_EQ(
-      judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 1, 8}, {64, 12, 1, 8}}), own()}).verdict,
-      Verdict::does_not_hold);
-  EXPECT_EQ(
-      judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 3, 32}, {64, 1.6, 3, 32}}), own()}).verdict,
-      Verdict::does_not_hold);
+TEST(QuadtreeCapacityExperiment, IsRefutedWhereSmallLeavesAreTheBestOrDenseWorldsHaveNoMoreReferences) {
+  const Finding small =
+      judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 1, 8}, {64, 12, 1, 8}}), own()});
+  EXPECT_EQ(verdict(small, "references"), "confirmed");
+  EXPECT_EQ(verdict(small, "larger_leaves"), "refuted");
+  const Finding sparse =
+      judged("quadtree_capacity", {capacities("paper", {{1, 1.5, 3, 32}, {64, 1.6, 3, 32}}), own()});
+  EXPECT_EQ(verdict(sparse, "references"), "refuted");
+  EXPECT_EQ(verdict(sparse, "larger_leaves"), "refuted");
 }
 
 }  // namespace

@@ -52,12 +52,16 @@ TEST(Experiments, AreThoseWhoseFilesEndInADescription) {
   EXPECT_THAT(listed, UnorderedElementsAreArray(described));
 }
 
-TEST(Experiments, AreDescribedFullyAndOnceAndNumberedWithoutGaps) {
+TEST(Experiments, AreDescribedFullyAndOnceAndNumberedWithoutGapsOurOwnClaimsApart) {
   int last = 0;
+  bool was_own = false;
   std::set<std::string> names;
   std::set<std::string> titles;
   for (const Experiment& experiment : experiments()) {
     SCOPED_TRACE(experiment.name);
+    if (experiment.is_own() && !was_own) last = 0;
+    EXPECT_GE(experiment.is_own(), was_own) << "the draft's claims come first";
+    was_own = experiment.is_own();
     EXPECT_EQ(experiment.number, ++last);
     EXPECT_TRUE(is_name(experiment.name));
     EXPECT_TRUE(names.insert(experiment.name).second);
@@ -73,15 +77,25 @@ TEST(Experiments, AreDescribedFullyAndOnceAndNumberedWithoutGaps) {
   }
 }
 
-TEST(Experiments, AreFoundByNameAndByNumber) {
+TEST(Experiments, AreFoundByNameAndByLabel) {
   for (const Experiment& experiment : experiments()) {
     EXPECT_EQ(&find_experiment(experiment.name), &experiment);
-    EXPECT_EQ(&find_experiment(std::to_string(experiment.number)), &experiment);
+    EXPECT_EQ(&find_experiment(experiment.label()), &experiment);
   }
-  for (const char* const text : {"", "0", "01", "-1", "1.0", "16", "brute", "brute_force_tests ", "WINNERS"})
+  EXPECT_EQ(find_experiment("B1").name, "winners");
+  for (const char* const text :
+       {"", "0", "01", "-1", "1.0", "15", "b1", "brute", "brute_force_tests ", "WINNERS"})
     EXPECT_THAT(message_of<InvalidSpec>([&] { find_experiment(text); }),
                 AllOf(HasSubstr(std::string("'") + text + "'"), HasSubstr("1 brute_force_tests"),
-                      HasSubstr("15 winners")));
+                      HasSubstr("B1 winners")));
+}
+
+TEST(Experiments, LabelTheStatementsOfAClaimThatHasSeveral) {
+  const Experiment& experiment = find_experiment("14");
+  Finding finding{.statements = std::vector<Statement>(1), .reason = {}};
+  EXPECT_EQ(experiment.label_of(finding, 0), "14");
+  finding.statements.resize(2);
+  EXPECT_EQ(experiment.label_of(finding, 1), "14b");
 }
 
 TEST(Experiments, RefuseNoTablesAndEmptyOnes) {
@@ -115,7 +129,11 @@ TEST_F(CommittedResults, GiveFindingsWithAReasonAndFigures) {
     SCOPED_TRACE(result.experiment->name);
     EXPECT_THAT(result.finding.reason, testing::ContainsRegex("[0-9]"));
     EXPECT_TRUE(result.finding.reason.ends_with('.')) << result.finding.reason;
-    EXPECT_EQ(result.finding.condition.empty(), result.finding.verdict != Verdict::holds_when);
+    for (const Statement& statement : result.finding.statements) {
+      EXPECT_TRUE(is_name(statement.name)) << statement.name;
+      EXPECT_FALSE(statement.text.empty() || statement.text.ends_with('.')) << statement.text;
+      EXPECT_FALSE(statement.evidence.empty()) << statement.name;
+    }
     EXPECT_FALSE(result.finding.figures.empty());
     for (const Figure& figure : result.finding.figures) EXPECT_TRUE(is_name(figure.name)) << figure.name;
     EXPECT_EQ(judged(*result.experiment, result.tables), result.finding) << "another finding the second time";

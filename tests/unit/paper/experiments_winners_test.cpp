@@ -1,4 +1,4 @@
-// Experiment 15: what it makes of tables made by hand.
+// Our own claim: what the experiment makes of tables made by hand.
 #include <string>
 #include <vector>
 
@@ -55,10 +55,11 @@ const Times grid_wins = {1, 9, 1, 4, 4, 2};
 const Times bvh_wins = {1, 0, 2, 4, 4, 1};
 const Times bvh_wins_and_auto_errs = {4, 9, 2, 4, 4, 1};
 
-TEST(Winners, HoldsWhereWinnersDifferAndAutoLosesLeast) {
+TEST(Winners, IsConfirmedWhereWinnersDifferAndAutoLosesLeast) {
   const Finding finding = judged(
       "winners", tables_of({{false, grid_wins}, {false, bvh_wins}, {true, grid_wins}, {true, bvh_wins}}));
-  EXPECT_EQ(finding.verdict, Verdict::holds) << finding.reason;
+  EXPECT_EQ(verdict(finding, "no_best"), "confirmed") << finding.reason;
+  EXPECT_EQ(verdict(finding, "choosing"), "confirmed") << finding.reason;
   EXPECT_THAT(finding.reason,
               AllOf(HasSubstr("Of 4 fields"), HasSubstr("grid in 2, bvh in 2"), Not(HasSubstr("quadtree"))));
   EXPECT_EQ(figure(finding, "won_by_grid"), 2);
@@ -68,18 +69,18 @@ TEST(Winners, HoldsWhereWinnersDifferAndAutoLosesLeast) {
   EXPECT_DOUBLE_EQ(figure(finding, "bvh_gain_most"), 2);
 }
 
-TEST(Winners, DoesNotHoldWhereOneAlgorithmIsBestEverywhereButForNoise) {
+TEST(Winners, IsRefutedWhereOneAlgorithmIsBestEverywhereButForNoise) {
   const Finding finding =
       judged("winners", tables_of({{false, grid_wins}, {true, {1, 9, 1.05, 4, 4, 1}}, {true, grid_wins}}));
-  EXPECT_EQ(finding.verdict, Verdict::does_not_hold) << finding.reason;
+  EXPECT_EQ(verdict(finding, "no_best"), "refuted") << finding.reason;
 }
 
-TEST(Winners, DoesNotHoldWhereAutoChoosesBadly) {
+TEST(Winners, IsRefutedWhereAutoChoosesBadly) {
   const Finding finding = judged("winners", tables_of({{false, grid_wins},
                                                        {false, bvh_wins_and_auto_errs},
                                                        {true, grid_wins},
                                                        {true, bvh_wins_and_auto_errs}}));
-  EXPECT_EQ(finding.verdict, Verdict::does_not_hold) << finding.reason;
+  EXPECT_EQ(verdict(finding, "choosing"), "refuted") << finding.reason;
   EXPECT_DOUBLE_EQ(figure(finding, "auto_worst"), 4);
 }
 
@@ -87,11 +88,11 @@ TEST(Winners, HoldsForStillOrForMovingBoxesWhereAutoChoosesWellForThese) {
   const Finding still = judged(
       "winners",
       tables_of({{false, grid_wins}, {false, bvh_wins}, {true, grid_wins}, {true, bvh_wins_and_auto_errs}}));
-  EXPECT_EQ(still.verdict_text(), "holds when the boxes stand still") << still.reason;
+  EXPECT_EQ(verdict(still, "choosing"), "holds within bounds: the boxes stand still") << still.reason;
   const Finding moving = judged(
       "winners",
       tables_of({{true, grid_wins}, {true, bvh_wins}, {false, grid_wins}, {false, bvh_wins_and_auto_errs}}));
-  EXPECT_EQ(moving.verdict_text(), "holds when boxes move") << moving.reason;
+  EXPECT_EQ(verdict(moving, "choosing"), "holds within bounds: boxes move") << moving.reason;
 }
 
 TEST(Winners, TakesAnAlgorithmThatWasLeftOutOfAFieldForNoneThatIsBestEverywhere) {
@@ -101,7 +102,7 @@ TEST(Winners, TakesAnAlgorithmThatWasLeftOutOfAFieldForNoneThatIsBestEverywhere)
                                                        {false, only_grid_elsewhere},
                                                        {true, grid_wins},
                                                        {true, only_grid_elsewhere}}));
-  EXPECT_EQ(finding.verdict, Verdict::holds) << finding.reason;
+  EXPECT_EQ(verdict(finding, "no_best"), "confirmed") << finding.reason;
 }
 
 TEST(Winners, TellsOfInstructionSetsThreadsAndPeersWhereThereAreAny) {

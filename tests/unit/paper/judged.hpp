@@ -15,9 +15,13 @@ inline Finding judged(const char* experiment, const std::vector<Table>& tables) 
   return judged(find_experiment(experiment), tables);
 }
 
-inline Verdict verdict(const char* experiment, const std::vector<Table>& tables) {
-  return judged(experiment, tables).verdict;
+/// The verdict on one of the claim's statements, with its condition.
+inline std::string verdict(const Finding& finding, const std::string& statement) {
+  return finding.statement(statement).verdict_text();
 }
+
+/// The cells of a ratio whose interval is a hundredth on both sides.
+inline std::vector<Cell> ratio(double median) { return {median, 0.99 * median, 1.01 * median}; }
 
 inline double figure(const Finding& finding, const std::string& name) {
   const auto it = std::ranges::find(finding.figures, name, &Figure::name);

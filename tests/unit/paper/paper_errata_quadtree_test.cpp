@@ -124,5 +124,17 @@ TEST(Erratum10b, BruteForceRunsAtInnerNodesToo) {
   EXPECT_EQ(expect_right(in_that_world("2"), boxes).tests, 1U);
 }
 
+TEST(ErratumT16, SubnodesLieInTheDiagonals) {
+  printed::QuadTreeNode root{.x_origin = 50, .y_origin = 50, .count_max = 1};
+  printed::algorithm_8_split(root, printed::To::excluding);
+  const auto off = [&](const printed::QuadTreeNode& node) {
+    return std::pair(node.x_origin - root.x_origin, node.y_origin - root.y_origin);
+  };
+  EXPECT_EQ(off(*root.qi), std::pair(25.0, -25.0));
+  EXPECT_EQ(off(*root.qii), std::pair(-25.0, -25.0));
+  EXPECT_EQ(off(*root.qiii), std::pair(-25.0, 25.0));
+  EXPECT_EQ(off(*root.qiv), std::pair(25.0, 25.0));
+}
+
 }  // namespace
 }  // namespace broadside::paper

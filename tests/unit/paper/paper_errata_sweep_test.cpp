@@ -72,5 +72,21 @@ TEST(ErratumT2, FromTheFurthestAwayNothingIsEverPruned) {
   EXPECT_EQ(expect_right("paper_sweep_and_prune", furthest_first).tests, 0U);
 }
 
+TEST(ErratumT13, APruneIsByOrderAndNotByEquality) {
+  const auto active_after = [](const Box2& next) {
+    printed::Collection f = objects({box(0, 0, 1, 1)});
+    printed::algorithm_6_prune(f, {BoxId{1}, next}, excluding);
+    return f.size();
+  };
+  EXPECT_EQ(active_after(box(2, 0, 3, 1)), 0U) << "the ends differ, and it is pruned";
+  EXPECT_EQ(active_after(box(1, 0, 3, 1)), 1U) << "the ends are equal, and it stays";
+}
+
+TEST(ErratumT15, ANewObjectHasNoneToCollideWithWhereNoneIsActive) {
+  const std::vector<Box2> apart = {box(0, 0, 1, 1), box(2, 0, 3, 1), box(4, 0, 5, 1)};
+  EXPECT_EQ(sweep(apart).size(), 3U) << "each with itself";
+  EXPECT_EQ(expect_right("paper_sweep_and_prune", apart).tests, 0U);
+}
+
 }  // namespace
 }  // namespace broadside::paper

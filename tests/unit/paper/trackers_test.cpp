@@ -69,6 +69,22 @@ class Followed {
     return update({&changed, 1});
   }
 
+  UpdateParts shift(const std::vector<BoxId>& some, float by) {
+    for (const BoxId id : some) {
+      for (float* const x : {&boxes_[index(id)].min[0], &boxes_[index(id)].max[0]}) *x += by;
+    }
+    return update(some);
+  }
+
+  UpdateParts add(const std::vector<Box2>& more) {
+    std::vector<BoxId> added;
+    for (const Box2& box : more) {
+      added.push_back(BoxId(boxes_.size()));
+      boxes_.push_back(box);
+    }
+    return update(added);
+  }
+
   UpdateParts rest() { return update({}); }
   std::size_t tests() const { return tracker_->statistics()->tests; }
   std::size_t references() const { return tracker_->statistics()->references; }
@@ -176,6 +192,30 @@ TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
       Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
   EXPECT_LE(parts.visited, 20U);
   EXPECT_EQ(parts.moved, 1000U);
+}
+
+TEST(ErratumT10, TheCellsAreLookedThroughOnceForAllThatMoved) {
+  const auto looked_at = [](const std::vector<BoxId>& some) {
+    return Followed("paper_grid:cell=1:update=search_delete_reinsert", rows(20, 400)).shift(some, 1).visited;
+  };
+  EXPECT_LT(looked_at({BoxId{3}, BoxId{7}, BoxId{11}}), looked_at({BoxId{3}}) + 20);
+}
+
+TEST(ErratumT11, AStructureIsBuiltAnewWhereItIsOutgrown) {
+  for (const std::string& spec : updates_2d) {
+    if (spec.find("update=rebuild") != std::string::npos) continue;
+    Followed followed(spec, rows(20, 40));
+    EXPECT_FALSE(followed.add(rows(20, 40)).built) << spec << ", with twice as many";
+    EXPECT_TRUE(followed.add(rows(20, 1)).built) << spec << ", with more than that";
+  }
+}
+
+TEST(ErratumT19, AReferenceIsLookedForAmongTheOthersOfItsCell) {
+  std::vector<Box2> boxes;
+  for (const float x : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 100.0F}) boxes.push_back({{x, x}, {x, x}});
+  const UpdateParts parts =
+      Followed("paper_grid:cell=10:update=reinsert", boxes).move(4, {{55, 55}, {55, 55}});
+  EXPECT_EQ(parts.visited, 5U + 1U);
 }
 
 TEST(ErratumT12, ABoxThatGrowsReachesLeavesWithoutLeavingAny) {
