@@ -90,7 +90,8 @@ Finding judge(const std::vector<Table>& tables) {
 
   Statement adding{.name = "adding", .text = "then most of the time is spent in adding references"};
   for (const double neighbours : smallest.numbers("neighbours"))
-    adding.evidence.push_back(fmt::format("adding_with_{:.0f}_neighbours", neighbours));
+    append(adding.evidence, {fmt::format("adding_with_{:.0f}_neighbours", neighbours),
+                             fmt::format("adding_to_new_cells_with_{:.0f}_neighbours", neighbours)});
   const auto fewer = [](const std::optional<double>& limit) {
     return limit ? fmt::format("a box touches fewer than about {} others", rounded(*limit)) : std::string();
   };

@@ -1,5 +1,5 @@
 // What the experiments and their machine come to, as texts and tables.
-import type { Experiment, Experiments, Statement, Table, Verdict } from "../../web/charts/data.ts";
+import type { Experiment, Experiments, Figure, Statement, Table, Verdict } from "../../web/charts/data.ts";
 import { bytesText, timeText } from "../../web/charts/numbers.ts";
 import { plain, tableText } from "./markdown.ts";
 import { processorName, shown, withUnit } from "./words.ts";
@@ -24,13 +24,17 @@ export function statementsList({ statements }: Experiment): string {
 
 const outcome = ({ verdict }: Statement): string => `**${verdict}**`;
 
+/** "1.45 to 1.55"; empty for counts, and for times of too few rounds to tell. */
+const intervalText = ({ low, high }: Figure): string =>
+  low === null || high === null || low === high ? "" : `${shown(low)} to ${shown(high)}`;
+
 /** "mending growth 1.50 (1.45 to 1.55)". */
 function evidenceText(experiment: Experiment, name: string): string {
-  const { value, unit, low, high } = experiment.figures[name]!;
+  const figure = experiment.figures[name]!;
   const words = name.replaceAll("_", " ");
-  if (low === null || high === null) return `${words} ${withUnit(value, unit)}`;
-  const interval = `(${shown(low)} to ${shown(high)})`;
-  return unit === "" ? `${words} ${shown(value)} ${interval}` : `${words} ${shown(value)} ${interval} ${unit}`;
+  const interval = intervalText(figure);
+  if (interval === "") return `${words} ${withUnit(figure.value, figure.unit)}`;
+  return `${words} ${shown(figure.value)} (${interval})${figure.unit === "" ? "" : ` ${figure.unit}`}`;
 }
 
 /** How many claims and statements there are, and what became of the statements. */
@@ -94,11 +98,11 @@ export function figuresTable({ experiments }: Experiments): string {
   return tableText(
     ["experiment", "figure", " value", " interval"],
     experiments.flatMap(({ name: experiment, figures }) =>
-      Object.entries(figures).map(([name, { value, unit, low, high }]) => [
+      Object.entries(figures).map(([name, figure]) => [
         `\`${experiment}\``,
         `\`${name}\``,
-        withUnit(value, unit),
-        low === null || high === null ? "-" : `${shown(low)} to ${shown(high)}`,
+        withUnit(figure.value, figure.unit),
+        intervalText(figure) || "-",
       ]),
     ),
   );

@@ -43,7 +43,7 @@ function tableView(table: Table): HTMLElement {
 
 function figureText({ value, unit, low, high }: Figure): string {
   if (unit === "bytes" && value >= 1000) return bytesText(value);
-  const interval = low === null || high === null ? "" : ` (${rounded(low)} to ${rounded(high)})`;
+  const interval = low === null || high === null || low === high ? "" : ` (${rounded(low)} to ${rounded(high)})`;
   return rounded(value) + interval + (unit === "" ? "" : ` ${unit}`);
 }
 

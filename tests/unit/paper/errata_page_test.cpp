@@ -28,7 +28,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
 
 /// "3b", "T7": what is an erratum's number wherever it stands.
 std::vector<std::string> numbers_in(const std::string& text) {
-  return matches(text, "(?:^|[^A-Za-z0-9_.])((?:10|[1-9])[a-i]|T[1-9][0-9]?)(?![A-Za-z0-9_])");
+  return matches(text, "(?:^|[^A-Za-z0-9_.])((?:10|[1-9])[a-i]|T[1-9][0-9]?)(?![A-Za-z0-9_-])");
 }
 
 std::string page() { return broadside::text_of(root / "docs" / "paper" / "errata.md"); }
