@@ -28,12 +28,14 @@ TEST(Literature, IsAGroupOfTheCatalogue) {
                                     "pbsm_stripes"));
 }
 
-/// Intervals [i, i + length] for i < count in segments of four ends.
-literature::IntervalList intervals(std::uint32_t count, float length) {
+/// Intervals [i, i + 1/2] for i < 100, and 200 from -1 to 99.2, which was there before the others: so the
+/// segments, which begin with four ends, have been split under it.
+literature::IntervalList intervals() {
   literature::IntervalList list(4);
-  for (std::uint32_t i = 0; i < count; ++i) {
+  list.insert({-1, false, 200}, {99.2F, true, 200});
+  for (std::uint32_t i = 0; i < 100; ++i) {
     const auto begin = static_cast<float>(i);
-    list.insert({begin, false, i}, {begin + length, true, i});
+    list.insert({begin, false, i}, {begin + 0.5F, true, i});
   }
   return list;
 }
@@ -47,21 +49,20 @@ std::vector<std::uint32_t> overlaps(const literature::IntervalList& list, float 
 }
 
 TEST(IntervalList, FindsLongIntervalsThatBeganSegmentsAgo) {
-  literature::IntervalList list = intervals(100, 0.5F);
-  list.insert({-1, false, 200}, {99.2F, true, 200});
+  literature::IntervalList list = intervals();
   EXPECT_THAT(overlaps(list, 90.1F, 91.0F), IsSupersetOf({90U, 91U, 200U}));
   list.erase({-1, false, 200}, {99.2F, true, 200});
   EXPECT_THAT(overlaps(list, 90.1F, 91.0F), testing::Not(testing::Contains(200U)));
 }
 
 TEST(IntervalList, TellsEachIntervalThatAMovedOneMeetsOrLeaves) {
-  literature::IntervalList list = intervals(40, 0.5F);
+  literature::IntervalList list = intervals();
   std::vector<std::uint32_t> passed;
   // From [3, 3.5] to [10.25, 10.75]: past 4 to 9 with both ends, and into 10, whose end it touches not yet.
   list.move({3, false, 3}, {3.5F, true, 3}, {10.25F, false, 3}, {10.75F, true, 3},
             [&](std::uint32_t id) { passed.push_back(id); });
   EXPECT_THAT(passed, IsSupersetOf({4U, 5U, 6U, 7U, 8U, 9U, 10U}));
-  EXPECT_THAT(passed, testing::Not(testing::Contains(11U)));
+  EXPECT_THAT(passed, testing::Not(testing::Contains(testing::AnyOf(11U, 200U))));
   EXPECT_THAT(overlaps(list, 10, 10.5F), IsSupersetOf({3U, 10U}));
 }
 
