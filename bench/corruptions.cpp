@@ -24,8 +24,9 @@ Caught corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) 
   const std::vector<std::string> algorithms = {"grid", "bvh", "sweep_and_prune", "quadtree", "brute_force"};
   const std::vector<std::string> scenes = {"uniform", "clustered"};
   Caught all;
-  for (std::size_t done = 0, turn = 0; done < count; ++turn) {
-    const std::size_t some = std::min(at_once, count - done);
+  // Some find nothing to corrupt: no event, or no frame in which to report one again.
+  for (std::size_t done = 0, turn = 0; all.applied < count; ++turn) {
+    const std::size_t some = std::min(at_once, count - all.applied);
     lab::CaseRequest request{.scene = scenes[turn % 2], .dimension = turn / 2 % 2 == 0 ? 2 : 3, .boxes = 300};
     if (moves) {
       request.moving = 0.5;

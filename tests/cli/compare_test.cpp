@@ -172,7 +172,7 @@ TEST(CompareVerb, MergesItsRunsAndKeepsTheSamplesApart) {
   EXPECT_EQ(run({"compare", "--merge", samples + ".gz", "--json", again}).status, 0);
   EXPECT_EQ(text_of(again), text_of(samples));
   EXPECT_THAT(run({"compare", "--merge", merged}).errors,
-              HasSubstr("samples_ms is null; expected the samples"));
+              HasSubstr("samples_ms is 'null'; expected the samples"));
 }
 
 TEST(CompareVerb, WritesNothingWhereItCannotMerge) {

@@ -143,16 +143,17 @@ TEST_F(MergeResults, RefusesWhatDoesNotBelongTogether) {
               AllOf(HasSubstr("b.json: the number of pairs of uniform"),
                     HasSubstr("hash 0123456789abcdef'; expected '1986, hash 4e83e7ceaec27c04'")));
   EXPECT_THAT(refusal([](Json& json) { json["schema"] = "broadside.results/1"; }),
-              HasSubstr("b.json: schema is \"broadside.results/1\"; expected \"broadside.results/2\""));
+              HasSubstr("b.json: schema is '\"broadside.results/1\"'; expected \"broadside.results/2\""));
   EXPECT_THAT(refusal([](Json& json) { json = run(1); }), HasSubstr("b.json: holds a run that is in "));
   EXPECT_THAT(refusal([](Json& json) { json["stopped"] = true; }),
-              HasSubstr("b.json: stopped is true; expected "));
+              HasSubstr("b.json: stopped is 'true'; expected "));
   EXPECT_THAT(refusal([](Json& json) { json["measurements"][1]["samples_ms"] = nullptr; }),
-              HasSubstr("b.json: measurements 2: samples_ms is null; expected the samples"));
+              HasSubstr("b.json: measurements 2: samples_ms is 'null'; expected the samples"));
   EXPECT_THAT(refusal([](Json& json) { json["measurements"][1]["rounds"] = 7; }),
               HasSubstr("b.json: measurements 2: samples_ms is "));
-  EXPECT_THAT(refusal([](Json& json) { json["measurements"][0]["samples_ms"][3] = "soon"; }),
-              HasSubstr("b.json: measurements 1: samples_ms 4 is \"soon\"; expected a number of at least 0"));
+  EXPECT_THAT(
+      refusal([](Json& json) { json["measurements"][0]["samples_ms"][3] = "soon"; }),
+      HasSubstr("b.json: measurements 1: samples_ms 4 is '\"soon\"'; expected a number of at least 0"));
 }
 
 TEST_F(MergeResults, FailWhatFailedInOneProcess) {
