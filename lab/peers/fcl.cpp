@@ -31,6 +31,9 @@
 namespace broadside::lab::peers {
 namespace {
 
+/// The depth of a box of 2D. Not none: the trees' Morton codes divide by the extent of all.
+constexpr double slab = 1;
+
 /// An object that is nothing but its bounds.
 class FclObject final : public fcl::CollisionObjectd {
  public:
@@ -40,16 +43,16 @@ class FclObject final : public fcl::CollisionObjectd {
 
   BoxId id() const { return id_; }
 
+  /// A box of 2D becomes a slab of this depth.
   template <int D>
-  void set(const Box<D>& box) {
+  void set(const Box<D>& box, double depth) {
     for (int axis = 0; axis < D; ++axis) {
       aabb.min_[axis] = box.min[axis];
       aabb.max_[axis] = box.max[axis];
     }
     if constexpr (D == 2) {
-      // Not flat: the Morton codes divide by the extent of all.
       aabb.min_[2] = 0;
-      aabb.max_[2] = 1;
+      aabb.max_[2] = depth;
     }
   }
 
@@ -91,7 +94,8 @@ using MakeManager = FclManager (*)(std::span<const Box<D>> boxes);
 template <int D>
 class FclFinder final : public PairFinder<D>, public TearDown {
  public:
-  FclFinder(MakeManager<D> make, bool widened) : make_(make), widened_(widened) {}
+  FclFinder(MakeManager<D> make, bool widened, double depth)
+      : make_(make), widened_(widened), depth_(depth) {}
 
   void tear_down() override { manager_.reset(); }
 
@@ -102,7 +106,7 @@ class FclFinder final : public PairFinder<D>, public TearDown {
     for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i));
     pointers_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      objects_[i].set(boxes[i]);
+      objects_[i].set(boxes[i], depth_);
       if (widened_) objects_[i].widen();
       pointers_.push_back(&objects_[i]);
     }
@@ -116,22 +120,24 @@ class FclFinder final : public PairFinder<D>, public TearDown {
 
   MakeManager<D> make_;
   bool widened_;
+  double depth_;
   std::vector<FclObject> objects_;  // by place; more than there are boxes, once there were more
   std::vector<fcl::CollisionObjectd*> pointers_;
   FclManager manager_;  // of the last search; points into objects_
 };
 
 /// The description of a manager: a finder that fills a new one in each call. `widened` if it goes wrong where
-/// two bounds are equal.
-Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widened = false) {
+/// two bounds are equal; `depth` is that of boxes of 2D.
+Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widened = false,
+                      double depth = slab) {
   return {
       .name = {},
       .summary = {},
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "FCL " FCL_VERSION,
-      .finder_2d = [=](const Settings&) { return std::make_unique<FclFinder<2>>(make_2d, widened); },
-      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder<3>>(make_3d, widened); },
+      .finder_2d = [=](const Settings&) { return std::make_unique<FclFinder<2>>(make_2d, widened, depth); },
+      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder<3>>(make_3d, widened, depth); },
       .infinite_boxes = false,
   };
 }
@@ -157,11 +163,11 @@ FclManager make_tree_for(std::span<const Box<D>>) {
   return make_tree<Manager>();
 }
 
-template <int D, typename Manager>
+template <int D>
 class FclTreeTracker final : public PeerTracker<D> {
  private:
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>>) override {
-    tree_ = make_tree<Manager>();
+    tree_ = make_tree<Tree>();
     objects_.clear();
     pointers_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -217,7 +223,7 @@ class FclTreeTracker final : public PeerTracker<D> {
 
   FclObject& put(BoxId id, const Box<D>& box) {
     while (objects_.size() <= index(id)) objects_.emplace_back(BoxId(objects_.size()), geometry_);
-    objects_[index(id)].set(box);
+    objects_[index(id)].set(box, slab);
     return objects_[index(id)];
   }
 
@@ -225,7 +231,7 @@ class FclTreeTracker final : public PeerTracker<D> {
   std::shared_ptr<fcl::CollisionGeometryd> geometry_ = std::make_shared<fcl::Sphered>(1);
   std::deque<FclObject> objects_;  // by place
   std::vector<fcl::CollisionObjectd*> pointers_;
-  std::unique_ptr<Manager> tree_;  // points into them
+  std::unique_ptr<Tree> tree_;  // points into them
 };
 
 // As in FCL's own tests: a table that grows, over the bounds of all objects.
@@ -247,33 +253,28 @@ FclManager make_hash(std::span<const Box<D>> boxes) {
     max[axis] = (std::ceil(greatest / cell) + 1 + offset) * cell;
   }
   if constexpr (D == 2) {
-    // One layer of cells around the slabs.
-    min[2] = -1;
-    max[2] = min[2] + std::max(cell, 4.0);
+    // One layer of cells around what is flat.
+    min[2] = (offset - 1) * cell;
+    max[2] = offset * cell;
   }
   return std::make_unique<HashManager>(cell, min, max);
-}
-
-template <typename Manager>
-Algorithm fcl_tree() {
-  Algorithm algorithm = fcl_manager(make_tree_for<Manager, 2>, make_tree_for<Manager, 3>);
-  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<FclTreeTracker<2, Manager>>(); };
-  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker<3, Manager>>(); };
-  return algorithm;
 }
 
 }  // namespace
 
 Algorithm fcl_dynamic_aabb_tree() {
-  Algorithm algorithm = fcl_tree<Tree>();
+  Algorithm algorithm = fcl_manager(make_tree_for<Tree, 2>, make_tree_for<Tree, 3>);
   algorithm.name = "fcl_dynamic_aabb_tree";
   algorithm.summary = "FCL's dynamic tree of boxes, built at once in the order of Morton codes";
   algorithm.source = "FCL, DynamicAABBTreeCollisionManager";
+  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<FclTreeTracker<2>>(); };
+  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker<3>>(); };
   return algorithm;
 }
 
+// Its update() ends the program in some histories of the law, so motion is followed by registering all again.
 Algorithm fcl_dynamic_aabb_tree_array() {
-  Algorithm algorithm = fcl_tree<ArrayTree>();
+  Algorithm algorithm = fcl_manager(make_tree_for<ArrayTree, 2>, make_tree_for<ArrayTree, 3>);
   algorithm.name = "fcl_dynamic_aabb_tree_array";
   algorithm.summary = "FCL's dynamic tree of boxes with its nodes in one array, built likewise";
   algorithm.source = "FCL, DynamicAABBTreeCollisionManager_Array";
@@ -304,7 +305,9 @@ Algorithm fcl_ssap() {
 }
 
 Algorithm fcl_spatial_hash() {
-  Algorithm algorithm = fcl_manager(make_hash<2>, make_hash<3>);
+  constexpr bool widened = false;
+  constexpr double flat = 0;  // a slab may be many cells deep
+  Algorithm algorithm = fcl_manager(make_hash<2>, make_hash<3>, widened, flat);
   algorithm.name = "fcl_spatial_hash";
   algorithm.summary =
       "FCL's spatial hashing: boxes in every cell they touch, each box looked up in all its cells";
