@@ -36,8 +36,8 @@ struct Figure {
 
   friend bool operator==(const Figure& a, const Figure& b) {
     const auto bounds = [](const Figure& figure) {
-      const Interval interval = figure.interval.value_or(Interval{});
-      return std::tuple(figure.interval.has_value(), interval.low, interval.high);
+      const Interval known = figure.interval.value_or(Interval{});
+      return std::tuple(figure.interval.has_value(), known.low, known.high);
     };
     return std::tie(a.name, a.value, a.unit) == std::tie(b.name, b.value, b.unit) && bounds(a) == bounds(b);
   }

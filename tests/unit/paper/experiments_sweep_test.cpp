@@ -137,7 +137,8 @@ TEST(SweepInsertionExperiment, ImprovesOnAHeapWhereItsFramesAreFaster) {
   };
   EXPECT_EQ(improved(motion_frames(0.1)), "confirmed");
   // A frame of 110 + p crosses 160 at p = 50; between 10 and 100 places on straight lines of logarithms.
-  EXPECT_TRUE(improved(motion_frames(1)).starts_with("holds within bounds: a box passes fewer than about 32.7 others"))
+  EXPECT_TRUE(improved(motion_frames(1))
+                  .starts_with("holds within bounds: a box passes fewer than about 32.7 others"))
       << improved(motion_frames(1));
   EXPECT_EQ(improved(motion_frames(1, 100)), "refuted");
 }
