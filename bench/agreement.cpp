@@ -1,8 +1,8 @@
 // Whether two runs say the same: agreement FIRST.json SECOND.json, two files of `compare --json`, merged or
 // not, or two of `experiment --json`. Of comparisons it prints for each machine that both have how many of
 // the ratios' intervals overlap, how wide they are, how far ratios move from run to run, and which of two
-// algorithms is faster in the one and slower in the other; of experiments whose verdict changes. Ends with 1
-// where a verdict, or which one is faster, changes.
+// algorithms is faster in the one and slower in the other; of experiments which statement's verdict changes.
+// Ends with 1 where a verdict, or which one is faster, changes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::string_view results = "broadside.results/2";
-constexpr std::string_view experiments = "broadside.experiments/";
+constexpr std::string_view experiments = "broadside.experiments/2";
 
 std::string schema_of(const Json& json) { return json.value("schema", ""); }
 
@@ -34,7 +34,7 @@ Json read(const std::string& file) {
   std::ifstream stream(file);
   Json json = Json::parse(stream, nullptr, false);
   if (json.is_discarded() || !json.is_object() ||
-      (schema_of(json) != results && !schema_of(json).starts_with(experiments)))
+      (schema_of(json) != results && schema_of(json) != experiments))
     throw std::runtime_error(
         fmt::format("{} holds neither {} nor {}; expected what compare --json or experiment --json writes",
                     file, results, experiments));
@@ -130,21 +130,29 @@ int compare_results(const Json& first, const Json& second) {
   return contradictions == 0 ? 0 : 1;
 }
 
-int compare_experiments(const Json& first, const Json& second) {
+/// The verdicts of each statement, by the experiment's name and the statement's.
+std::map<std::string, std::string> verdicts_of(const Json& json) {
   std::map<std::string, std::string> verdicts;
-  for (const Json& experiment : second["experiments"]) verdicts[experiment["name"]] = experiment["verdict"];
+  for (const Json& experiment : json["experiments"]) {
+    for (const Json& statement : experiment["statements"])
+      verdicts[fmt::format("{}, {}", experiment["name"].get<std::string>(),
+                           statement["name"].get<std::string>())] = statement["verdict"];
+  }
+  return verdicts;
+}
+
+int compare_experiments(const Json& first, const Json& second) {
+  const std::map<std::string, std::string> others = verdicts_of(second);
   std::size_t common = 0;
   std::vector<std::string> changed;
-  for (const Json& experiment : first["experiments"]) {
-    const std::string name = experiment["name"];
-    const std::string verdict = experiment["verdict"];
-    const auto other = verdicts.find(name);
-    if (other == verdicts.end()) continue;
+  for (const auto& [name, verdict] : verdicts_of(first)) {
+    const auto other = others.find(name);
+    if (other == others.end()) continue;
     ++common;
     if (other->second != verdict)
       changed.push_back(fmt::format("{}: {}, then {}", name, verdict, other->second));
   }
-  if (common == 0) throw std::runtime_error("the two have no experiment in common; expected at least one");
+  if (common == 0) throw std::runtime_error("the two have no statement in common; expected at least one");
   fmt::print("verdicts that change: {} of {}\n", changed.size(), common);
   for (const std::string& change : changed) fmt::print("  {}\n", change);
   return changed.empty() ? 0 : 1;

@@ -82,7 +82,7 @@ struct BuildNote {
 
 constexpr std::array<BuildNote, 3> build_notes = {{
     {"box2d_",
-     "Debian's build has assertions, and took 1.06 times as long as one without (0.97 in motion): "
+     "Debian's build has assertions, which cost no more than the noise of the measurement: "
      "docs/peers.md"},
     {"embree_", "Debian's build has assertions, whose cost is not measured yet: docs/peers.md"},
     {"fcl_", "Debian's build has assertions, whose cost is not measured well enough yet: docs/peers.md"},

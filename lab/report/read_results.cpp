@@ -112,10 +112,11 @@ Case read_case(const Place& place) {
 }
 
 AlgorithmKind read_kind(const Place& place) {
-  for (const AlgorithmKind kind : {AlgorithmKind::own, AlgorithmKind::paper, AlgorithmKind::peer}) {
+  for (const AlgorithmKind kind :
+       {AlgorithmKind::own, AlgorithmKind::paper, AlgorithmKind::literature, AlgorithmKind::peer}) {
     if (place.text() == name(kind)) return kind;
   }
-  place.refuse("own, paper or peer");
+  place.refuse("own, paper, literature or peer");
 }
 
 /// Samples, which must be of whole rounds, and of how many in each of `processes`.

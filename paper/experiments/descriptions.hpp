@@ -21,5 +21,6 @@ Experiment sweep_insertion();
 Experiment sweep_reinsertion();
 Experiment quadtree_siblings();
 Experiment winners();
+Experiment ablation();
 
 }  // namespace broadside::lab

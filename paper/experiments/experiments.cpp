@@ -46,9 +46,10 @@ std::string Experiment::label_of(const Finding& finding, std::size_t statement) 
 
 std::span<const Experiment> experiments() {
   static const std::vector<Experiment> list = {
-      brute_force_tests(), overtaking(),      grid_memory(),       grid_spanning(),     grid_cell_size(),
-      sweep_axis(),        quadtree_sizes(),  quadtree_capacity(), update_fraction(),   grid_translation(),
-      grid_rebuilding(),   sweep_insertion(), sweep_reinsertion(), quadtree_siblings(), winners(),
+      brute_force_tests(), overtaking(),        grid_memory(),     grid_spanning(),
+      grid_cell_size(),    sweep_axis(),        quadtree_sizes(),  quadtree_capacity(),
+      update_fraction(),   grid_translation(),  grid_rebuilding(), sweep_insertion(),
+      sweep_reinsertion(), quadtree_siblings(), winners(),         ablation(),
   };
   return list;
 }

@@ -46,7 +46,7 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
 
 CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
                                const Effort& effort) const {
-  return measure(algorithms, request, effort, CompareOptions{}.find);
+  return measure(*catalogue_, algorithms, request, effort, CompareOptions{}.find);
 }
 
 CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene,
@@ -54,18 +54,24 @@ CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene
   const auto find = [&](std::string_view) {
     return NamedScene{scene, {.name = request.scene, .values = {}}};
   };
-  return measure(algorithms, request, effort(), find);
+  return measure(*catalogue_, algorithms, request, effort(), find);
 }
 
-CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest& request,
-                               const Effort& effort, const FindScene& find) const {
+CaseResult Laboratory::measure(const Catalogue& catalogue, const std::string& algorithms,
+                               const CaseRequest& request) const {
+  return measure(catalogue, algorithms, request, effort(), CompareOptions{}.find);
+}
+
+CaseResult Laboratory::measure(const Catalogue& catalogue, const std::string& algorithms,
+                               const CaseRequest& request, const Effort& effort,
+                               const FindScene& find) const {
   CompareOptions options;
   options.algorithms = algorithms;
   options.plan = {request};
   options.find = find;
   options.effort = effort;
   options.watch = watch_;
-  Comparison comparison = compare(*catalogue_, options);
+  Comparison comparison = compare(catalogue, options);
   if (comparison.stopped) throw Stopped();
   if (comparison.cases.empty())
     throw std::runtime_error(fmt::format("scene '{}' could not be measured", request.scene));

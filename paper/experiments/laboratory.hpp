@@ -50,6 +50,10 @@ class Laboratory {
   /// The same on a scene of the experiment's own; `request.scene` is what it is called.
   CaseResult measure(const std::string& algorithms, const Scene& scene, const CaseRequest& request) const;
 
+  /// The same of algorithms of the experiment's own.
+  CaseResult measure(const Catalogue& catalogue, const std::string& algorithms,
+                     const CaseRequest& request) const;
+
   /// How steady everything was that it has measured until now.
   const Steadiness& steadiness() const noexcept { return steadiness_; }
 
@@ -57,8 +61,8 @@ class Laboratory {
   void at(std::string_view what) const { watch_.at(what); }
 
  private:
-  CaseResult measure(const std::string& algorithms, const CaseRequest& request, const Effort& effort,
-                     const FindScene& find) const;
+  CaseResult measure(const Catalogue& catalogue, const std::string& algorithms, const CaseRequest& request,
+                     const Effort& effort, const FindScene& find) const;
 
   const Catalogue* catalogue_;
   bool quick_;

@@ -8,7 +8,8 @@ import { typedDigits } from "../typed_digits.ts";
 import { project } from "./fixture.ts";
 
 const chapters = [
-  "00_abstract", "07a_method", "07b_claims", "07c_comparison", "08_conclusion", "09_threats", "10_reproduce",
+  "00_abstract", "07a_method", "07b_claims", "07c_comparison", "07d_ablation", "08_conclusion", "09_threats",
+  "10_reproduce",
   "supplements/claims", "supplements/comparison", "supplements/quoted", "quotes/caption", "quotes/figures", "quotes/leads",
 ];
 

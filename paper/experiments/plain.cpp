@@ -1,0 +1,96 @@
+// What the plain searches share, and the library's searches held to an instruction set.
+#include "paper/experiments/plain.hpp"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "broadside/executor.hpp"
+#include "broadside/finder.hpp"
+
+namespace broadside::lab {
+namespace {
+
+template <int D>
+class HeldBack final : public PairFinder<D> {
+ public:
+  explicit HeldBack(const Settings& settings)
+      : instruction_set_(settings.text("simd")), finder_(make_finder<D>(settings.text("search"))) {}
+
+ private:
+  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+    limit_instruction_set(instruction_set_);
+    finder_->find(boxes, pairs);
+    limit_instruction_set("");
+    this->count(finder_->statistics().value_or(Statistics{}));
+  }
+
+  std::string instruction_set_;
+  std::unique_ptr<PairFinder<D>> finder_;
+};
+
+}  // namespace
+
+Algorithm held_back() {
+  return {.name = "held_back",
+          .summary = "a search of the library, held to an instruction set",
+          .source = "for the experiment `ablation`",
+          .tunables = {{.name = "search",
+                        .summary = "which",
+                        .standard = "grid",
+                        .type = Tunable::Type::choice,
+                        .choices = {"grid", "bvh"}},
+                       {.name = "simd",
+                        .summary = "the instruction set",
+                        .standard = instruction_set(),
+                        .type = Tunable::Type::choice,
+                        .choices = instruction_sets()}},
+          .finder_2d = [](const Settings& settings) { return std::make_unique<HeldBack<2>>(settings); },
+          .finder_3d = [](const Settings& settings) { return std::make_unique<HeldBack<3>>(settings); }};
+}
+
+Tunable switch_tunable(std::string name, std::string summary) {
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .standard = "yes",
+          .type = Tunable::Type::choice,
+          .choices = {"yes", "no"}};
+}
+
+template <int D>
+int Shape<D>::best_axis() const {
+  int best = 0;
+  for (int axis = 1; axis < D; ++axis) {
+    if (extent[axis] * (high[best] - low[best]) < extent[best] * (high[axis] - low[axis])) best = axis;
+  }
+  return best;
+}
+
+template <int D>
+Shape<D> shape_of(std::span<const Box<D>> boxes, bool sampled) {
+  constexpr std::size_t sample = 256;
+  const std::size_t step = sampled ? std::max<std::size_t>(1, boxes.size() / sample) : 1;
+  Shape<D> shape;
+  shape.low.fill(std::numeric_limits<float>::max());
+  shape.high.fill(std::numeric_limits<float>::lowest());
+  std::array<double, D> sums{};
+  double count = 0;
+  for (std::size_t i = 0; i < boxes.size(); i += step) {
+    ++count;
+    for (int axis = 0; axis < D; ++axis) {
+      shape.low[axis] = std::min(shape.low[axis], boxes[i].min[axis]);
+      shape.high[axis] = std::max(shape.high[axis], boxes[i].max[axis]);
+      sums[axis] += static_cast<double>(boxes[i].max[axis]) - boxes[i].min[axis];
+    }
+  }
+  for (int axis = 0; axis < D; ++axis)
+    shape.extent[axis] = static_cast<float>(sums[axis] / std::max(count, 1.0));
+  return shape;
+}
+
+template struct Shape<2>;
+template struct Shape<3>;
+template Shape<2> shape_of(std::span<const Box2>, bool);
+template Shape<3> shape_of(std::span<const Box3>, bool);
+
+}  // namespace broadside::lab
