@@ -283,7 +283,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
       *verb,
       {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
        {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, while a tenth of them moves"},
-       {"compare --merge 1.json 2.json --json both.json --samples archive.json",
+       {"compare --merge 1.json 2.json --json both.json --samples all.json",
         "two runs as one, the samples apart"}});
   return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }

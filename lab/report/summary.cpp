@@ -67,8 +67,8 @@ std::string lead_text(const Comparison& comparison, AlgorithmKind kind, std::str
   if (ratios.pairs.empty()) return "";
   const std::size_t least = ratios.extreme(std::greater<>());
   return fmt::format(
-      "{} is {} times as fast as the fastest {}, geometric mean of {}; at least {} times ({})\n", name, rival,
-      mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
+      "{} is {} times as fast as the fastest {}, geometric mean of {}; at least {} times ({})\n", name,
+      mean_text(geometric_mean(ratios.pairs)), rival, counted(ratios.pairs.size(), "case", "cases"),
       fmt::format("{:.3g}", ratios.pairs[least].ratio()), ratios.names[least]);
 }
 

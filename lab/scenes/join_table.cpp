@@ -83,6 +83,7 @@ Scene join_table() {
                     .choices = {"left", "right"}}},
       .boxes_2d = make_join_table,
       .fixed_seed = true,
+      .hard = true,
   };
 }
 

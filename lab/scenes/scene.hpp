@@ -84,8 +84,9 @@ struct Scene {
 
   bool fixed_count = false;  ///< the number of boxes is the scene's own
   bool fixed_seed = false;   ///< the boxes are the same for every seed
-  bool hard = false;         ///< slow for many algorithms by intent: compared only where it is named
-  bool integers = false;     ///< all coordinates are integers made without libm: equal under every compiler
+  bool hard =
+      false;  ///< compared only where it is named: slow for many by intent, or for a program of its own
+  bool integers = false;  ///< all coordinates are integers made without libm: equal under every compiler
 
   std::string
       missing{};  ///< the package whose lack at configure time left this scene out; empty if it is there

@@ -172,9 +172,10 @@ TEST(Reasons, SayHonestlyThatAPeerIsFaster) {
   advice.ranking[2].measurement.kind = AlgorithmKind::peer;
   advice.ranking[2].milliseconds = 0.5;
   advice.choice->peer = 2;
-  EXPECT_THAT(reasons_of(advice),
-              Contains("boost_rtree, which is not part of Broadside, is faster here: grid takes 2.0 times as "
-                       "long as it"));
+  EXPECT_THAT(
+      reasons_of(advice),
+      Contains("boost_rtree, which is not part of Broadside's library, is faster here: grid takes 2.0 "
+               "times as long as it"));
 }
 
 TEST(Changes, NameWhatHoldsLessMemory) {

@@ -81,7 +81,8 @@ TEST(ErrataPage, IsWhatTheListingsAndThePaperReferTo) {
   const std::set<std::string> known = classified();
   std::size_t cited = 0;
   for (const char* const folder : {"listings", "experiments", "templates"}) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(root / "paper" / folder)) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "paper" / folder)) {
+      if (!entry.is_regular_file()) continue;
       for (const std::string& number : numbers_in(broadside::text_of(entry.path()))) {
         EXPECT_TRUE(known.contains(number)) << entry.path() << ": " << number;
         ++cited;
