@@ -124,8 +124,8 @@ class KdTree {
   static bool is_inside(const Box<D>& box, const Box<D>& region) noexcept {
     bool inside = true;
     for (int axis = 0; axis < D; ++axis) {
-      inside &= (box.min[axis] > region.min[axis]) | (region.min[axis] == -infinity);
-      inside &= (box.max[axis] < region.max[axis]) | (region.max[axis] == infinity);
+      inside &= box.min[axis] > region.min[axis] || region.min[axis] == -infinity;
+      inside &= box.max[axis] < region.max[axis] || region.max[axis] == infinity;
     }
     return inside;
   }

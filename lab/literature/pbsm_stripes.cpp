@@ -186,8 +186,11 @@ class PbsmStripes final : public PairFinder<D> {
   }
 
   static bool meets(const Reference<D>& a, const Reference<D>& b) noexcept {
-    bool touching = !(a.begins_before & b.begins_before);
-    for (int i = 0; i < D - 1; ++i) touching &= (a.low[i] <= b.high[i]) & (b.low[i] <= a.high[i]);
+    bool touching = !(a.begins_before && b.begins_before);
+    for (int i = 0; i < D - 1; ++i) {
+      touching &= a.low[i] <= b.high[i];
+      touching &= b.low[i] <= a.high[i];
+    }
     return touching;
   }
 

@@ -271,7 +271,7 @@ class SegmentedSapTracker final : public PairTracker<D> {
     std::ranges::sort(transfers);
     for_each_region_of(transfers, [&](std::size_t region, std::span<const Transfer> some) {
       Lists& lists = lists_[region];
-      const auto in_region = static_cast<double>(lists[0].size() / 2);
+      const auto in_region = static_cast<double>(lists[0].size()) / 2;
       if (static_cast<double>(some.size()) > batch_ * in_region) {
         for (const Transfer& one : some) in_batch_[one.id] = 1;
         if (enter) take_in(lists, some, boxes);
