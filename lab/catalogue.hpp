@@ -29,7 +29,8 @@ std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<con
 class Catalogue {
  public:
   /// Registers the paper's listings; takes all algorithms that then have a name, those from the
-  /// literature, and the peers that were built in. Throws InvalidSpec if the name of a group, a listing or a peer is registered already.
+  /// literature, and the peers that were built in. Throws InvalidSpec if the name of a group, a listing or a
+  /// peer is registered already.
   Catalogue();
 
   /// Adds an algorithm to this list alone. Throws InvalidSpec if its name is taken.
