@@ -8,6 +8,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Broadside)
 install(TARGETS broadside EXPORT BroadsideTargets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/broadside.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
 
 # The config file makes the target itself: Bullet is wherever it is found there.
