@@ -17,14 +17,14 @@ constexpr std::size_t standard_frames = 20;
 constexpr double standard_moving = 0.1;
 
 /// A part of a plan: every combination, in both dimensions where the scene has them.
-struct Part {
+struct PlanPart {
   std::vector<std::string> scenes;
   std::vector<std::size_t> boxes;  // 0: the scene's own
   std::vector<double> moving = {0};
   std::size_t frames = 0;
 };
 
-std::vector<Part> quick_parts() {
+std::vector<PlanPart> quick_parts() {
   return {
       {{"uniform"}, {1'000, 10'000, 100'000}},
       {{"power_law", "mixed", "clustered", "one_line", "lattice", "thin", "terdiman"}, {10'000}},
@@ -38,7 +38,7 @@ std::vector<Part> quick_parts() {
   };
 }
 
-std::vector<Part> long_parts() {
+std::vector<PlanPart> long_parts() {
   return {
       {{"uniform", "power_law", "mixed", "clustered"}, {1'000, 10'000, 100'000, 1'000'000}},
       {{"one_line", "lattice", "integers", "thin", "terdiman"}, {1'000, 10'000, 100'000}},
@@ -61,9 +61,9 @@ bool has_dimension(const std::string& scene, int dimension) {
   }
 }
 
-std::vector<CaseRequest> plan_from(const std::vector<Part>& parts) {
+std::vector<CaseRequest> plan_from(const std::vector<PlanPart>& parts) {
   std::vector<CaseRequest> plan;
-  for (const Part& part : parts) {
+  for (const PlanPart& part : parts) {
     for (const std::string& scene : part.scenes) {
       for (const std::size_t boxes : part.boxes) {
         for (const double moving : part.moving) {

@@ -79,12 +79,13 @@ double world_side(std::span<const Size<D>> sizes, double neighbours, int first_a
 }
 
 template <int D>
-std::uint64_t integer_side(std::size_t count, std::uint64_t longest) {
+std::uint64_t integer_side(std::size_t count, std::uint64_t longest_side) {
   constexpr std::uint64_t neighbours = 4;
-  // Two such intervals, longest / 2 long on average, touch at longest + 1 of the places they may have.
+  // Two such intervals, longest_side / 2 long on average, touch at longest_side + 1 of the places they may
+  // have.
   const auto volume = [](std::uint64_t side) { return D == 2 ? side * side : side * side * side; };
   std::uint64_t side = 1;
-  while (volume(side) * neighbours < count * volume(longest + 1)) ++side;
+  while (volume(side) * neighbours < count * volume(longest_side + 1)) ++side;
   return side;
 }
 

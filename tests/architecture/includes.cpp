@@ -28,6 +28,7 @@ const std::vector<Rule>& rules() {
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
+      {"bindings/c/", library},
       // An integration sees its engine.
       {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},

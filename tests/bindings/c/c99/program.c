@@ -1,0 +1,66 @@
+/* The header as C99, and a world of each kind from begin to end. Prints what went wrong, if anything. */
+#include <broadside.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void expect(int is_so, const char* what, const broadside_error* error) {
+  if (is_so) return;
+  fprintf(stderr, "%s: %s\n", what, error->message);
+  ++failures;
+}
+
+static void try_floats(void) {
+  /* Structs of the program's own, in which boxes stand. */
+  struct body {
+    int number;
+    float box[4];
+  } bodies[3] = {{0, {0, 0, 1, 1}}, {1, {1, 1, 2, 2}}, {2, {5, 5, 6, 6}}};
+  broadside_error error = {BROADSIDE_OK, 0, ""};
+  broadside_boxes boxes = {BROADSIDE_FLOAT_2D, bodies[0].box, 3, sizeof(struct body)};
+  broadside_pair pairs[4];
+  uint64_t count = 0;
+  broadside_status status = broadside_find_pairs(&boxes, NULL, NULL, pairs, 4, &count, &error);
+  expect(status == BROADSIDE_OK && count == 1 && pairs[0].first == 0 && pairs[0].second == 1, "find", &error);
+
+  bodies[2].box[0] = NAN;
+  status = broadside_count_pairs(&boxes, NULL, NULL, &count, &error);
+  expect(status == BROADSIDE_INVALID_INPUT && error.index == 2 && strstr(error.message, "box 2") != NULL,
+         "an invalid box", &error);
+}
+
+static void try_world(void) {
+  const double boxes[2][6] = {{0, 0, 0, 1, 1, 1}, {3, 0, 0, 4, 1, 1}};
+  const double moved[6] = {0.5, 0, 0, 1.5, 1, 1};
+  broadside_error error = {BROADSIDE_OK, 0, ""};
+  broadside_world* world = NULL;
+  broadside_handle handles[2];
+  broadside_events events;
+  const broadside_boxes both = {BROADSIDE_DOUBLE_3D, boxes, 2, 0};
+  const broadside_boxes one = {BROADSIDE_DOUBLE_3D, moved, 1, 0};
+  broadside_status status =
+      broadside_world_create(BROADSIDE_C_API_VERSION, BROADSIDE_DOUBLE_3D, NULL, &world, &error);
+  expect(status == BROADSIDE_OK, "create", &error);
+  status = broadside_world_add(world, &both, NULL, NULL, handles, &error);
+  expect(status == BROADSIDE_OK, "add", &error);
+  status = broadside_world_update(world, &events, &error);
+  expect(status == BROADSIDE_OK && events.begun_count == 0, "the first update", &error);
+  status = broadside_world_move(world, &handles[1], &one, NULL, &error);
+  expect(status == BROADSIDE_OK, "move", &error);
+  status = broadside_world_update(world, &events, &error);
+  expect(status == BROADSIDE_OK && events.begun_count == 1 && events.begun[0].first.slot == handles[0].slot,
+         "the second update", &error);
+  status = broadside_world_remove(world, handles, 2, &error);
+  expect(status == BROADSIDE_OK && broadside_world_size(world) == 0, "remove", &error);
+  status = broadside_world_remove(world, handles, 1, &error);
+  expect(status == BROADSIDE_INVALID_HANDLE, "remove again", &error);
+  broadside_world_destroy(world);
+}
+
+int main(void) {
+  try_floats();
+  try_world();
+  return failures == 0 ? 0 : 1;
+}
