@@ -83,8 +83,13 @@ Shape<D> shape_of(std::span<const Box<D>> boxes, bool sampled) {
       sums[axis] += static_cast<double>(boxes[i].max[axis]) - boxes[i].min[axis];
     }
   }
-  for (int axis = 0; axis < D; ++axis)
+  for (int axis = 0; axis < D; ++axis) {
     shape.extent[axis] = static_cast<float>(sums[axis] / std::max(count, 1.0));
+    if (!sampled) continue;
+    const float more = shape.high[axis] / 16 - shape.low[axis] / 16;  // a sample misses the ends
+    shape.low[axis] -= more;
+    shape.high[axis] += more;
+  }
   return shape;
 }
 
