@@ -225,7 +225,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   CLI::App* const verb = program.add_subcommand(
       "compare",
       "Compares algorithms on scenes, every result verified. Without options: the quick comparison, which "
-      "takes about two and a half minutes.");
+      "takes about four and a half minutes.");
   add_scenes(*verb, "scenes", arguments->scenes,
              "Names, specs such as power_law:exponent=2, or files, - for standard input (default: every "
              "generated scene)");

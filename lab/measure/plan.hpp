@@ -26,7 +26,7 @@ struct CaseRequest {
   bool operator==(const CaseRequest&) const = default;
 };
 
-/// The cases of `make compare`: two and a half minutes on two cores, with all algorithms.
+/// The cases of `make compare`: four and a half minutes on two cores, with all algorithms.
 std::vector<CaseRequest> quick_plan();
 
 /// The cases of `make bench`, and the effort each is worth.

@@ -75,7 +75,7 @@ std::vector<Way> ways_of_bvh(const std::string& peer) {
 
 /// What the columns of a dimension are called.
 std::string time_in(int dimension) { return fmt::format("{}D", dimension); }
-std::string ratio_in(int dimension) { return fmt::format("{}D over the library's", dimension); }
+std::string ratio_in(int dimension) { return fmt::format("{}D ratio", dimension); }
 
 Table measure_search(const Laboratory& laboratory, const Catalogue& catalogue, const std::string& own,
                      const std::vector<Way>& ways) {

@@ -173,8 +173,9 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, CLaw, testing::ValuesIn(scene_names()),
-                         [](const testing::TestParamInfo<std::string>& info) { return info.param; });
+std::string name_of(const testing::TestParamInfo<std::string>& scene) { return scene.param; }
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CLaw, testing::ValuesIn(scene_names()), name_of);
 
 }  // namespace
 }  // namespace broadside

@@ -88,7 +88,7 @@ std::vector<Table> tables_of(double grid_without_simd, double bvh_without_simd, 
     Table table{.name = name, .title = name, .columns = {{"search"}}};
     for (const std::string dimension : {"2D", "3D"}) {
       table.columns.push_back({dimension, "ms"});
-      append(table.columns, ratio_columns(dimension + " over the library's"));
+      append(table.columns, ratio_columns(dimension + " ratio"));
     }
     const auto add = [&table](const std::string& search, double times) {
       std::vector<Cell> row = {search};
