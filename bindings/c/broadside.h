@@ -51,8 +51,9 @@ extern "C" {
 
 /* ---- Versions and errors ---- */
 
-/** What became of a call. */
-typedef enum broadside_status {
+/** What became of a call: one of these numbers. */
+typedef int32_t broadside_status;
+enum {
   BROADSIDE_OK = 0,
   BROADSIDE_INVALID_INPUT = 1,     /**< a box with a NaN or min > max; broadside_error says which */
   BROADSIDE_INVALID_FRAME = 2,     /**< arrays that do not fit together */
@@ -65,7 +66,7 @@ typedef enum broadside_status {
   BROADSIDE_STOPPED = 9,           /**< a callback asked to stop */
   BROADSIDE_OUT_OF_MEMORY = 10,
   BROADSIDE_FAILED = 11            /**< anything else; the message says what */
-} broadside_status;
+};
 
 /** What went wrong: thing, value found, value expected. */
 typedef struct broadside_error {
@@ -89,13 +90,14 @@ BROADSIDE_API const char* broadside_algorithm_name(size_t number);
 
 /* ---- Boxes, pairs, filters ---- */
 
-/** Dimension and coordinates of boxes. */
-typedef enum broadside_kind {
+/** Dimension and coordinates of boxes: one of these numbers. */
+typedef int32_t broadside_kind;
+enum {
   BROADSIDE_FLOAT_2D = 0,  /**< float min_x, min_y, max_x, max_y */
   BROADSIDE_FLOAT_3D = 1,  /**< float min_x, min_y, min_z, max_x, max_y, max_z */
   BROADSIDE_DOUBLE_2D = 2, /**< likewise of doubles */
   BROADSIDE_DOUBLE_3D = 3
-} broadside_kind;
+};
 
 /** Boxes where they are: `count` of them, of which the first begins at `first`, each `stride` bytes behind
  * the one before; 0 stands for boxes one right behind the other. Aligned or not. */

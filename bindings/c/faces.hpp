@@ -87,7 +87,7 @@ auto with_kind(broadside_kind kind, const Body& body) {
     case BROADSIDE_DOUBLE_3D:
       return body.template operator()<3, double>();
   }
-  throw std::invalid_argument("kind is " + std::to_string(static_cast<int>(kind)) +
+  throw std::invalid_argument("kind is " + std::to_string(kind) +
                               "; expected one of broadside_kind, 0 to 3");
 }
 
