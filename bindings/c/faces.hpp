@@ -87,8 +87,7 @@ auto with_kind(broadside_kind kind, const Body& body) {
     case BROADSIDE_DOUBLE_3D:
       return body.template operator()<3, double>();
   }
-  throw std::invalid_argument("kind is " + std::to_string(kind) +
-                              "; expected one of broadside_kind, 0 to 3");
+  throw std::invalid_argument("kind is " + std::to_string(kind) + "; expected one of broadside_kind, 0 to 3");
 }
 
 /// The caller's boxes, which must be of this kind; no copy.

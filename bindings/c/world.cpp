@@ -188,9 +188,7 @@ class KeptWorld final : public broadside_world {
   }
 
  private:
-  void take_handles(std::span<const broadside_handle> handles) {
-    copy_as(handles, handles_);
-  }
+  void take_handles(std::span<const broadside_handle> handles) { copy_as(handles, handles_); }
 
   /// The world's own pairs, which have the same bytes: a copy could run out of memory, and events that were
   /// told are not told again.
