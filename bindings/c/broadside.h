@@ -11,18 +11,18 @@
  * was. A call that fails has changed nothing, but for what it says of its own. No exception leaves the
  * library and no function exits.
  *
- * Memory. What a function named `create` makes belongs to the caller, who gives it to the `destroy` of the
- * same kind. Arrays that a function hands out belong to the object they came from; each function says how
+ * Memory. The caller owns what a function named `create` makes, and hands it to the `destroy` of the same
+ * kind. Arrays that a function hands out belong to the object they came from; each function says how
  * long they stay. The library keeps no pointer to the caller's arrays beyond a call.
  *
  * Threads. There is no global state. Different objects may be used by different threads at once; one object
  * by one thread at a time, but that functions which take it as `const` may be called by several while none
  * changes it. A callback is called in the thread of the call that was handed it; it may not call the object
  * that is calling it unless said otherwise, and must return: to longjmp() out of it, or to throw a C++
- * exception through it, is undefined. Who needs that takes pairs into a buffer instead.
+ * exception through it, is undefined. A caller that needs that takes pairs into a buffer instead.
  *
- * Functions marked BROADSIDE_API stay as they are until version 1.0 says otherwise in its change log;
- * those marked BROADSIDE_EXPERIMENTAL may change with any version.
+ * Functions marked BROADSIDE_API change only with another BROADSIDE_C_API_VERSION; those marked
+ * BROADSIDE_EXPERIMENTAL may change with any version of the library.
  */
 #ifndef BROADSIDE_H
 #define BROADSIDE_H
@@ -246,8 +246,8 @@ typedef struct broadside_handle_pair {
 typedef struct broadside_world_options {
   size_t size;           /**< of this struct */
   const char* algorithm; /**< as in broadside_find_options */
-  double margin;         /**< boxes are enlarged by so much on every side, in the coordinates' unit */
-  double relative_margin;  /**< or by so many times their longest side; the lesser where both are given */
+  double margin;         /**< by which boxes are enlarged on every side, in the coordinates' unit */
+  double relative_margin;  /**< or by their longest side times this; the lesser where both are given */
   double predicted_frames; /**< for how many frames ahead, where velocities are given */
   int reports_enlarged;    /**< 1: events are those of the enlarged boxes */
   int forgets_pairs;       /**< 1: current pairs are not kept, which saves 16 bytes a pair */

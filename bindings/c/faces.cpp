@@ -98,6 +98,38 @@ std::unique_ptr<Executor> make_executor(const broadside_executor* executor) {
   return std::make_unique<CallersExecutor>(*executor);
 }
 
+broadside_status hits(const Queried* queried, const char* name, const void* box, const void* direction,
+                      double t_max, const broadside_query* query, broadside_hit* hits, std::size_t room,
+                      std::size_t* count, broadside_error* error) noexcept {
+  return guarded(error, [&] {
+    Buffer<broadside_hit> buffer(hits, room, count, "hits");
+    required(queried, name).hits(box, direction, t_max, Eligible(query), buffer);
+    buffer.finish();
+  });
+}
+
+broadside_status first_hit(const Queried* queried, const char* name, const void* box, const void* direction,
+                           double t_max, const broadside_query* query, broadside_hit* hit, int* found,
+                           broadside_error* error) noexcept {
+  return guarded(error, [&] {
+    required(hit, "hit");
+    required(found, "found");
+    const auto first = required(queried, name).first_hit(box, direction, t_max, Eligible(query));
+    *found = first ? 1 : 0;
+    if (first) *hit = *first;
+  });
+}
+
+broadside_status nearest(const Queried* queried, const char* name, const void* point,
+                         const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
+                         std::size_t* count, broadside_error* error) noexcept {
+  return guarded(error, [&] {
+    Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
+    required(queried, name).nearest(point, room, Eligible(query), buffer);
+    buffer.finish();
+  });
+}
+
 }  // namespace broadside::c
 
 const char* broadside_status_name(broadside_status status) {

@@ -24,9 +24,11 @@ namespace broadside::c {
 /// Thrown where a callback asks to stop.
 struct StopAsked {};
 
-/// Thrown where a buffer has too little room; what was to be said of it is said.
+/// Thrown where a buffer of the caller's has too little room, once the caller knows how much is needed.
 struct TooSmall : std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
+  TooSmall(std::size_t room, const char* what, std::uint64_t needed)
+      : std::invalid_argument("there is room for " + std::to_string(room) + " " + what +
+                              "; expected room for " + std::to_string(needed)) {}
 };
 
 /// Writes the exception in flight to `error`, if that is not null, and returns its status.
@@ -238,26 +240,24 @@ class Buffer {
  public:
   /// Throws std::invalid_argument if the buffer or the place of the count is null.
   Buffer(Found* found, std::size_t room, std::size_t* count, const char* name)
-      : found_(array_of(found, room, name)), count_(required(count, "count")), name_(name) {
-    count_ = 0;
-  }
+      : found_(array_of(found, room, name)), told_(required(count, "count")), name_(name) {}
 
   void add(const Found& one) {
     if (count_ < found_.size()) found_[count_] = one;
     ++count_;
   }
 
-  /// Throws TooSmall if there was too little room.
-  void check() const {
-    if (count_ > found_.size())
-      throw TooSmall("there is room for " + std::to_string(found_.size()) + " " + name_ +
-                     "; expected room for " + std::to_string(count_));
+  /// Tells the caller how many there are. Throws TooSmall if there was too little room.
+  void finish() const {
+    told_ = count_;
+    if (count_ > found_.size()) throw TooSmall(found_.size(), name_, count_);
   }
 
  private:
   std::span<Found> found_;
-  std::size_t& count_;
+  std::size_t& told_;
   const char* name_;
+  std::size_t count_ = 0;
 };
 
 /// A cast of the caller's box.
@@ -266,5 +266,28 @@ BoxCast<D, Real> cast_of(const void* box, const void* direction, double t_max) {
   return {value_of<Box<D, Real>>(box, "box"), value_of<Point<D, Real>>(direction, "direction"),
           static_cast<Real>(t_max)};
 }
+
+/// What worlds and indexes are asked alike. A box is named by its handle, in an index by { place, 0 }.
+class Queried {
+ public:
+  virtual ~Queried() = default;
+  virtual void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
+                    Buffer<broadside_hit>& hits) const = 0;
+  virtual std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
+                                                 const Eligible& eligible) const = 0;
+  virtual void nearest(const void* point, std::size_t count, const Eligible& eligible,
+                       Buffer<broadside_neighbour>& neighbours) const = 0;
+};
+
+/// The functions of the interface of these names, for a world or an index, which is called `name`.
+broadside_status hits(const Queried* queried, const char* name, const void* box, const void* direction,
+                      double t_max, const broadside_query* query, broadside_hit* hits, std::size_t room,
+                      std::size_t* count, broadside_error* error) noexcept;
+broadside_status first_hit(const Queried* queried, const char* name, const void* box, const void* direction,
+                           double t_max, const broadside_query* query, broadside_hit* hit, int* found,
+                           broadside_error* error) noexcept;
+broadside_status nearest(const Queried* queried, const char* name, const void* point,
+                         const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
+                         std::size_t* count, broadside_error* error) noexcept;
 
 }  // namespace broadside::c

@@ -4,18 +4,11 @@
 using namespace broadside;
 using namespace broadside::c;
 
-struct broadside_index {
-  virtual ~broadside_index() = default;
+struct broadside_index : Queried {
   virtual void update(const broadside_boxes& boxes, const std::uint32_t* changed, std::size_t changed_count,
                       const broadside_filter* filters) = 0;
   virtual void overlapping(const void* box, const Eligible& eligible,
                            Buffer<std::uint32_t>& places) const = 0;
-  virtual void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
-                    Buffer<broadside_hit>& hits) const = 0;
-  virtual std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
-                                                 const Eligible& eligible) const = 0;
-  virtual void nearest(const void* point, std::size_t count, const Eligible& eligible,
-                       Buffer<broadside_neighbour>& neighbours) const = 0;
 };
 
 namespace {
@@ -94,37 +87,24 @@ broadside_status broadside_index_overlapping(const broadside_index* index, const
   return guarded(error, [&] {
     Buffer<std::uint32_t> buffer(places, room, count, "places");
     required(index, "index").overlapping(box, Eligible(query), buffer);
-    buffer.check();
+    buffer.finish();
   });
 }
 
 broadside_status broadside_index_hits(const broadside_index* index, const void* box, const void* direction,
                                       double t_max, const broadside_query* query, broadside_hit* hits,
                                       size_t room, size_t* count, broadside_error* error) {
-  return guarded(error, [&] {
-    Buffer<broadside_hit> buffer(hits, room, count, "hits");
-    required(index, "index").hits(box, direction, t_max, Eligible(query), buffer);
-    buffer.check();
-  });
+  return c::hits(index, "index", box, direction, t_max, query, hits, room, count, error);
 }
 
 broadside_status broadside_index_first_hit(const broadside_index* index, const void* box,
                                            const void* direction, double t_max, const broadside_query* query,
                                            broadside_hit* hit, int* found, broadside_error* error) {
-  return guarded(error, [&] {
-    required(hit, "hit");
-    required(found, "found");
-    const auto first = required(index, "index").first_hit(box, direction, t_max, Eligible(query));
-    *found = first ? 1 : 0;
-    if (first) *hit = *first;
-  });
+  return c::first_hit(index, "index", box, direction, t_max, query, hit, found, error);
 }
 
 broadside_status broadside_index_nearest(const broadside_index* index, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return guarded(error, [&] {
-    Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
-    required(index, "index").nearest(point, room, Eligible(query), buffer);
-  });
+  return c::nearest(index, "index", point, query, neighbours, room, count, error);
 }

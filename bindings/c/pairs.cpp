@@ -145,9 +145,7 @@ broadside_status broadside_find_pairs(const broadside_boxes* boxes, const broads
     BufferSink sink(pairs, room);
     find_once(boxes, right, options, sink);
     *count = sink.count();
-    if (sink.count() > room)
-      throw TooSmall("there is room for " + std::to_string(room) + " pairs; expected room for " +
-                     std::to_string(sink.count()));
+    if (sink.count() > room) throw TooSmall(room, "pairs", sink.count());
   });
 }
 

@@ -4,9 +4,8 @@
 using namespace broadside;
 using namespace broadside::c;
 
-struct broadside_world {
+struct broadside_world : Queried {
   explicit broadside_world(broadside_kind of) : kind(of) {}
-  virtual ~broadside_world() = default;
 
   virtual void add(const broadside_boxes& boxes, const broadside_filter* filters,
                    const std::uint64_t* user_data, broadside_handle* handles) = 0;
@@ -31,12 +30,6 @@ struct broadside_world {
 
   virtual void overlapping(const void* box, const Eligible& eligible,
                            Buffer<broadside_handle>& handles) const = 0;
-  virtual void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
-                    Buffer<broadside_hit>& hits) const = 0;
-  virtual std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
-                                                 const Eligible& eligible) const = 0;
-  virtual void nearest(const void* point, std::size_t count, const Eligible& eligible,
-                       Buffer<broadside_neighbour>& neighbours) const = 0;
 
   const broadside_kind kind;
 };
@@ -329,7 +322,7 @@ broadside_status broadside_world_join(const broadside_world* world, const broads
     std::vector<HandlePair> found;
     required(world, "world").join(required(other, "other"), found);
     for (const HandlePair& pair : found) buffer.add({handle_of(pair.first), handle_of(pair.second)});
-    buffer.check();
+    buffer.finish();
   });
 }
 
@@ -340,9 +333,7 @@ broadside_status broadside_world_snapshot(const broadside_world* world, void* by
     required(size, "size");
     const std::vector<std::byte> snapshot = required(world, "world").snapshot();
     *size = snapshot.size();
-    if (snapshot.size() > room)
-      throw TooSmall("there is room for " + std::to_string(room) + " bytes; expected room for " +
-                     std::to_string(snapshot.size()));
+    if (snapshot.size() > room) throw TooSmall(room, "bytes", snapshot.size());
     std::memcpy(bytes, snapshot.data(), snapshot.size());
   });
 }
@@ -360,37 +351,24 @@ broadside_status broadside_world_overlapping(const broadside_world* world, const
   return guarded(error, [&] {
     Buffer<broadside_handle> buffer(handles, room, count, "handles");
     required(world, "world").overlapping(box, Eligible(query), buffer);
-    buffer.check();
+    buffer.finish();
   });
 }
 
 broadside_status broadside_world_hits(const broadside_world* world, const void* box, const void* direction,
                                       double t_max, const broadside_query* query, broadside_hit* hits,
                                       size_t room, size_t* count, broadside_error* error) {
-  return guarded(error, [&] {
-    Buffer<broadside_hit> buffer(hits, room, count, "hits");
-    required(world, "world").hits(box, direction, t_max, Eligible(query), buffer);
-    buffer.check();
-  });
+  return c::hits(world, "world", box, direction, t_max, query, hits, room, count, error);
 }
 
 broadside_status broadside_world_first_hit(const broadside_world* world, const void* box,
                                            const void* direction, double t_max, const broadside_query* query,
                                            broadside_hit* hit, int* found, broadside_error* error) {
-  return guarded(error, [&] {
-    required(hit, "hit");
-    required(found, "found");
-    const auto first = required(world, "world").first_hit(box, direction, t_max, Eligible(query));
-    *found = first ? 1 : 0;
-    if (first) *hit = *first;
-  });
+  return c::first_hit(world, "world", box, direction, t_max, query, hit, found, error);
 }
 
 broadside_status broadside_world_nearest(const broadside_world* world, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return guarded(error, [&] {
-    Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
-    required(world, "world").nearest(point, room, Eligible(query), buffer);
-  });
+  return c::nearest(world, "world", point, query, neighbours, room, count, error);
 }

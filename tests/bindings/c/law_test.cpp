@@ -57,6 +57,19 @@ Keys expected_keys(const std::vector<Box<D, Real>>& left, const std::vector<Box<
   return keys;
 }
 
+/// A finder or a tracker by the algorithm; null if `create` failed.
+template <int D, typename Real, typename Made>
+Made* made(broadside_status (*create)(int, broadside_kind, const broadside_find_options*, Made**,
+                                      broadside_error*),
+           const std::string& algorithm, broadside_error& error) {
+  broadside_find_options options;
+  broadside_find_options_init(&options);
+  options.algorithm = algorithm.c_str();
+  Made* one = nullptr;
+  create(BROADSIDE_C_API_VERSION, kind_of<D, Real>, &options, &one, &error);
+  return one;
+}
+
 template <int D, typename Real>
 void check_finding(const std::vector<Box<D, Real>>& boxes, const std::string& name) {
   const auto middle = boxes.begin() + static_cast<std::ptrdiff_t>(boxes.size() / 2);
@@ -66,14 +79,9 @@ void check_finding(const std::vector<Box<D, Real>>& boxes, const std::string& na
   const Keys between = expected_keys<D, Real>(left, &right);
   for (const std::string& algorithm : algorithm_names()) {
     SCOPED_TRACE(name + " by " + algorithm);
-    broadside_find_options options;
-    broadside_find_options_init(&options);
-    options.algorithm = algorithm.c_str();
     broadside_error error;
-    broadside_finder* finder = nullptr;
-    ASSERT_EQ(broadside_finder_create(BROADSIDE_C_API_VERSION, kind_of<D, Real>, &options, &finder, &error),
-              BROADSIDE_OK)
-        << error.message;
+    auto* const finder = made<D, Real>(broadside_finder_create, algorithm, error);
+    ASSERT_NE(finder, nullptr) << error.message;
     const broadside_pair* pairs = nullptr;
     std::size_t count = 0;
     const broadside_boxes all = view_of(boxes);
@@ -93,14 +101,9 @@ template <int D, typename Real>
 void check_tracking(const std::vector<std::vector<Box<D, Real>>>& frames, const std::string& name) {
   for (const std::string& algorithm : algorithm_names()) {
     SCOPED_TRACE(name + " by " + algorithm);
-    broadside_find_options options;
-    broadside_find_options_init(&options);
-    options.algorithm = algorithm.c_str();
     broadside_error error;
-    broadside_tracker* tracker = nullptr;
-    ASSERT_EQ(broadside_tracker_create(BROADSIDE_C_API_VERSION, kind_of<D, Real>, &options, &tracker, &error),
-              BROADSIDE_OK)
-        << error.message;
+    auto* const tracker = made<D, Real>(broadside_tracker_create, algorithm, error);
+    ASSERT_NE(tracker, nullptr) << error.message;
     Keys held;
     for (const std::vector<Box<D, Real>>& boxes : frames) {
       const broadside_boxes all = view_of(boxes);

@@ -148,6 +148,15 @@ TEST_F(CWorld, SaysHowMuchRoomIsMissing) {
   EXPECT_THAT(error_.message, HasSubstr("room for 2 handles; expected room for 3"));
 }
 
+TEST_F(CWorld, LeavesTheCountOfAQueryThatFails) {
+  const Box2 wrong = {{std::numeric_limits<float>::quiet_NaN(), 0}, {1, 1}};
+  broadside_handle found[2] = {};
+  std::size_t count = 77;
+  EXPECT_EQ(broadside_world_overlapping(world_, &wrong, nullptr, found, 2, &count, &error_),
+            BROADSIDE_INVALID_QUERY);
+  EXPECT_EQ(count, 77U);
+}
+
 TEST_F(CWorld, AsksThePredicate) {
   const std::vector<broadside_handle> handles = add({{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{2, 2}, {4, 4}}});
   struct Seen {

@@ -80,7 +80,7 @@ TEST(PlainSearches, HoldTheLibraryBackForOneSearch) {
   EXPECT_EQ(instruction_set(), before);
 }
 
-/// Tables in which the library takes 1 ms, and so many times as long without SIMD and without all.
+/// Tables in which the library takes 1 ms, and the searches without SIMD and without all take these times.
 std::vector<Table> tables_of(double grid_without_simd, double bvh_without_simd, double without_all) {
   std::vector<Table> tables;
   for (const auto& [name, without_simd] :
