@@ -134,7 +134,7 @@ class OdeFinder final : public PairFinder<3>, public TearDown {
   OdeSpaceKind kind_;
   Geoms geoms_;
   OdeSpace space_;            // of the last search
-  std::size_t in_space_ = 0;  // the first so many geoms
+  std::size_t in_space_ = 0;  // geoms before this one are in the space
 };
 
 class OdeTracker final : public PeerTracker<3> {
