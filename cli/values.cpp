@@ -53,7 +53,7 @@ std::size_t read_threads(const std::string& text) {
   const std::size_t threads = read_index("--threads", text);
   if (threads > most) throw Unusable("--threads is " + text + "; expected at most " + std::to_string(most));
   if (threads != 1 && standard_executor() == nullptr)
-    throw Unusable("--threads is " + text + "; expected 1: this program was built without oneTBB");
+    throw Unusable("--threads is " + text + "; expected 1: this program was built without threads");
   return threads;
 }
 

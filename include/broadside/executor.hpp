@@ -40,9 +40,10 @@ class Executor {
   Executor& operator=(const Executor&) = default;
 };
 
-/// The executor used where none was handed in: that of oneTBB, in the arena of the calling thread. A null
-/// pointer if the library was built without it; searches then run in the calling thread, whatever `threads`
-/// is, and find the same pairs in the same order. Thread-safe.
+/// The executor used where none was handed in: that of oneTBB, in the arena of the calling thread; in a
+/// library built without it, a pool of threads that starts with the first search that uses several and lasts
+/// as long as the process. A null pointer if the library was built without threads; searches then run in the
+/// calling thread, whatever `threads` is, and find the same pairs in the same order. Thread-safe.
 Executor* standard_executor() noexcept;
 
 /// Who does the work of a search.

@@ -1,4 +1,4 @@
-// In place of the standard executor, in a library built without oneTBB.
+// In place of the standard executor, in a library built without threads.
 #include "broadside/executor.hpp"
 
 namespace broadside {

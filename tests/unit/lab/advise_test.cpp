@@ -131,7 +131,7 @@ TEST(Advise, OffersNothingWhereNothingIsVerified) {
 }
 
 TEST(Advise, MeasuresOneThreadWhateverThreadsAreAllowed) {
-  if (standard_executor() == nullptr) GTEST_SKIP() << "built without oneTBB";
+  if (standard_executor() == nullptr) GTEST_SKIP() << "built without threads";
   AdviseOptions options = quickly("grid,auto");
   options.threads = {0};
   const Advice advice = advise(Catalogue(), "row", row(50), options);

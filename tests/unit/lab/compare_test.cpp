@@ -99,7 +99,8 @@ TEST(Compare, CountsWhatAgreesWhereTheDefinitionIsTooDear) {
   for (const CaseRequest& request : {small_still, small_moving}) {
     CompareOptions options = options_for("grid,grid:cell=2,auto,bvh,peer", {request});
     options.effort.definition_boxes = 100;
-    for (const Measurement& measurement : compare(catalogue, options).cases.at(0).measurements) {
+    const Comparison comparison = compare(catalogue, options);
+    for (const Measurement& measurement : comparison.cases.at(0).measurements) {
       ASSERT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
       // grid, bvh, the peer, and the quadtree that they were compared with.
       EXPECT_EQ(measurement.evidence->text(), "cross-checked by 4 structures of 2 libraries");
