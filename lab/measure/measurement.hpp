@@ -60,11 +60,13 @@ struct Interval {
 
 /// The time of one algorithm over that of another, in the rounds that both took part in (paired_ratio.hpp).
 struct PairedRatio {
-  std::string of;                    ///< the spec of the other one
-  double median;                     ///< over the seeds, of each seed's median ratio of its rounds
+  std::string of;  ///< the spec of the other one
+  double median;   ///< over the seeds, of each seed's median ratio of its rounds, by logarithms
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
   std::size_t processes = 1;         ///< in which these rounds were
+  double ms = 0;     ///< the median time of these rounds, of several processes their geometric mean, and the
+  double of_ms = 0;  ///< other one's: measured with fewer others around, a time is less
 };
 
 /// Whether algorithms of this kind are no part of what users link: they are compared, and never advised.
@@ -125,7 +127,7 @@ struct Effort {
                            ///< histories that take over four times the tests of such a search
   double far_ratio = 1.5;  ///< an algorithm that takes this many times the time of both the fastest other
                            ///< library and our fastest (and over far_from_seconds) has far_rounds rounds
-  std::size_t far_rounds = 1;
+  std::size_t far_rounds = 3;
   double case_seconds =
       std::numeric_limits<double>::infinity();  ///< no round begins after this, but for the first two
 };

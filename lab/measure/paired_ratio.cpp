@@ -64,15 +64,15 @@ RatiosBySeed::RatiosBySeed(std::span<const double> times, std::span<const double
     : rounds_(std::min(times.size(), others.size())) {
   if (rounds_ == 0 || seeds == 0)
     throw std::invalid_argument("no round that both took part in; expected at least 1");
-  ratios_.resize(std::min(seeds, rounds_));
+  logs_.resize(std::min(seeds, rounds_));
   for (std::size_t round = 0; round < rounds_; ++round)
-    ratios_[round % seeds].push_back(times[round] / others[round]);
+    logs_[round % seeds].push_back(std::log(times[round] / others[round]));
 }
 
 double RatiosBySeed::median() const {
   std::vector<double> medians;
-  for (const std::vector<double>& of_seed : ratios_) medians.push_back(lab::median(of_seed));
-  return median_in_place(medians);
+  for (const std::vector<double>& of_seed : logs_) medians.push_back(lab::median(of_seed));
+  return std::exp(median_in_place(medians));
 }
 
 std::vector<double> RatiosBySeed::replicates(std::size_t count, std::uint64_t seed) const {
@@ -82,13 +82,13 @@ std::vector<double> RatiosBySeed::replicates(std::size_t count, std::uint64_t se
   std::vector<double> drawn;
   for (std::size_t i = 0; i < count; ++i) {
     medians.clear();
-    for (std::size_t j = 0; j < ratios_.size(); ++j) {
-      const std::vector<double>& of_seed = ratios_[random() % ratios_.size()];
+    for (std::size_t j = 0; j < logs_.size(); ++j) {
+      const std::vector<double>& of_seed = logs_[random() % logs_.size()];
       drawn.clear();
       for (std::size_t k = 0; k < of_seed.size(); ++k) drawn.push_back(of_seed[random() % of_seed.size()]);
       medians.push_back(median_in_place(drawn));
     }
-    result.push_back(median_in_place(medians));
+    result.push_back(std::exp(median_in_place(medians)));
   }
   return result;
 }
@@ -106,10 +106,13 @@ RatiosByProcess::RatiosByProcess(const Case& measured, const Measurement& entry,
   for (std::size_t process = 0; process < count; ++process) {
     const std::span<const double> some = part_of(times, entry, process);
     const std::span<const double> some_others = part_of(others, other, process);
-    if (some.empty() || some_others.empty())
+    if (some.empty() || some_others.empty()) {
       processes_.emplace_back();
-    else
-      processes_.emplace_back(RatiosBySeed(some, some_others, seeds));
+      continue;
+    }
+    processes_.emplace_back(RatiosBySeed(some, some_others, seeds));
+    medians_ms_.push_back(lab::median(some.first(processes_.back()->rounds())));
+    other_medians_ms_.push_back(lab::median(some_others.first(processes_.back()->rounds())));
   }
   if (process_count() == 0)
     throw std::invalid_argument("no round that both took part in; expected at least 1");
@@ -139,6 +142,10 @@ double RatiosByProcess::ratio() const {
   return all.size() == 1 ? all[0] : lab::geometric_mean(all);
 }
 
+double RatiosByProcess::milliseconds() const { return lab::geometric_mean(medians_ms_); }
+
+double RatiosByProcess::other_milliseconds() const { return lab::geometric_mean(other_medians_ms_); }
+
 std::optional<Interval> RatiosByProcess::interval() const {
   const std::vector<double> all = ratios();
   if (all.size() > 1) return student_interval(all);
@@ -162,7 +169,8 @@ Interval middle_of(std::span<const double> replicates) {
 
 PairedRatio paired_ratio(const Case& measured, const Measurement& entry, const Measurement& other) {
   const RatiosByProcess ratios(measured, entry, other);
-  return {other.algorithm, ratios.ratio(), ratios.interval(), ratios.rounds(), ratios.process_count()};
+  return {other.algorithm,        ratios.ratio(),        ratios.interval(),          ratios.rounds(),
+          ratios.process_count(), ratios.milliseconds(), ratios.other_milliseconds()};
 }
 
 bool were_together(const Measurement& entry, const Measurement& other) {

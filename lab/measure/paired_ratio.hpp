@@ -33,7 +33,7 @@ class RatiosBySeed {
 
   std::size_t rounds() const noexcept { return rounds_; }
 
-  /// The median over seeds of each seed's median.
+  /// The median over seeds of each seed's median, by logarithms: that of the reciprocals is its reciprocal.
   double median() const;
 
   /// Such medians of `count` bootstrap samples: seeds drawn with replacement, and of each its rounds. `seed`
@@ -45,7 +45,7 @@ class RatiosBySeed {
   std::optional<Interval> interval() const;
 
  private:
-  std::vector<std::vector<double>> ratios_;  // one list a seed, none empty
+  std::vector<std::vector<double>> logs_;  // of the ratios: one list a seed, none empty
   std::size_t rounds_;
 };
 
@@ -69,6 +69,10 @@ class RatiosByProcess {
   /// median.
   double ratio() const;
 
+  /// The median times of the rounds that both took part in; of several processes their geometric mean.
+  double milliseconds() const;
+  double other_milliseconds() const;
+
   /// Over the processes, if there are several; else by the bootstrap, and empty where there are too few
   /// rounds.
   std::optional<Interval> interval() const;
@@ -77,6 +81,8 @@ class RatiosByProcess {
   std::vector<double> ratios() const;
 
   std::vector<std::optional<RatiosBySeed>> processes_;
+  std::vector<double> medians_ms_;  // of each process in which both took part
+  std::vector<double> other_medians_ms_;
 };
 
 /// Where the geometric mean of the population lies that positive numbers are independent draws from:

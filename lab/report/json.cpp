@@ -24,7 +24,9 @@ Json json_of(const std::optional<PairedRatio>& ratio) {
           {"low", interval ? Json(interval->low) : Json()},
           {"high", interval ? Json(interval->high) : Json()},
           {"rounds", ratio->rounds},
-          {"processes", ratio->processes}};
+          {"processes", ratio->processes},
+          {"ms", ratio->ms},
+          {"of_ms", ratio->of_ms}};
 }
 
 Json measurement_json(const CaseResult& result, const Measurement& measurement, Samples kept) {

@@ -1,5 +1,5 @@
 // What templates may name of the comparison with other libraries.
-import { bestOwn, ranking, type Case } from "../../web/charts/comparison.ts";
+import { bestOwn, leadOf, ranking, type Case, type Timed } from "../../web/charts/comparison.ts";
 import {
   drawLeads,
   drawLibraries,
@@ -126,12 +126,12 @@ export function literatureTable({ literature }: Facts): string {
   if (literature.length === 0) return "No algorithm by the literature took part in this comparison.";
   return tableText(
     ["boxes", "ours", " ms", "fastest by the literature", " ms", " lead"],
-    literature.map(({ of, own, peer, ratio }) => [
+    literature.map(({ of, own, peer, ratio, own_ms, peer_ms }) => [
       plain(of.name),
       `\`${own.algorithm}\``,
-      rounded(own.median_ms),
+      rounded(own_ms),
       `\`${peer.algorithm}\``,
-      rounded(peer.median_ms),
+      rounded(peer_ms),
       isFaster(ratio) ? `**${intervalText(ratio)}**` : intervalText(ratio),
     ]),
   );
@@ -142,18 +142,16 @@ export function leadsTable(facts: Facts, which: string): string {
   return tableText(
     ["boxes", "ours", " ms", "fastest peer", " ms", " lead", "fastest of the draft's", " ms"],
     casesNamed(facts, which).map((of) => {
-      const fastest = (kind: string) => {
-        const found = kind === "own" ? bestOwn(of) : ranking(of).find((measurement) => measurement.kind === kind);
-        return found ? [`\`${found.algorithm}\``, rounded(found.median_ms)] : ["-", "-"];
-      };
-      const ratio = leadsOf([of])[0]?.ratio;
-      const lead = ratio === undefined ? "-" : intervalText(ratio);
+      const timed = (found: Timed | undefined, ms = found?.median_ms) =>
+        found && ms !== undefined ? [`\`${found.algorithm}\``, rounded(ms)] : ["-", "-"];
+      const lead = leadOf(of);
+      const text = lead === undefined ? "-" : intervalText(lead.ratio);
       return [
         plain(of.name),
-        ...fastest("own"),
-        ...fastest("peer"),
-        ratio !== undefined && isFaster(ratio) ? `**${lead}**` : lead,
-        ...fastest("paper"),
+        ...timed(lead?.own ?? bestOwn(of), lead?.own_ms),
+        ...timed(lead?.peer, lead?.peer_ms),
+        lead !== undefined && isFaster(lead.ratio) ? `**${text}**` : text,
+        ...timed(ranking(of).find((measurement) => measurement.kind === "paper")),
       ];
     }),
   );
@@ -164,9 +162,9 @@ export function lostList({ lost }: Facts): string {
   if (lost.length === 0) return "In no case was a peer faster than our best.";
   return lost
     .map(
-      ({ of, own, peer, ratio }) =>
-        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer.median_ms)} ms, our best, \`${own.algorithm}\`, ` +
-        `${rounded(own.median_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
+      ({ of, own, peer, ratio, own_ms, peer_ms }) =>
+        `- ${plain(of.name)}: \`${peer.algorithm}\` takes ${rounded(peer_ms)} ms, our best, \`${own.algorithm}\`, ` +
+        `${rounded(own_ms)} ms, which is a lead of ${intervalText(ratio)}.`,
     )
     .join("\n");
 }

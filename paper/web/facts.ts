@@ -1,16 +1,12 @@
 // What the comparison with other libraries comes to.
-import { bestOwn, casesOf, leadOf, ranking, standings, type Case, type Standing, type Timed } from "../../web/charts/comparison.ts";
+import { casesOf, leadOf, leadOver, ranking, standings, type Case, type LeadOf, type Standing, type Timed } from "../../web/charts/comparison.ts";
 import type { Comparison, Ratio } from "../../web/charts/data.ts";
 import { inverse, isFaster, isLevel } from "../../web/charts/ratios.ts";
 import { Problem } from "./problem.ts";
 
 /** A case that both ours and a peer have a time in. */
-export interface Lead {
+export interface Lead extends LeadOf {
   of: Case;
-  /** The time of the fastest peer over that of our fastest. */
-  ratio: Ratio;
-  own: Timed;
-  peer: Timed;
 }
 
 /** The time of `auto` in a case over that of the fastest of our others. */
@@ -69,20 +65,23 @@ export function leadsOf(cases: readonly Case[]): Lead[] {
 /** The leads of `auto` over the fastest peer in some cases. */
 function autoLeadsOf(cases: readonly Case[]): Lead[] {
   return cases.flatMap((of) => {
-    const ranked = ranking(of);
-    const own = ranked.find(isAuto);
-    const peer = ranked.find((measurement) => measurement.kind === "peer");
+    const own = ranking(of).find(isAuto);
+    const peer = leadOf(of)?.peer;
     const ratio = own?.ratio_to_fastest_peer;
-    return own && peer && ratio ? [{ of, own, peer, ratio: inverse(ratio) }] : [];
+    if (!own || !peer || !ratio) return [];
+    return [{ of, own, peer, ratio: inverse(ratio), own_ms: ratio.ms ?? own.median_ms, peer_ms: ratio.of_ms ?? peer.median_ms }];
   });
 }
 
 /** The leads of our fastest over the fastest of the literature's. */
 function literatureLeadsOf(cases: readonly Case[]): Lead[] {
   return cases.flatMap((of) => {
-    const own = bestOwn(of);
-    const peer = ranking(of).find((measurement) => measurement.kind === "literature");
-    return own && peer?.ratio_to_best_own ? [{ of, own, peer, ratio: peer.ratio_to_best_own }] : [];
+    const theirs = ranking(of).filter((measurement) => measurement.kind === "literature");
+    const leads = theirs.flatMap((measurement) => {
+      const lead = leadOver(of, measurement);
+      return lead ? [{ of, ...lead }] : [];
+    });
+    return leads.length > 0 ? [least(leads)] : [];
   });
 }
 

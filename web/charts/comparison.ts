@@ -1,5 +1,5 @@
 // How algorithms rank in each case and over all cases, by the rules of lab/measure/ranking.cpp.
-import type { Measurement, Ratio } from "./data.ts";
+import type { Measurement, Ratio, RatioName } from "./data.ts";
 import { geometricMean, grouped } from "./numbers.ts";
 
 /** What was measured on the same boxes. */
@@ -55,18 +55,40 @@ export function ranking(of: Case): Timed[] {
   return of.measurements.filter(isTimed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
+/** The one that the case's ratios of this name are to; undefined where there are none. */
+function referenceOf(of: Case, name: RatioName): Timed | undefined {
+  const spec = of.measurements.find((measurement) => measurement[name] !== null)?.[name]?.of;
+  return ranking(of).find(({ algorithm }) => algorithm === spec);
+}
+
 /** The fastest of ours other than auto, which takes one of the others; auto where it is the only one. */
 export function bestOwn(of: Case): Timed | undefined {
   const own = ranking(of).filter((measurement) => measurement.kind === "own");
-  return own.find(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto") ?? own[0];
+  return referenceOf(of, "ratio_to_best_own") ?? own.find(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto") ?? own[0];
+}
+
+/** One of the other libraries, or of the literature, over our best. */
+export interface LeadOf {
+  ratio: Ratio;
+  own: Timed;
+  peer: Timed;
+  /** Their times, in milliseconds, in the rounds that the ratio is of. */
+  own_ms: number;
+  peer_ms: number;
+}
+
+/** The time of `peer` over that of our best; undefined where one of them is not there. */
+export function leadOver(of: Case, peer: Timed | undefined): LeadOf | undefined {
+  const own = bestOwn(of);
+  const ratio = peer?.ratio_to_best_own;
+  if (own === undefined || peer === undefined || !ratio) return undefined;
+  return { ratio, own, peer, own_ms: ratio.of_ms ?? own.median_ms, peer_ms: ratio.ms ?? peer.median_ms };
 }
 
 /** The time of the fastest peer over that of our best; undefined where one of them is not there. */
-export function leadOf(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
-  const own = bestOwn(of);
-  const peer = ranking(of).find((measurement) => measurement.kind === "peer");
-  if (own === undefined || !peer?.ratio_to_best_own) return undefined;
-  return { ratio: peer.ratio_to_best_own, own, peer };
+export function leadOf(of: Case): LeadOf | undefined {
+  const fastest = ranking(of).find((measurement) => measurement.kind === "peer");
+  return leadOver(of, referenceOf(of, "ratio_to_fastest_peer") ?? fastest);
 }
 
 export interface Standing {
@@ -82,14 +104,12 @@ export interface Standing {
 export function standings(cases: readonly Case[]): Standing[] {
   const ratios = new Map<string, { kind: Measurement["kind"]; ratios: number[]; fastest: number }>();
   for (const of of cases) {
-    const ranked = ranking(of);
-    const best = ranked[0]?.median_ms ?? 0;
-    for (const measurement of ranked) {
+    for (const measurement of ranking(of)) {
       const label = labelOf(measurement);
       const entry = ratios.get(label) ?? { kind: measurement.kind, ratios: [], fastest: 0 };
       ratios.set(label, entry);
       entry.ratios.push(measurement.ratio_to_fastest?.median ?? 1);
-      if (measurement.median_ms === best) ++entry.fastest;
+      if (measurement.ratio_to_fastest?.of === measurement.algorithm) ++entry.fastest;
     }
   }
   return [...ratios]

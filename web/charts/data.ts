@@ -111,6 +111,9 @@ export interface Ratio {
   rounds: number | null;
   /** Processes in which these were; not in results of before processes were merged. */
   processes?: number;
+  /** The median times of the two in those rounds, in milliseconds; not in older results. */
+  ms?: number;
+  of_ms?: number;
 }
 
 /** One algorithm in one case. What was skipped has no times. */

@@ -119,6 +119,17 @@ test("a lead is the fastest peer's time over that of the fastest of ours", () =>
   assert.equal(intervalText(lead!.ratio), "4.0 (3.8 to 4.2)");
 });
 
+test("a lead names the two that its ratio is of, whatever their medians over other rounds are", () => {
+  const [of] = casesOf(structuredClone(comparison.measurements));
+  const lead = leadOf(of!)!;
+  lead.peer.ratio_to_best_own = { ...lead.ratio, ms: 8, of_ms: 2 };
+  for (const measurement of of!.measurements)
+    if (measurement !== lead.own && measurement !== lead.peer && measurement.median_ms !== null) measurement.median_ms = 1e-9;
+  const again = leadOf(of!)!;
+  assert.deepEqual([again.own.algorithm, again.peer.algorithm], [lead.own.algorithm, lead.peer.algorithm]);
+  assert.deepEqual([again.peer_ms, again.own_ms], [8, 2]);
+});
+
 test("ratios have two significant digits, and are level where their interval holds one", () => {
   assert.deepEqual([0.0514, 0.996, 1.04, 1.26, 9.96, 19.4, 134, 1349].map(ratioText),
     ["0.051", "1.0", "1.0", "1.3", "10", "19", "130", "1,300"]);

@@ -31,13 +31,13 @@ TEST(RoundTimes, AreTheCallsOrTheMeansOfAHistorysFrames) {
 TEST(RatiosBySeed, PairWhatWasMeasuredInTheSameRound) {
   // A machine that slows down by ten in the middle changes no ratio.
   const RatiosBySeed ratios(std::vector<double>{2, 4, 20, 40}, std::vector<double>{1, 2, 10, 20}, 1);
-  EXPECT_EQ(ratios.median(), 2);
+  EXPECT_DOUBLE_EQ(ratios.median(), 2);
   EXPECT_EQ(ratios.rounds(), 4u);
 }
 
 TEST(RatiosBySeed, CompareAnEntryThatLeftEarlyOnTheFirstRoundsAlone) {
   const RatiosBySeed ratios(std::vector<double>{6, 6}, std::vector<double>{1, 1, 3, 3, 3, 3, 3}, 1);
-  EXPECT_EQ(ratios.median(), 6);
+  EXPECT_DOUBLE_EQ(ratios.median(), 6);
   EXPECT_EQ(ratios.rounds(), 2u);
   EXPECT_FALSE(ratios.interval());
 }
@@ -46,9 +46,17 @@ TEST(RatiosBySeed, TakeTheMedianOverSeedsOfEachSeedsMedian) {
   // Seed 0: ratios 1, 1, 9; seed 1: 4, 4; seed 2: 5, 5. Over all rounds the median is 4 as well; without the
   // seeds' medians the mean of rounds would not be.
   const RatiosBySeed ratios(std::vector<double>{1, 4, 5, 1, 4, 5, 9}, std::vector<double>(7, 1.0), 3);
-  EXPECT_EQ(ratios.median(), 4);
+  EXPECT_DOUBLE_EQ(ratios.median(), 4);
   const RatiosBySeed uneven(std::vector<double>{1, 5, 1, 5, 1}, std::vector<double>(5, 1.0), 2);
-  EXPECT_EQ(uneven.median(), 3);
+  EXPECT_DOUBLE_EQ(uneven.median(), std::sqrt(5));
+}
+
+TEST(RatiosBySeed, AreReciprocalsTheOtherWayRound) {
+  const std::vector<double> times{1, 4, 5, 2};
+  const std::vector<double> others{3, 1, 2, 9};
+  for (const std::size_t seeds : {1u, 2u, 3u})
+    EXPECT_DOUBLE_EQ(
+        RatiosBySeed(times, others, seeds).median() * RatiosBySeed(others, times, seeds).median(), 1);
 }
 
 TEST(RatiosBySeed, RefuseWhatWasNeverInARoundTogether) {
@@ -119,6 +127,16 @@ Case with_seeds(std::size_t count) {
   Case of;
   of.seeds.assign(count, 1);
   return of;
+}
+
+TEST(RatiosByProcess, ComeWithTheTimesOfTheRoundsThatTheyAreOf) {
+  // The entry is faster once the other one, which left early, is gone.
+  const Measurement entry = in_processes("a", {{2, 2, 1, 1, 1}, {8}});
+  const Measurement other = in_processes("b", {{6, 6}, {6}});
+  const PairedRatio ratio = paired_ratio(with_seeds(1), entry, other);
+  EXPECT_DOUBLE_EQ(ratio.ms, 4);
+  EXPECT_DOUBLE_EQ(ratio.of_ms, 6);
+  EXPECT_DOUBLE_EQ(ratio.median, ratio.ms / ratio.of_ms);
 }
 
 TEST(RatiosByProcess, TakeEachProcessForOneRatio) {
