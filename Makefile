@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published bench test sanitize clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published bench test sanitize systems clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -57,6 +57,11 @@ test: tests-release ## Build everything and run all tests
 
 sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
 
+systems: build/release/build.ninja ## Check the law on ARM, Windows, 32-bit x86 and a big-endian machine, each emulated
+	@test -f $< || cmake --preset release
+	cmake --build --preset release --target law_here
+	ctest --preset release -R '^systems' --parallel $(jobs)
+
 clang: tests-clang ## The tests in an optimised build by clang; CI has clang in the build of the address sanitizer
 
 format: setup-ci ## Put every source file in the project's format
@@ -77,6 +82,8 @@ PEERS := yes
 compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper: setup_options := --paper
+
+systems: setup_options := --systems
 
 setup:
 	@scripts/setup $(setup_options)
@@ -102,12 +109,12 @@ tests-tsan: build/tsan/build.ninja
 	cmake --build --preset tsan --target thread_tests
 	ctest --test-dir build/tsan/tests/threads --output-on-failure --parallel $(jobs)
 
-# The other libraries were compiled by Debian, whoever compiles what drives them; the tests under NEON and those of
+# The other libraries were compiled by Debian, whoever compiles what drives them; the tests on other systems and those of
 # how the library is installed have compilers of their own, those of the page and the paper none.
 tests-clang: build/clang/build.ninja
 	cmake --build --preset clang
 	ctest --preset clang --parallel $(jobs) \
-	  --exclude-regex '^(neon|consumer|web_|paper_)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
+	  --exclude-regex '^(systems|consumer|web_|paper_)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
 
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*

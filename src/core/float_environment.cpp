@@ -1,7 +1,12 @@
 // The floating-point environment: set, and set back.
 #include "core/float_environment.hpp"
 
+#include <cfloat>
 #include <utility>
+
+#if FLT_EVAL_METHOD == 2
+#error "floats are computed as long doubles, so that pairs would depend on the compiler; expected -msse2 -mfpmath=sse"
+#endif
 
 namespace broadside::core {
 namespace {

@@ -27,14 +27,14 @@ using core::get_all;
 using core::get_list;
 using Pairs = std::vector<Pair>;
 
-void expect_place(std::size_t place, std::size_t count, const char* what) {
+void expect_place(std::uint64_t place, std::uint64_t count, const char* what) {
   if (place < count) return;
   throw InvalidSnapshot(std::string("a snapshot names ") + what + " " + std::to_string(place) +
                         "; expected one below " + std::to_string(count));
 }
 
 /// Pairs of places below `count`.
-Pairs get_pairs(ByteReader& in, std::size_t count, const char* things) {
+Pairs get_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   Pairs pairs = get_list<Pair>(in, things);
   for (const Pair pair : pairs) {
     expect(pair.first < pair.second, "a pair's first place is not below its second");
@@ -44,7 +44,7 @@ Pairs get_pairs(ByteReader& in, std::size_t count, const char* things) {
 }
 
 /// Sorted ones, each once.
-Pairs get_sorted_pairs(ByteReader& in, std::size_t count, const char* things) {
+Pairs get_sorted_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   Pairs pairs = get_pairs(in, count, things);
   expect(std::ranges::adjacent_find(pairs, std::ranges::greater_equal{}) == pairs.end(),
          "pairs that must be sorted are not");
@@ -84,7 +84,7 @@ void World<D, Real>::State::LastFrame::get(ByteReader& in, const Frame<D, Real>&
   }
   for (const BoxId id : filtered) filters[index(id)] = core::Part<Filter>::get(in);
   has_ignored = (flags & snapshot::last_has_ignored) != 0;
-  for (const Pair pair : get_sorted_pairs(in, std::size_t{1} << 32, "ignored pairs")) ignored.insert(pair);
+  for (const Pair pair : get_sorted_pairs(in, std::uint64_t{1} << 32, "ignored pairs")) ignored.insert(pair);
   expect(has_ignored || ignored.empty(), "the last frame has ignored pairs and no set of them");
 
   const auto is_listed = [&](BoxId id) { return std::ranges::binary_search(now.changed, id); };

@@ -1,5 +1,5 @@
 # Runs HERE and THERE, two programs of law.cpp; fails unless both find the law kept, THERE with the instruction set
-# TARGET, and print the same. What they print stays in WORK.
+# INSTRUCTION_SET, and print the same. What they print stays in WORK.
 foreach(side IN ITEMS HERE THERE)
   set(file ${WORK}/${side}.txt)
   execute_process(COMMAND ${${side}} OUTPUT_FILE ${file} ERROR_VARIABLE said RESULT_VARIABLE status)
@@ -8,8 +8,8 @@ foreach(side IN ITEMS HERE THERE)
     message(FATAL_ERROR "${${side}} ended with ${status}; expected 0")
   endif()
 endforeach()
-if(NOT said MATCHES "instruction set: ${TARGET}\n")
-  message(FATAL_ERROR "the instruction set is another one; expected ${TARGET}")
+if(NOT said MATCHES "instruction set: ${INSTRUCTION_SET}\r?\n")
+  message(FATAL_ERROR "the instruction set is another one; expected ${INSTRUCTION_SET}")
 endif()
 file(STRINGS ${WORK}/HERE.txt here)
 file(STRINGS ${WORK}/THERE.txt there)
