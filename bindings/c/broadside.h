@@ -78,7 +78,7 @@ typedef struct broadside_error {
 /** The name of a status, such as "invalid input"; of a number that is none, "unknown status". */
 BROADSIDE_API const char* broadside_status_name(broadside_status status);
 
-/** The library's version, such as "0.1.0". */
+/** The library's version, such as "0.2.0". */
 BROADSIDE_API const char* broadside_version(void);
 
 /** The version of this interface that the library has. A program compiled with a header of another one gets
@@ -195,7 +195,7 @@ BROADSIDE_API broadside_status broadside_finder_find(broadside_finder* finder, c
                                                      broadside_error* error);
 
 /** The places of the last call's invalid boxes, where the finder quarantines them. */
-BROADSIDE_API const uint32_t* broadside_finder_quarantined(const broadside_finder* finder, size_t* count);
+BROADSIDE_EXPERIMENTAL const uint32_t* broadside_finder_quarantined(const broadside_finder* finder, size_t* count);
 
 /* ---- Arrays of boxes in motion ---- */
 
@@ -325,23 +325,23 @@ BROADSIDE_API broadside_status broadside_world_ignore(broadside_world* world, br
 typedef int (*broadside_predicate)(void* user, broadside_handle first, broadside_handle second);
 
 /** Has each update ask `predicate` about each pair before it begins; null: all count. */
-BROADSIDE_API broadside_status broadside_world_set_predicate(broadside_world* world,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_set_predicate(broadside_world* world,
                                                              broadside_predicate predicate, void* user,
                                                              broadside_error* error);
 
 /** Puts the pairs of a box of `world` and an overlapping one of `other` into `pairs`, as
  * broadside_find_pairs() does. */
-BROADSIDE_API broadside_status broadside_world_join(const broadside_world* world, const broadside_world* other,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_join(const broadside_world* world, const broadside_world* other,
                                                     broadside_handle_pair* pairs, size_t room, size_t* count,
                                                     broadside_error* error);
 
 /** Writes a snapshot of the world to `bytes`, if there is room for it, and sets `size` to its bytes; else the
  * status is BROADSIDE_TOO_SMALL. */
-BROADSIDE_API broadside_status broadside_world_snapshot(const broadside_world* world, void* bytes, size_t room,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_snapshot(const broadside_world* world, void* bytes, size_t room,
                                                         size_t* size, broadside_error* error);
 
 /** Makes the world what it was when the snapshot was taken, of this world or of another one. */
-BROADSIDE_API broadside_status broadside_world_restore(broadside_world* world, const void* bytes, size_t size,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_restore(broadside_world* world, const void* bytes, size_t size,
                                                        broadside_error* error);
 
 /* ---- Queries ---- */
@@ -378,13 +378,13 @@ BROADSIDE_API broadside_status broadside_world_overlapping(const broadside_world
                                                            size_t* count, broadside_error* error);
 
 /** All boxes that `box` meets where it is moved along `direction`, up to the parameter `t_max`. */
-BROADSIDE_API broadside_status broadside_world_hits(const broadside_world* world, const void* box,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_hits(const broadside_world* world, const void* box,
                                                     const void* direction, double t_max,
                                                     const broadside_query* query, broadside_hit* hits,
                                                     size_t room, size_t* count, broadside_error* error);
 
 /** The one that it meets first, if any: `found` is set to 1 or 0. */
-BROADSIDE_API broadside_status broadside_world_first_hit(const broadside_world* world, const void* box,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_first_hit(const broadside_world* world, const void* box,
                                                          const void* direction, double t_max,
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);
@@ -411,11 +411,11 @@ BROADSIDE_API broadside_status broadside_index_update(broadside_index* index, co
 BROADSIDE_API broadside_status broadside_index_overlapping(const broadside_index* index, const void* box,
                                                            const broadside_query* query, uint32_t* places,
                                                            size_t room, size_t* count, broadside_error* error);
-BROADSIDE_API broadside_status broadside_index_hits(const broadside_index* index, const void* box,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_hits(const broadside_index* index, const void* box,
                                                     const void* direction, double t_max,
                                                     const broadside_query* query, broadside_hit* hits,
                                                     size_t room, size_t* count, broadside_error* error);
-BROADSIDE_API broadside_status broadside_index_first_hit(const broadside_index* index, const void* box,
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_first_hit(const broadside_index* index, const void* box,
                                                          const void* direction, double t_max,
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);

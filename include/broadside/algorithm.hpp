@@ -14,13 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/export.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
 namespace broadside {
 
 /// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
-struct Spec {
+struct BROADSIDE_PUBLIC Spec {
   std::string name;
   std::vector<std::pair<std::string, std::string>> values;
 
@@ -46,7 +47,7 @@ struct Tunable {
 };
 
 /// A spec's values, checked against the tunables they are for; those not given have their standard value.
-class Settings {
+class BROADSIDE_PUBLIC Settings {
  public:
   /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
   /// range. "auto" is a value of a tunable if and only if it is its standard one.
@@ -68,7 +69,7 @@ class Settings {
 enum class AlgorithmKind { own, paper, literature, peer };
 
 /// "own", "paper", "literature" or "peer".
-std::string_view name(AlgorithmKind kind) noexcept;
+BROADSIDE_PUBLIC std::string_view name(AlgorithmKind kind) noexcept;
 
 template <int D>
 using MakeFinder = std::function<std::unique_ptr<PairFinder<D>>(const Settings&)>;
@@ -113,11 +114,11 @@ struct Algorithm {
 
 /// Whether it can use several threads: whether it has the tunable `threads`, a whole number, which
 /// make_finder() and make_tracker() make the Workers' of what they make.
-bool has_threads(const Algorithm& algorithm);
+BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
 
 /// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
 /// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
-std::span<const Algorithm> algorithms();
+BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
 
 /// Adds an algorithm of your own, so that find_pairs(), World, make_finder() and make_tracker() know it by
 /// its name. Throws InvalidSpec if the name is taken, or is not of lower-case letters, digits and
@@ -126,19 +127,22 @@ std::span<const Algorithm> algorithms();
 /// Call it before anything is made by name: it must not run at the same time as anything that looks up a
 /// name. Spans and references that algorithms() and find_algorithm() have returned stay valid; the spans do
 /// not grow. Cost: a copy of the list, once for each algorithm.
-void register_algorithm(Algorithm algorithm);
+BROADSIDE_PUBLIC void register_algorithm(Algorithm algorithm);
 
 /// The algorithm called `name` among `among`, or a null pointer. A name of an earlier version finds what took
 /// its place: `hierarchical_grid` is `grid`.
-const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among = algorithms());
+BROADSIDE_PUBLIC const Algorithm* find_algorithm(std::string_view name,
+                                                 std::span<const Algorithm> among = algorithms());
 
 /// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec
 /// if a value is wrong or the algorithm does not do D dimensions.
 template <int D, typename Real = float>
-std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm, const Spec& spec);
+BROADSIDE_PUBLIC std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm,
+                                                                  const Spec& spec);
 
 /// Likewise a tracker: the algorithm's own, or a DiffTracker over its finder.
 template <int D, typename Real = float>
-std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm, const Spec& spec);
+BROADSIDE_PUBLIC std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm,
+                                                                    const Spec& spec);
 
 }  // namespace broadside

@@ -10,6 +10,7 @@
 #include "broadside/debug/shadow.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/pair.hpp"

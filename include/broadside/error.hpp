@@ -8,13 +8,13 @@
 #include <string>
 #include <string_view>
 
-#include "broadside/version.hpp"
+#include "broadside/export.hpp"
 
 namespace broadside {
 
 /// A box that no algorithm may see: a NaN, or min > max without being absent; or, where a box is added to a
 /// world, an absent one. Thrown before anything has changed.
-class InvalidInput : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidInput : public std::invalid_argument {
  public:
   InvalidInput(std::size_t index, const std::string& message)
       : std::invalid_argument(message), index_(index) {}
@@ -28,28 +28,28 @@ class InvalidInput : public std::invalid_argument {
 
 /// A frame or an array whose parts do not fit together: too many boxes, a filter missing, a listed place that
 /// is none, a change that is not listed. Thrown before anything has changed.
-class InvalidFrame : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidFrame : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
 /// A question with a NaN, or with an infinity where there may be none.
-class InvalidQuery : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidQuery : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
 /// A spec that cannot be read, or that names an algorithm or a tunable that does not exist or a value out of
 /// range.
-class InvalidSpec : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidSpec : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
 /// A handle that names no box of this world: never issued, removed, or another world's.
-class InvalidHandle : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidHandle : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
 /// Bytes that are no snapshot of a world, or not of one like this.
-class InvalidSnapshot : public std::invalid_argument {
+class BROADSIDE_PUBLIC InvalidSnapshot : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
@@ -64,6 +64,6 @@ enum class BadInput : std::uint8_t {
 /// " (did you mean 'grid'?)" for the one of `known` that is closest to `found`: at most two letters are
 /// missing, too many, wrong or swapped (one where `found` has fewer than five), or `found` is how it begins.
 /// Case is not looked at. Empty where none is that close.
-std::string did_you_mean(std::string_view found, std::span<const std::string> known);
+BROADSIDE_PUBLIC std::string did_you_mean(std::string_view found, std::span<const std::string> known);
 
 }  // namespace broadside

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "broadside/version.hpp"
+#include "broadside/export.hpp"
 
 namespace broadside {
 
@@ -16,7 +16,7 @@ namespace broadside {
 ///
 /// One executor may serve several finders, one after the other or, if its run() may be called from several
 /// threads, at the same time.
-class Executor {
+class BROADSIDE_PUBLIC Executor {
  public:
   virtual ~Executor() = default;
 
@@ -44,7 +44,7 @@ class Executor {
 /// library built without it, a pool of threads that starts with the first search that uses several and lasts
 /// as long as the process. A null pointer if the library was built without threads; searches then run in the
 /// calling thread, whatever `threads` is, and find the same pairs in the same order. Thread-safe.
-Executor* standard_executor() noexcept;
+BROADSIDE_PUBLIC Executor* standard_executor() noexcept;
 
 /// Who does the work of a search.
 struct Workers {
@@ -62,15 +62,15 @@ struct Workers {
 
 /// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or
 /// "NEON". Pairs and their order do not depend on it. Thread-safe.
-std::string instruction_set();
+BROADSIDE_PUBLIC std::string instruction_set();
 
 /// Those that the library was compiled for and this processor has, the best first; the last one is plain C++.
 /// Not changed by limit_instruction_set(). Thread-safe.
-std::vector<std::string> instruction_sets();
+BROADSIDE_PUBLIC std::vector<std::string> instruction_sets();
 
 /// Has every search of this process use the instruction set `name`, one of instruction_sets(), or the best
 /// one again if `name` is empty. For measurements and tests. Not to be called while another thread searches
 /// or calls one of these three. Throws InvalidSpec, and changes nothing, if there is none of that name.
-void limit_instruction_set(std::string_view name);
+BROADSIDE_PUBLIC void limit_instruction_set(std::string_view name);
 
 }  // namespace broadside

@@ -18,6 +18,7 @@
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/sinks.hpp"
@@ -47,7 +48,7 @@ class Outlined;
 /// A finder keeps its scratch memory between calls, and nothing else that can be observed. To be called by
 /// one thread at a time; it may itself use several, which shows in nothing but the time.
 template <int D, typename Real = float>
-class PairFinder {
+class BROADSIDE_PUBLIC PairFinder {
  public:
   PairFinder() = default;
   PairFinder(const PairFinder&) = delete;
@@ -165,7 +166,7 @@ inline constexpr std::string_view default_algorithm = "auto";
 /// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
 /// origin and at a scale of their own, and has a last test in double: its pairs are exact.
 template <int D, typename Real = float>
-std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
+BROADSIDE_PUBLIC std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
 
 /// How one call of find_pairs() searches.
 struct FindOptions {

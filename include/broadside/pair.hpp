@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include "broadside/version.hpp"
+#include "broadside/export.hpp"
 
 namespace broadside {
 namespace core {
@@ -42,7 +42,7 @@ constexpr std::uint64_t key(Pair pair) noexcept {
 /// PairFinder and PairTracker flush the sink they were given before they return. One thread at a time: a
 /// search by several threads collects what they find and calls consume() in the thread that called find(),
 /// with the pairs in the order in which one thread would have found them; unless the sink can be cloned.
-class PairSink {
+class BROADSIDE_PUBLIC PairSink {
  public:
   /// The most pairs room() can be asked for at once.
   static constexpr std::size_t max_room = 512;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
@@ -80,7 +81,8 @@ constexpr std::optional<Real> t_enter(const Ray<D, Real>& ray, const Box<D, Real
 ///
 /// Compiled in the library, so that no program's compiler rounds it in another way.
 template <int D, typename Real>
-Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const Box<D, Real>& box) noexcept;
+BROADSIDE_PUBLIC Real distance_squared(const std::type_identity_t<Point<D, Real>>& point,
+                                       const Box<D, Real>& box) noexcept;
 
 /// A box that a ray or a cast box meets, and the parameter at which it does so first.
 template <typename Real>
@@ -124,7 +126,7 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// what it finds; none allocates. Each throws InvalidQuery if something asked about is NaN, or infinite where
 /// it must not be, and what the visitor throws.
 template <int D, typename Real = float>
-class BoxIndex {
+class BROADSIDE_PUBLIC BoxIndex {
  public:
   using Point = broadside::Point<D, Real>;
 
@@ -261,6 +263,6 @@ class BoxIndex {
 /// An index that is a tree of bounds, sixteen to a node. Some 100 bytes a box in 2D and 140 in 3D, half of
 /// them to build it anew; 32 or 48 more in double.
 template <int D, typename Real = float>
-std::unique_ptr<BoxIndex<D, Real>> make_box_index();
+BROADSIDE_PUBLIC std::unique_ptr<BoxIndex<D, Real>> make_box_index();
 
 }  // namespace broadside

@@ -8,12 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/export.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside {
 
 /// Appends every pair to the caller's vector, which must outlive the sink.
-class PairCollector final : public PairSink {
+class BROADSIDE_PUBLIC PairCollector final : public PairSink {
  public:
   explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
 
@@ -24,7 +25,7 @@ class PairCollector final : public PairSink {
 };
 
 /// Counts pairs and keeps none. The count is complete once the search that fills the sink has returned.
-class PairCounter final : public PairSink {
+class BROADSIDE_PUBLIC PairCounter final : public PairSink {
  public:
   std::uint64_t count() const noexcept { return count_; }
 
@@ -38,7 +39,7 @@ class PairCounter final : public PairSink {
 };
 
 /// Calls a function with each chunk of pairs, in the thread that called find().
-class PairFunction final : public PairSink {
+class BROADSIDE_PUBLIC PairFunction final : public PairSink {
  public:
   explicit PairFunction(std::function<void(std::span<const Pair>)> function)
       : function_(std::move(function)) {}
@@ -59,7 +60,7 @@ constexpr std::uint64_t hash(Pair pair) noexcept {
 
 /// Hashes and counts pairs as a set: the same for any order, different for a pair that is missing, extra or
 /// repeated (but for a chance of 2^-64).
-class PairHasher final : public PairSink {
+class BROADSIDE_PUBLIC PairHasher final : public PairSink {
  public:
   std::uint64_t hash() const noexcept { return hash_; }
   std::uint64_t count() const noexcept { return count_; }

@@ -14,6 +14,7 @@
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
@@ -92,7 +93,7 @@ class BoxIndex;
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps. Cost of an update
 /// around the algorithm's: O(changed), whatever the number of boxes.
 template <int D, typename Real = float>
-class PairTracker {
+class BROADSIDE_PUBLIC PairTracker {
  public:
   PairTracker();
   PairTracker(const PairTracker&) = delete;
@@ -180,13 +181,13 @@ class PairTracker {
 /// Makes a tracker of one of algorithms(), from a spec such as "grid:update=follow". Throws InvalidSpec,
 /// naming the algorithms there are, if there is none of that name.
 template <int D, typename Real = float>
-std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec);
+BROADSIDE_PUBLIC std::unique_ptr<PairTracker<D, Real>> make_tracker(std::string_view spec);
 
 /// Makes any finder a tracker: finds all pairs in each frame and tells what differs from the frame before.
 ///
 /// Cost a frame: one find() and one pass over the pairs of both frames; the pairs are stored.
 template <int D, typename Real = float>
-class DiffTracker final : public PairTracker<D, Real> {
+class BROADSIDE_PUBLIC DiffTracker final : public PairTracker<D, Real> {
  public:
   explicit DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder);
 

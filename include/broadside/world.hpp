@@ -18,6 +18,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/queries.hpp"
@@ -205,7 +206,7 @@ struct HandleNeighbour {
 /// members. A call that throws has changed nothing, and a failed update can be tried again. A world that was
 /// moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
-class World {
+class BROADSIDE_PUBLIC World {
  public:
   /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
   /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite.

@@ -70,7 +70,7 @@ void check_listed(const Pairs& toggled, std::span<const Pair> listed, std::size_
 }  // namespace
 
 template <int D, typename Real>
-struct ShadowTracker<D, Real>::State {
+struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
   std::unique_ptr<PairTracker<D, Real>> tracker;
   Make make;
   std::string name;

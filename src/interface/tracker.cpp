@@ -26,7 +26,7 @@ constexpr std::size_t changes_a_box = 8;
 }  // namespace
 
 template <int D, typename Real>
-class PairTracker<D, Real>::State {
+class BROADSIDE_HIDDEN PairTracker<D, Real>::State {
  public:
   void check(const Frame<D, Real>& frame) const;
   void update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once, PairSink& begun,

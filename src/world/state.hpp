@@ -26,7 +26,7 @@ class ByteWriter;
 
 /// Arrays by slot are all as long as `slots`; filters, user data and enlarged boxes are empty until needed.
 template <int D, typename Real>
-struct World<D, Real>::State {
+struct BROADSIDE_HIDDEN World<D, Real>::State {
   /// A slot is free, live, removed (no update has told yet), reported (the last update told, and the box can
   /// still be read), and free again; or retired, if its generations are used up.
   enum class SlotState : std::uint8_t { free, live, removed, reported, retired };

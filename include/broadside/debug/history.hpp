@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
@@ -37,7 +38,7 @@ struct History {
 
 /// Turns the boxes of one frame into those of the next.
 template <int D, typename Real>
-void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
+BROADSIDE_PUBLIC void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
 
 /// How many places there are in the frame that has the most.
 template <int D, typename Real>
@@ -53,7 +54,7 @@ std::size_t places_of(const History<D, Real>& history) {
 ///     tracker.update(replay.frame(), begun, ended);
 ///     for (const Step<2>& step : history.steps) tracker.update(replay.next(step), begun, ended);
 template <int D, typename Real = float>
-class Replay {
+class BROADSIDE_PUBLIC Replay {
  public:
   Replay() = default;
   explicit Replay(const History<D, Real>& history)
@@ -90,6 +91,6 @@ History<D, Real> history_of(const Frame<D, Real>& frame, std::vector<Step<D, Rea
 /// The history for people to read, a line a box, with as many boxes of a frame and as many frames as `most`
 /// says; what is left out is counted.
 template <int D, typename Real>
-std::string text_of(const History<D, Real>& history, std::size_t most = 20);
+BROADSIDE_PUBLIC std::string text_of(const History<D, Real>& history, std::size_t most = 20);
 
 }  // namespace broadside

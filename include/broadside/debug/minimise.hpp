@@ -10,6 +10,7 @@
 
 #include "broadside/box.hpp"
 #include "broadside/debug/history.hpp"
+#include "broadside/export.hpp"
 
 namespace broadside {
 
@@ -23,16 +24,16 @@ using HistoryFails = std::type_identity_t<std::function<bool(const History<D, Re
 /// single boxes. None that is left can go alone. Calls `fails` about as often as there are boxes left times
 /// the logarithm of how many there were. `stop`, where there is one, ends it early.
 template <int D, typename Real>
-void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
-              const std::function<bool()>& stop = {});
+BROADSIDE_PUBLIC void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
+                               const std::function<bool()>& stop = {});
 
 /// Likewise a history: drops frames, places of the array (those behind move up), changes, and ignored pairs.
 template <int D, typename Real>
-void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
-              const std::function<bool()>& stop = {});
+BROADSIDE_PUBLIC void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
+                               const std::function<bool()>& stop = {});
 
 /// The history of these places, which are ascending, alone; they are counted anew.
 template <int D, typename Real>
-History<D, Real> only(std::span<const std::size_t> places, const History<D, Real>& history);
+BROADSIDE_PUBLIC History<D, Real> only(std::span<const std::size_t> places, const History<D, Real>& history);
 
 }  // namespace broadside

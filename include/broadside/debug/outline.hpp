@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/export.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
@@ -28,7 +29,7 @@ struct Outline {
 /// A second face of a finder that lays something over boxes: its class derives from this one as well, and its
 /// outlined() returns itself.
 template <int D, typename Real>
-class Outlined {
+class BROADSIDE_PUBLIC Outlined {
  public:
   Outlined() = default;
   Outlined(const Outlined&) = delete;
@@ -43,7 +44,7 @@ class Outlined {
 /// What the finder's find() would lay over these boxes; nothing for a finder without an outlined(), or if no
 /// box is present. Takes what laying it out takes, and no search pays for it. Throws as find() does.
 template <int D, typename Real>
-Outline<D, Real> outline(PairFinder<D, Real>& finder,
-                         std::type_identity_t<std::span<const Box<D, Real>>> boxes);
+BROADSIDE_PUBLIC Outline<D, Real> outline(PairFinder<D, Real>& finder,
+                                          std::type_identity_t<std::span<const Box<D, Real>>> boxes);
 
 }  // namespace broadside

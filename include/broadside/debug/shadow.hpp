@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "broadside/debug/history.hpp"
+#include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
@@ -21,7 +22,7 @@ namespace broadside {
 
 /// A tracker whose events are not those that the definition demands. The text names the pair, the frame and
 /// both boxes, says what was expected, and ends with a short history that shows the fault.
-class Divergence : public std::logic_error {
+class BROADSIDE_PUBLIC Divergence : public std::logic_error {
  public:
   Divergence(const std::string& message, Pair pair, std::size_t frame, bool holds)
       : std::logic_error(message), pair_(pair), frame_(frame), holds_(holds) {}
@@ -43,7 +44,7 @@ class Divergence : public std::logic_error {
 
 /// A Divergence with its history, which tracks wrongly in its last frame.
 template <int D, typename Real = float>
-class DivergenceOf final : public Divergence {
+class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
  public:
   DivergenceOf(const Divergence& divergence, History<D, Real> history, bool reproduced)
       : Divergence(divergence),
@@ -80,7 +81,7 @@ struct ShadowOptions {
 /// Cost a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
 /// frames of ShadowOptions.
 template <int D, typename Real = float>
-class ShadowTracker final : public PairTracker<D, Real> {
+class BROADSIDE_PUBLIC ShadowTracker final : public PairTracker<D, Real> {
  public:
   using Make = std::function<std::unique_ptr<PairTracker<D, Real>>()>;
 
