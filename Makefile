@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published bench test sanitize systems clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi bench test sanitize systems clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -53,6 +53,17 @@ bench: program ## The long comparison (also in build/bench.json), the claims abo
 pictures: program ## Draw the pictures of docs/algorithms.md anew
 	scripts/pictures build/release/broadside docs/pictures
 
+deb: build/deb/build.ninja ## Make Debian packages of library, headers and program: build/deb/packages
+	@test -f $< || cmake --preset deb
+	cmake --build --preset deb
+	rm -rf build/deb/packages
+	cd build/deb && cpack
+
+abi: setup-ci ## Write the dump anew that tests compare the C interface's ABI with
+	mkdir -p build/abi
+	cmake -D HEADER=$(CURDIR)/bindings/c/broadside.h -D COMPILER=cc -D FOLDER=$(CURDIR)/build/abi \
+	  -D DUMP=$(CURDIR)/bindings/c/abi/broadside.abi -P bindings/c/abi/dump.cmake
+
 test: tests-release ## Build everything and run all tests
 
 sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
@@ -79,7 +90,7 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench paper-results published deb: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper: setup_options := --paper
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 
@@ -75,22 +76,27 @@ std::string HelpFormatter::make_subcommand(const CLI::App* verb) const {
   return entry(verb->get_name(), verb->get_description());
 }
 
-std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
+HelpFormatter::Entry HelpFormatter::entry_of(const CLI::Option& option, bool is_positional) const {
   std::string name;
   if (is_positional) {
-    name = option->get_name(true, false);
+    name = option.get_name(true, false);
   } else {
-    for (const std::string& letter : option->get_snames()) name += (name.empty() ? "-" : ", -") + letter;
-    if (!option->get_lnames().empty()) name += (name.empty() ? "--" : ", --") + option->get_lnames().front();
+    for (const std::string& letter : option.get_snames()) name += (name.empty() ? "-" : ", -") + letter;
+    if (!option.get_lnames().empty()) name += (name.empty() ? "--" : ", --") + option.get_lnames().front();
   }
-  const bool is_shown_before = !is_positional && option->get_positional();
-  if (is_shown_before) return entry(name, "The same as " + option->get_name(true, false));
-  const bool has_value = option->get_type_size() != 0 && !option->get_type_name().empty();
-  if (has_value) name += " " + get_label(option->get_type_name());
-  std::string text = option->get_description();
-  if (!option->get_default_str().empty()) text += " (default: " + option->get_default_str() + ")";
-  if (option->get_required()) text += " (required)";
-  return entry(name, text);
+  const bool is_shown_before = !is_positional && option.get_positional();
+  if (is_shown_before) return {name, "The same as " + option.get_name(true, false)};
+  const bool has_value = option.get_type_size() != 0 && !option.get_type_name().empty();
+  if (has_value) name += " " + get_label(option.get_type_name());
+  std::string text = option.get_description();
+  if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
+  if (option.get_required()) text += " (required)";
+  return {name, text};
+}
+
+std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
+  const Entry shown = entry_of(*option, is_positional);
+  return entry(shown.name, shown.text);
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
@@ -118,10 +124,22 @@ void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
   verb.footer(footer + "\n\n" + verb.get_footer());
 }
 
+std::string first_clause(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool ends = i + 1 == text.size() || text[i + 1] == ' ';
+    if (ends && std::string_view(".:;").find(text[i]) != std::string_view::npos) return text.substr(0, i);
+  }
+  return text;
+}
+
+bool wants_man_page(const std::vector<std::string>& arguments) {
+  return arguments.size() > 2 && arguments[1] == "help" && std::ranges::count(arguments, "--man") > 0;
+}
+
 std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments) {
   if (arguments.size() < 2 || arguments[1] != "help") return arguments;
   std::vector<std::string> asked = {arguments[0]};
-  asked.insert(asked.end(), arguments.begin() + 2, arguments.end());
+  std::remove_copy(arguments.begin() + 2, arguments.end(), std::back_inserter(asked), "--man");
   asked.emplace_back("--help");
   return asked;
 }

@@ -11,7 +11,7 @@ namespace broadside::cli {
 
 /// CLI11's help with every text wrapped to the width of the terminal (COLUMNS, where it is set; 80 where
 /// neither tells), at most 100. An option is shown under its first name alone.
-class HelpFormatter final : public CLI::Formatter {
+class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter();
 
@@ -20,6 +20,14 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* verb) const override;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_footer(const CLI::App* app) const override;
+
+ protected:
+  /// What is shown of an option: how it is written, such as "-o, --output FILE", and what it does.
+  struct Entry {
+    std::string name;
+    std::string text;
+  };
+  Entry entry_of(const CLI::Option& option, bool is_positional) const;
 
  private:
   std::string entry(const std::string& name, const std::string& text) const;
@@ -34,7 +42,14 @@ struct Example {
 };
 void add_examples(CLI::App& verb, const std::vector<Example>& examples);
 
-/// The program's arguments, in which `help` and `help VERB` have become --help and VERB --help.
+/// The first clause of a text, without the point at its end.
+std::string first_clause(const std::string& text);
+
+/// Whether `help` was asked for a page of the manual, by --man.
+bool wants_man_page(const std::vector<std::string>& arguments);
+
+/// The program's arguments, in which `help` and `help VERB` have become --help and VERB --help, without
+/// --man.
 std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments);
 
 }  // namespace broadside::cli

@@ -31,5 +31,6 @@ Verb add_list(CLI::App& program, const lab::Catalogue& catalogue);
 Verb add_scene(CLI::App& program);
 Verb add_info(CLI::App& program);
 Verb add_convert(CLI::App& program);
+Verb add_completion(CLI::App& program);
 
 }  // namespace broadside::cli

@@ -1,36 +1,48 @@
 # Installs headers, library, CMake package and pkg-config file, so that find_package(Broadside) and `pkg-config broadside`
-# find the library; and the program, where it is built, with the component `program`, which holds its verbs.
+# find the library; and the program, where it is built, with its manual, completions and, for COMPONENTS program of
+# find_package, its verbs.
+#
+# CMake's own components are what packages.cmake makes packages of: `library`, `development`, `program`, and `verbs`.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Broadside)
 
-install(TARGETS broadside EXPORT BroadsideTargets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS broadside EXPORT BroadsideTargets
+        RUNTIME COMPONENT library
+        LIBRARY COMPONENT library NAMELINK_COMPONENT development
+        ARCHIVE COMPONENT development
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/broadside
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
-install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/broadside.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
+install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/broadside.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT development)
 
 # The config file makes the target itself: Bullet is wherever it is found there.
 if(BROADSIDE_HAS_BULLET)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet/include/broadside
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
 endif()
 
 # The config file makes the target itself: FCL is wherever it is found there.
 if(BROADSIDE_HAS_FCL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/fcl/include/broadside
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
 endif()
 
-# A static library needs Highway where it is linked, and whose threads it uses.
-set(library_packages hwy)
-set(pkg_config_packages libhwy)
-if(BROADSIDE_THREADS_OF STREQUAL "TBB")
-  list(APPEND library_packages TBB)
-  list(APPEND pkg_config_packages tbb)
-elseif(BROADSIDE_THREADS_OF STREQUAL "STD")
-  list(APPEND library_packages Threads)
+# A static library needs Highway where it is linked, and whose threads it uses. A shared one is linked with them.
+set(library_packages "")
+set(pkg_config_packages "")
+if(NOT BUILD_SHARED_LIBS)
+  list(APPEND library_packages hwy)
+  list(APPEND pkg_config_packages libhwy)
+  if(BROADSIDE_THREADS_OF STREQUAL "TBB")
+    list(APPEND library_packages TBB)
+    list(APPEND pkg_config_packages tbb)
+  elseif(BROADSIDE_THREADS_OF STREQUAL "STD")
+    list(APPEND library_packages Threads)
+  endif()
 endif()
 
 set(program_packages "")
@@ -40,19 +52,30 @@ if(BROADSIDE_BUILD_PROGRAM)
   endforeach()
   set_target_properties(broadside_cli PROPERTIES EXPORT_NAME program)
   install(TARGETS broadside_listings broadside_literature broadside_lab broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
+          ARCHIVE COMPONENT verbs LIBRARY COMPONENT verbs RUNTIME COMPONENT verbs
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT verbs)
   install(FILES ${PROJECT_SOURCE_DIR}/paper/listings/descriptions.hpp
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings)
-  install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder})
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings COMPONENT verbs)
+  install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT verbs)
 
-  # A shared library is found beside the program, wherever the two are.
+  # A shared library is found beside the program, wherever the two are; by a Debian package, where the system has its.
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
              OUTPUT_VARIABLE library_folder)
-  if(BUILD_SHARED_LIBS)
+  if(BUILD_SHARED_LIBS AND NOT BROADSIDE_DEB)
     set_target_properties(broadside_program PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
   endif()
-  install(TARGETS broadside_program)
+  install(TARGETS broadside_program COMPONENT program)
+  if(TARGET broadside_manual)
+    set(zsh_folder zsh/$<IF:$<BOOL:${BROADSIDE_DEB}>,vendor-completions,site-functions>)
+    install(DIRECTORY ${BROADSIDE_MANUAL}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
+    install(FILES ${BROADSIDE_MANUAL}/broadside
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+    install(FILES ${BROADSIDE_MANUAL}/_broadside DESTINATION ${CMAKE_INSTALL_DATADIR}/${zsh_folder} COMPONENT program)
+    install(FILES ${BROADSIDE_MANUAL}/broadside.fish
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+  endif()
 
   # Whoever links the lab links what it links. A target is called after its package: fmt::fmt, embree. What stands there
   # as a file needs no package, and :: and @ bracket what another folder has added.
@@ -70,7 +93,7 @@ configure_file(${PROJECT_SOURCE_DIR}/cmake/BroadsideConfig.cmake.in ${PROJECT_BI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake ${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
-        DESTINATION ${package_folder})
+        DESTINATION ${package_folder} COMPONENT development)
 
 # The prefix is known only when it is installed, so it is told relative to the file.
 if(IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
@@ -84,10 +107,7 @@ cmake_path(APPEND pkg_config_libdir "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
 cmake_path(APPEND pkg_config_includedir "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})
 string(JOIN " " pkg_config_packages ${pkg_config_packages})
 set(pkg_config_libs_private "")
-if(BUILD_SHARED_LIBS)
-  set(pkg_config_requires Requires.private)
-else()
-  set(pkg_config_requires Requires)
+if(NOT BUILD_SHARED_LIBS)
   # What a C compiler, which links neither the C++ library nor libm by itself, is told by `pkg-config --static`.
   set(cxx_library ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
   list(FILTER cxx_library INCLUDE REGEX "^((std)?c\\+\\+|m)$")
@@ -102,6 +122,11 @@ else()
   endif()
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/broadside.pc.in ${PROJECT_BINARY_DIR}/broadside.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/broadside.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/broadside.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+        COMPONENT development)
 
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(BROADSIDE_DEB)
+  include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)
+else()
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+endif()

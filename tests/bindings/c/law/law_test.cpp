@@ -1,10 +1,13 @@
-// The law through the interface for C: on every scene, of every kind, by every algorithm of the library.
+// The law through the interface for C: on every scene, of every kind, by every algorithm, of the shared
+// library. The scenes, and what is expected, are of the library that this program has in itself.
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include "broadside/broadside.hpp"
@@ -14,6 +17,23 @@
 
 namespace broadside {
 namespace {
+
+#ifdef BROADSIDE_SHARED_LIBRARY
+/// The function of this name in the shared library. With RTLD_LOCAL, what that library defines and this
+/// program does as well stays two things.
+template <typename Function>
+Function* loaded(const char* name) {
+  static void* const library = dlopen(BROADSIDE_SHARED_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw std::runtime_error(dlerror());
+  void* const symbol = dlsym(library, name);
+  if (symbol == nullptr) throw std::runtime_error(dlerror());
+  return reinterpret_cast<Function*>(symbol);
+}
+
+#define LOADED(function) (*loaded<decltype(function)>(#function))
+#else  // under sanitizers no shared library is built, and the program's own functions are called
+#define LOADED(function) function
+#endif
 
 template <int D, typename Real>
 constexpr broadside_kind kind_of = D == 2 ? (sizeof(Real) == 4 ? BROADSIDE_FLOAT_2D : BROADSIDE_DOUBLE_2D)
@@ -26,8 +46,8 @@ broadside_boxes view_of(const std::vector<Box<D, Real>>& boxes) {
 
 std::vector<std::string> algorithm_names() {
   std::vector<std::string> names;
-  for (std::size_t i = 0; broadside_algorithm_name(i) != nullptr; ++i) {
-    const std::string name = broadside_algorithm_name(i);
+  for (std::size_t i = 0; LOADED(broadside_algorithm_name)(i) != nullptr; ++i) {
+    const std::string name = LOADED(broadside_algorithm_name)(i);
     if (find_algorithm(name)->kind == AlgorithmKind::own) names.push_back(name);
   }
   return names;
@@ -63,7 +83,7 @@ Made* made(broadside_status (*create)(int, broadside_kind, const broadside_find_
                                       broadside_error*),
            const std::string& algorithm, broadside_error& error) {
   broadside_find_options options;
-  broadside_find_options_init(&options);
+  LOADED(broadside_find_options_init)(&options);
   options.algorithm = algorithm.c_str();
   Made* one = nullptr;
   create(BROADSIDE_C_API_VERSION, kind_of<D, Real>, &options, &one, &error);
@@ -80,20 +100,22 @@ void check_finding(const std::vector<Box<D, Real>>& boxes, const std::string& na
   for (const std::string& algorithm : algorithm_names()) {
     SCOPED_TRACE(name + " by " + algorithm);
     broadside_error error;
-    auto* const finder = made<D, Real>(broadside_finder_create, algorithm, error);
+    auto* const finder = made<D, Real>(LOADED(broadside_finder_create), algorithm, error);
     ASSERT_NE(finder, nullptr) << error.message;
     const broadside_pair* pairs = nullptr;
     std::size_t count = 0;
     const broadside_boxes all = view_of(boxes);
-    ASSERT_EQ(broadside_finder_find(finder, &all, nullptr, nullptr, &pairs, &count, &error), BROADSIDE_OK)
+    ASSERT_EQ(LOADED(broadside_finder_find)(finder, &all, nullptr, nullptr, &pairs, &count, &error),
+              BROADSIDE_OK)
         << error.message;
     EXPECT_EQ(sorted_keys(pairs, count), within);
     const broadside_boxes lefts = view_of(left);
     const broadside_boxes rights = view_of(right);
-    ASSERT_EQ(broadside_finder_find(finder, &lefts, &rights, nullptr, &pairs, &count, &error), BROADSIDE_OK)
+    ASSERT_EQ(LOADED(broadside_finder_find)(finder, &lefts, &rights, nullptr, &pairs, &count, &error),
+              BROADSIDE_OK)
         << error.message;
     EXPECT_EQ(sorted_keys(pairs, count), between);
-    broadside_finder_destroy(finder);
+    LOADED(broadside_finder_destroy)(finder);
   }
 }
 
@@ -102,13 +124,14 @@ void check_tracking(const std::vector<std::vector<Box<D, Real>>>& frames, const 
   for (const std::string& algorithm : algorithm_names()) {
     SCOPED_TRACE(name + " by " + algorithm);
     broadside_error error;
-    auto* const tracker = made<D, Real>(broadside_tracker_create, algorithm, error);
+    auto* const tracker = made<D, Real>(LOADED(broadside_tracker_create), algorithm, error);
     ASSERT_NE(tracker, nullptr) << error.message;
     Keys held;
     for (const std::vector<Box<D, Real>>& boxes : frames) {
       const broadside_boxes all = view_of(boxes);
       broadside_pair_events events;
-      ASSERT_EQ(broadside_tracker_update(tracker, &all, nullptr, 0, nullptr, &events, &error), BROADSIDE_OK)
+      ASSERT_EQ(LOADED(broadside_tracker_update)(tracker, &all, nullptr, 0, nullptr, &events, &error),
+                BROADSIDE_OK)
           << error.message;
       const Keys begun = sorted_keys(events.begun, events.begun_count);
       const Keys ended = sorted_keys(events.ended, events.ended_count);
@@ -121,7 +144,7 @@ void check_tracking(const std::vector<std::vector<Box<D, Real>>>& frames, const 
       EXPECT_EQ(both, (expected_keys<D, Real>(boxes, nullptr)));
       held = std::move(both);
     }
-    broadside_tracker_destroy(tracker);
+    LOADED(broadside_tracker_destroy)(tracker);
   }
 }
 
