@@ -58,6 +58,12 @@ struct Workers {
   /// Every thread must have at least this many boxes to look at, or fewer threads are used: waking one takes
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
+
+  /// Called now and then in a search, by the thread that called find() or update(): before each of the
+  /// pieces, some hundred, that the search is cut into. What it throws ends the search and is thrown by that
+  /// function. If it is empty, a search of one thread runs through. Algorithms without the tunable `threads`
+  /// do not call it.
+  std::function<void()> checkpoint{};
 };
 
 /// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or

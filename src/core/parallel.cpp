@@ -79,6 +79,12 @@ class FilterChain {
   PairSink* front_;
 };
 
+/// The parts of the piece `number`, where `parts` are cut into `pieces`.
+Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexcept {
+  const auto begin = [&](std::size_t i) { return parts / pieces * i + std::min(i, parts % pieces); };
+  return {begin(number), begin(number + 1)};
+}
+
 }  // namespace
 
 Tunable threads_tunable() {
@@ -143,8 +149,8 @@ class Parallel::SharedSearch {
 
  private:
   Statistics search_piece(std::size_t piece, std::size_t worker, FilterChain& chain) {
-    const auto begin = [&](std::size_t i) { return parts_ / pieces_ * i + std::min(i, parts_ % pieces_); };
-    const Statistics statistics = search_({begin(piece), begin(piece + 1)}, worker, chain.front());
+    if (std::this_thread::get_id() == caller_) parallel_.pass_checkpoint();
+    const Statistics statistics = search_(piece_of(parts_, pieces_, piece), worker, chain.front());
     chain.flush();
     return statistics;
   }
@@ -228,6 +234,7 @@ class Parallel::SharedSearch {
   std::vector<const FilterSink*> filters_;
   PairSink& target_;
   std::vector<Statistics> done_;  // by worker
+  std::thread::id caller_ = std::this_thread::get_id();
   Errors errors_;
 };
 
@@ -236,6 +243,7 @@ Parallel::~Parallel() = default;
 
 void Parallel::start(const Workers& workers, std::size_t boxes) {
   workers_ = 1;
+  checkpoint_ = workers.checkpoint;
   if (workers.threads == 1) return;
   const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
@@ -246,9 +254,7 @@ void Parallel::start(const Workers& workers, std::size_t boxes) {
 }
 
 Range Parallel::range(std::size_t number, std::size_t count) const noexcept {
-  const std::size_t ranges = range_count();
-  const auto at = [&](std::size_t i) { return count / ranges * i + std::min(i, count % ranges); };
-  return {at(number), at(number + 1)};
+  return piece_of(count, range_count(), number);
 }
 
 void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
@@ -270,6 +276,24 @@ void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
 
 Statistics Parallel::share_search(std::size_t parts, PairSink& pairs, const Search& search) {
   return SharedSearch(*this, parts, pairs, search).run();
+}
+
+Statistics Parallel::search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search) {
+  Statistics all;
+  const std::size_t pieces = std::min(parts, pieces_of_one_worker);
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    pass_checkpoint();
+    const Statistics statistics = search(piece_of(parts, pieces, piece), 0, pairs);
+    all.tests += statistics.tests;
+    all.references += statistics.references;
+  }
+  return all;
+}
+
+void Parallel::pass_checkpoint() const {
+  if (!checkpoint_) return;
+  const CallersEnvironment callers;
+  checkpoint_();
 }
 
 void Parallel::run_workers(const std::function<void(std::size_t)>& body) {

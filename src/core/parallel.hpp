@@ -76,14 +76,18 @@ class Parallel {
   /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
-    if (workers_ == 1) return search(Range{0, parts}, std::size_t{0}, pairs);
-    return share_search(parts, pairs, std::cref(search));
+    if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
+    if (checkpoint_) return search_by_pieces(parts, pairs, std::cref(search));
+    return search(Range{0, parts}, std::size_t{0}, pairs);
   }
 
  private:
   /// Fine enough that no worker waits long for the last one, coarse enough that taking one costs nothing.
   static constexpr std::size_t ranges_per_worker = 4;
   static constexpr std::size_t pieces_per_worker = 32;
+
+  /// Of a search by one thread that has a checkpoint.
+  static constexpr std::size_t pieces_of_one_worker = 256;
 
   using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
   using Search = std::function<Statistics(Range, std::size_t, PairSink&)>;
@@ -93,12 +97,17 @@ class Parallel {
 
   void share_ranges(std::size_t count, const RangeBody& body);
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
+  Statistics search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search);
+
+  /// Calls the caller's checkpoint, if there is one. In the caller's thread.
+  void pass_checkpoint() const;
 
   /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw.
   void run_workers(const std::function<void(std::size_t)>& body);
 
   Executor* executor_ = nullptr;
   std::size_t workers_ = 1;
+  std::function<void()> checkpoint_;
   PairBlocks blocks_;
 };
 

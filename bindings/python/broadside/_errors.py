@@ -1,0 +1,34 @@
+"""What this package raises beside Python's own errors."""
+
+from __future__ import annotations
+
+
+class InvalidBoxError(ValueError):
+    """A box with a NaN, or with a minimum greater than its maximum.
+
+    ``row`` is the place of the first such box in its array.
+    """
+
+    def __init__(self, message: str, row: int | None = None) -> None:
+        super().__init__(message)
+        self.row = row
+
+
+class InvalidQueryError(ValueError):
+    """A query with a NaN, or with an infinity where there may be none. The text names the query's row."""
+
+
+class InvalidAlgorithmError(ValueError):
+    """An algorithm that does not exist, or a tunable of it that does not exist or has a value out of its range."""
+
+
+class InvalidHandleError(ValueError):
+    """A handle that names no box of this world: never issued, removed, or another world's."""
+
+
+class InvalidSnapshotError(ValueError):
+    """Bytes that are no snapshot of a world like this one."""
+
+
+class FileError(ValueError):
+    """A file that cannot be read. The text names the place in it, what was found and what was expected."""

@@ -1,0 +1,173 @@
+"""Which algorithms there are and which suits boxes; files of boxes; drawings."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from broadside import _core
+
+
+@dataclass(frozen=True)
+class Algorithm:
+    """An algorithm that `pairs`, `World` and `Tracker` know by its name."""
+
+    name: str
+    summary: str
+    source: str
+    """The paper, book or program it is from."""
+    kind: str
+    """``"own"``, or ``"paper"`` for a listing that the library is compared with, which is not meant for use."""
+    tunables: dict[str, tuple[str, str]]
+    """By name: a summary and the standard value. A spec sets some: ``"grid:cell=2.5:threads=4"``."""
+
+
+def algorithms() -> list[Algorithm]:
+    """The algorithms there are, the library's own first."""
+    return [
+        Algorithm(name, summary, source, kind, {tunable: (text, value) for tunable, text, value in tunables})
+        for name, summary, source, kind, tunables in _core.algorithms()
+    ]
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What `advise` found. Printed, it is the text that the program's ``advise`` prints."""
+
+    algorithm: str
+    """The spec that is advised; empty if there is nothing to choose."""
+    milliseconds: float
+    """That it takes for these boxes."""
+    reasons: list[str]
+    changes: list[str]
+    """What would change the advice, as far as it was measured."""
+    ranking: list[tuple[str, float]]
+    """Each spec that was measured and its milliseconds, the best first; inf where it was too slow."""
+    verified: bool
+    """Whether all algorithms found the same pairs."""
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def advise(
+    boxes: Any, *, algorithms: str = "own", threads: int | list[int] = 1, budget: float = 6.0
+) -> Advice:
+    """Measures which algorithm suits these boxes, and says why. Every result is verified.
+
+    Args:
+        boxes: n boxes, whatever `pairs` takes.
+        algorithms: Names, specs or groups (own, paper, literature, all) with commas between.
+        threads: Numbers of threads to try besides one.
+        budget: About how many seconds it may take.
+
+    Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C between two measurements.
+    """
+    if not 0 < budget <= 3600:
+        raise ValueError(f"budget is {budget}; expected a number of seconds above 0, at most 3600")
+    tried = [threads] if isinstance(threads, int) else list(threads)
+    if not tried or min(tried) < 1:
+        raise ValueError(f"threads is {threads}; expected numbers of at least 1")
+    return Advice(*_core.advise(boxes, algorithms, tried, budget))
+
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,
+    boxes: str | None = None,
+    columns: str | None = None,
+    layer: str | None = None,
+    dimension: int | None = None,
+    frame: int = 0,
+    quarantine: bool = False,
+) -> NDArray[Any]:
+    """The boxes in a file: CSV, GeoJSON, TopoJSON, .npy, PLY, OBJ, traces ..., also compressed by gzip or zstd.
+
+    Args:
+        path: The file.
+        format: The format's name; by default it is told by the file's content and name.
+        boxes: What the boxes are of, where the format has a choice, such as "triangles".
+        columns: The names of a table's columns, with commas between.
+        layer: The layer of a map.
+        dimension: 2 or 3, where the format has a choice.
+        frame: The frame of a recording, counted from 0.
+        quarantine: Leave invalid boxes out instead of raising, with a warning.
+
+    Returns:
+        An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        FileError: It cannot be read; the text says where and why. Arrays in .npz are read by ``numpy.load``, meshes of
+            other formats by the program.
+    """
+    os.stat(path)
+    found: NDArray[Any]
+    found, warning = _core.read(
+        os.fspath(path),
+        format or "",
+        boxes or "",
+        columns or "",
+        layer or "",
+        0 if dimension is None else _dimension_of_file(dimension),
+        _frame(frame),
+        quarantine,
+    )
+    if warning:
+        warnings.warn(warning, stacklevel=2)
+    return found
+
+
+def _dimension_of_file(dimension: int) -> int:
+    if dimension not in (2, 3):
+        raise ValueError(f"dimension is {dimension}; expected 2, 3 or None")
+    return dimension
+
+
+def _frame(frame: int) -> int:
+    if frame < 0:
+        raise ValueError(f"frame is {frame}; expected at least 0")
+    return frame
+
+
+class Drawing:
+    """A picture as SVG, which notebooks show."""
+
+    __slots__ = ("svg",)
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the picture to a file."""
+        Path(path).write_text(self.svg, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"broadside.Drawing({len(self.svg)} characters of SVG)"
+
+
+def draw(boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "boxes") -> Drawing:
+    """Draws boxes, and the cells, nodes or sweep that algorithms lay over them; 3D from three sides.
+
+    Args:
+        boxes: n boxes, whatever `pairs` takes.
+        algorithms: What to lay over them: a spec such as ``"quadtree:capacity=16"``, or several with commas between,
+            side by side; empty: only the boxes.
+        most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
+        title: What the picture is called.
+
+    Raises InvalidAlgorithmError, ValueError.
+    """
+    if not 1 <= most <= 20_000:
+        raise ValueError(f"most is {most}; expected 1 to 20,000")
+    return Drawing(_core.draw(boxes, algorithms, most, title))

@@ -1,0 +1,297 @@
+"""Boxes that move: World, under handles, and Tracker, over an array."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from broadside import _core
+from broadside._queries import FirstHits, Found, Hits, Neighbours, _at_least_one, _checked_dimension, _has_doubles
+
+_worlds = itertools.count(1)
+
+
+def _next_first_generation() -> int:
+    """Far from those of the worlds before, so that worlds refuse each other's handles, and below a quarter of all."""
+    return (next(_worlds) * 0x9E3779B1 & 0xFFFFFFFF) >> 2
+
+
+class Events(NamedTuple):
+    """What an update brought: pairs, each of shape (k, 2) and sorted."""
+
+    begun: NDArray[Any]
+    """The pairs that hold now and did not before."""
+    ended: NDArray[Any]
+    """The pairs that held before and do not now."""
+
+
+class World:
+    """Boxes that come, move and go under handles, and the pairs that begin and end.
+
+    A handle is one uint64: the box's slot in its lower half, the slot's generation in its upper one. It names one box
+    for as long as that is in the world, and never another one; a world refuses handles of removed boxes and, unless
+    very many worlds were made, of other worlds. What is done to boxes shows its effect on pairs at the next `update`.
+
+    Args:
+        dimension: 2 or 3.
+        dtype: float64 or float32: of the boxes. Boxes of float64 are refused by a world of float32 unless they are
+            exact in it.
+        algorithm: A spec: see `algorithms`.
+        threads: The most threads of an update; None: all cores, if there is enough to do.
+        margin: How far a box is enlarged on every side, so that small moves cost little. Pairs stay exact unless
+            `events` says otherwise.
+        relative_margin: Likewise, times the box's longest side; the lesser one counts where both are given.
+        predicted_frames: For how many frames ahead an enlarged box also covers the way of a box that was moved with a
+            velocity.
+        events: ``"exact"``: pairs are those of the boxes themselves; ``"enlarged"``: those of enlarged boxes.
+        quarantine: Take invalid boxes in as absent ones instead of raising; `quarantined` names them.
+        first_generation: The generation of the first handles; by default each world has another one.
+
+    Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C: an update
+    that was ended can be made again. Functions of many boxes do all or, if one is wrong, nothing. A world can be
+    pickled and copied, with its handles.
+    """
+
+    __slots__ = ("_has_doubles", "_options", "_world")
+
+    def __init__(
+        self,
+        dimension: int,
+        *,
+        dtype: DTypeLike = np.float64,
+        algorithm: str = "auto",
+        threads: int | None = None,
+        margin: float = 0.0,
+        relative_margin: float = 0.0,
+        predicted_frames: float = 0.0,
+        events: Literal["exact", "enlarged"] = "exact",
+        quarantine: bool = False,
+        first_generation: int | None = None,
+    ) -> None:
+        if events not in ("exact", "enlarged"):
+            raise ValueError(f"events is {events!r}; expected 'exact' or 'enlarged'")
+        first = _next_first_generation() if first_generation is None else first_generation
+        if not 0 <= first < 2**32:
+            raise ValueError(f"first_generation is {first}; expected 0 to 2**32 - 1")
+        self._has_doubles = _has_doubles(dtype)
+        self._options: dict[str, Any] = {
+            "algorithm": algorithm,
+            "threads": threads,
+            "margin": margin,
+            "relative_margin": relative_margin,
+            "predicted_frames": predicted_frames,
+            "events": events,
+            "quarantine": quarantine,
+            "first_generation": first,
+        }
+        options = {**self._options, "exact": events == "exact"}
+        del options["events"]
+        self._options["dimension"] = _checked_dimension(dimension)
+        self._world = _core.make_world(dimension, self._has_doubles, **options)
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        dimension: int = self._options["dimension"]
+        return dimension
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """float32 or float64."""
+        return np.dtype(np.float64 if self._has_doubles else np.float32)
+
+    def add(self, boxes: Any, *, filters: NDArray[np.void] | None = None) -> NDArray[np.uint64]:
+        """Adds n boxes, whatever `pairs` takes, and returns their handles, shape (n,).
+
+        Raises InvalidBoxError, and adds none, if one is invalid or absent.
+        """
+        return self._world.add(boxes, filters)
+
+    def move(self, handles: ArrayLike, boxes: Any, *, velocities: Any = None) -> None:
+        """Replaces boxes: those of `handles`, shape (n,), by `boxes`.
+
+        `velocities`, shape (n, dimension), says how far each box is expected to go in a frame, for `predicted_frames`.
+        Raises InvalidHandleError, InvalidBoxError.
+        """
+        self._world.move(handles, boxes, velocities)
+
+    def remove(self, handles: ArrayLike) -> None:
+        """Takes boxes out; their pairs end at the next update. Raises InvalidHandleError."""
+        self._world.remove(handles)
+
+    def update(self) -> Events:
+        """Brings the pairs up to date, and returns those of handles, uint64, that began and ended since."""
+        return Events(*self._world.update())
+
+    def pairs(self) -> NDArray[np.uint64]:
+        """The pairs of handles that hold since the last update, shape (k, 2), sorted by slots."""
+        return self._world.pairs()
+
+    def boxes(self, handles: ArrayLike | None = None, *, enlarged: bool = False) -> NDArray[Any]:
+        """The boxes of these handles, or of all (see `handles`), as they were last set; or enlarged by the margins.
+
+        That of a removed box can be read until the update after the one that told of its ended pairs.
+        """
+        return self._world.boxes(self.handles() if handles is None else handles, enlarged)
+
+    def handles(self) -> NDArray[np.uint64]:
+        """The handles of all boxes, by slot."""
+        return self._world.handles()
+
+    def quarantined(self) -> NDArray[np.uint64]:
+        """The handles of the boxes that were invalid when they were last set, by slot."""
+        return self._world.quarantined()
+
+    def set_filters(self, handles: ArrayLike, filters: NDArray[np.void]) -> None:
+        """Replaces boxes' filters, made by `broadside.filters`. Raises InvalidHandleError."""
+        self._world.set_filters(handles, filters)
+
+    def ignore(self, pairs: ArrayLike) -> None:
+        """Lets pairs of handles, shape (n, 2), never count, as bodies that a joint connects.
+
+        It is forgotten when one of the boxes is removed. Raises InvalidHandleError.
+        """
+        self._world.ignore(pairs, True)
+
+    def unignore(self, pairs: ArrayLike) -> None:
+        """Lets these pairs count again."""
+        self._world.ignore(pairs, False)
+
+    def join(self, other: World) -> NDArray[np.uint64]:
+        """The pairs of a box of this world and an overlapping one of `other`, as they are now, shape (k, 2).
+
+        Both are of the same dimension and dtype. A world and itself are joined like two.
+        """
+        return self._world.join(other._world)
+
+    def overlapping(self, queries: Any) -> Found:
+        """The boxes that overlap each of `queries`, as they are now: see `Index.overlapping`."""
+        return Found(*self._world.overlapping(queries))
+
+    def containing(self, points: Any) -> Found:
+        """The boxes that contain each of `points`: see `Index.containing`."""
+        return Found(*self._world.containing(points))
+
+    def hits(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> Hits:
+        """All boxes that each ray meets: see `Index.hits`."""
+        return Hits(*self._world.hits(origins, directions, t_max))
+
+    def first_hit(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> FirstHits:
+        """The box that each ray meets first: see `Index.first_hit`."""
+        return FirstHits(*self._world.first_hit(origins, directions, t_max))
+
+    def nearest(self, points: Any, k: int = 1) -> Neighbours:
+        """The k boxes nearest to each of `points`: see `Index.nearest`."""
+        return Neighbours(*self._world.nearest(points, _at_least_one(k)))
+
+    def snapshot(self) -> bytes:
+        """All that the world's future depends on, as bytes that are the same on every machine."""
+        return self._world.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Makes the world what it was when the snapshot was taken, of this world or of another one like it.
+
+        Raises InvalidSnapshotError, and changes nothing, for other bytes.
+        """
+        self._world.restore(snapshot)
+
+    @property
+    def nbytes(self) -> int:
+        """The bytes that the world holds."""
+        return self._world.bytes()
+
+    @property
+    def explanation(self) -> str:
+        """What ``"auto"`` chose for the last update, and why; empty for other algorithms."""
+        return self._world.explanation()
+
+    def __len__(self) -> int:
+        """The number of boxes."""
+        return len(self._world)
+
+    def __contains__(self, handle: object) -> bool:
+        """Whether a handle names a box of the world."""
+        if not isinstance(handle, (int, np.integer)) or isinstance(handle, bool):
+            raise TypeError(f"a handle is of {type(handle).__name__}; expected an integer")
+        return 0 <= int(handle) < 2**64 and self._world.contains(int(handle))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled_world, (self._options, self.dtype.str, self.snapshot())
+
+    def __repr__(self) -> str:
+        return f"broadside.World({len(self)} boxes, {self.dimension}D, {self.dtype})"
+
+
+def _unpickled_world(options: dict[str, Any], dtype: str, snapshot: bytes) -> World:
+    world = World(dtype=dtype, **options)
+    world.restore(snapshot)
+    return world
+
+
+class Tracker:
+    """Follows an array of boxes from frame to frame, and tells which pairs of rows begin and end.
+
+    Args:
+        dimension: 2 or 3.
+        dtype: float64 or float32, as in `World`.
+        algorithm: A spec: see `algorithms`.
+        threads: The most threads; None: all cores, if there is enough to do.
+        quarantine: Take invalid boxes for absent ones instead of raising.
+
+    Calls from several threads take turns.
+    """
+
+    __slots__ = ("_dtype", "_dimension", "_tracker")
+
+    def __init__(
+        self,
+        dimension: int,
+        *,
+        dtype: DTypeLike = np.float64,
+        algorithm: str = "auto",
+        threads: int | None = None,
+        quarantine: bool = False,
+    ) -> None:
+        has_doubles = _has_doubles(dtype)
+        self._dimension = _checked_dimension(dimension)
+        self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
+        self._tracker = _core.make_tracker(dimension, has_doubles, algorithm, threads, quarantine)
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self._dimension
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """float32 or float64."""
+        return self._dtype
+
+    def update(
+        self, boxes: Any, *, changed: ArrayLike | None = None, filters: NDArray[np.void] | None = None
+    ) -> Events:
+        """Takes the boxes of the next frame and returns the pairs of rows, uint32, that began and ended.
+
+        Rows beyond the last frame's are new boxes; a shorter array, or absent boxes, end those there were.
+
+        Args:
+            boxes: n boxes, whatever `pairs` takes.
+            changed: The rows that may differ from the frame before; a change that is not listed is not seen. None: any.
+            filters: A filter for each box, made by `broadside.filters`; a change of one is listed as well.
+
+        Raises InvalidBoxError and ValueError, and has taken nothing then; so does Ctrl-C, after which the next update
+        tells of all events since the last one that ended.
+        """
+        return Events(*self._tracker.update(boxes, changed, filters))
+
+    @property
+    def nbytes(self) -> int:
+        """The bytes that the tracker holds."""
+        return self._tracker.bytes()
+
+    def __repr__(self) -> str:
+        return f"broadside.Tracker({self._dimension}D, {self._dtype})"

@@ -1,0 +1,199 @@
+"""All pairs of one set of boxes, or of two."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from broadside import _convert, _core
+from broadside._core import PairTable
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+_find = _core.find
+_ARRAY = _core.ARRAY
+
+_FILTER = np.dtype([("category", np.uint64), ("mask", np.uint64), ("group", np.int32), ("is_static", np.bool_)])
+
+
+@overload
+def pairs(
+    boxes: Any,
+    other: Any = None,
+    *,
+    algorithm: str = "auto",
+    sort: bool = False,
+    output: Literal["numpy"] = "numpy",
+    threads: int | None = None,
+    filters: NDArray[np.void] | None = None,
+    other_filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+) -> NDArray[np.uint32]: ...
+@overload
+def pairs(
+    boxes: Any,
+    other: Any = None,
+    *,
+    algorithm: str = "auto",
+    sort: bool = False,
+    output: Literal["arrow"],
+    threads: int | None = None,
+    filters: NDArray[np.void] | None = None,
+    other_filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+) -> PairTable: ...
+@overload
+def pairs(
+    boxes: Any,
+    other: Any = None,
+    *,
+    algorithm: str = "auto",
+    sort: bool = False,
+    output: Literal["sparse"],
+    threads: int | None = None,
+    filters: NDArray[np.void] | None = None,
+    other_filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+) -> csr_array: ...
+def pairs(
+    boxes: Any,
+    other: Any = None,
+    *,
+    algorithm: str = "auto",
+    sort: bool = False,
+    output: str = "numpy",
+    threads: int | None = None,
+    filters: NDArray[np.void] | None = None,
+    other_filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+) -> Any:
+    """Every pair of overlapping boxes, once; boxes are closed, so boxes that touch overlap.
+
+    Args:
+        boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. Arrays of float32 and float64
+            are taken as they are, without a copy if they are C-contiguous; rows farther apart are gathered by the
+            search, and other strides, integers (refused where float64 does not hold one), float16 and nested lists
+            are converted once. So are shapely geometries, GeoSeries and GeoDataFrames (by their bounds; empty ones
+            overlap nothing), pandas DataFrames and structured arrays with columns xmin, ymin, xmax, ymax, whatever
+            has ``__array__`` or ``__dlpack__``, and Arrow tables and arrays (structs of columns, lists of a fixed
+            size). The array must not be changed by another thread meanwhile.
+        other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
+            found. If one set is float32 and the other float64, the former is widened, which is exact.
+        algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
+        sort: Sort the pairs. Otherwise their order is fixed by the algorithm and the boxes, whatever the threads.
+        output: ``"numpy"``; ``"arrow"`` for a `PairTable`; ``"sparse"`` for a ``scipy.sparse.csr_array`` of booleans
+            with n rows and as many columns as the second set has boxes, whose true elements are the pairs: of one set
+            those above the diagonal.
+        threads: The most threads; None: all cores. A thread has at least 4096 boxes, so few boxes take one.
+        filters: Which boxes may pair: a filter for each, made by `filters`.
+        other_filters: Likewise for `other`.
+        ignored: Pairs that never count, shape (m, 2), in either order; of one set alone.
+        quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
+
+    Returns:
+        uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
+        first is a row of `boxes` and the second one of `other`. The array owns the memory that the search wrote.
+
+    Raises:
+        InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` says which.
+        InvalidAlgorithmError: `algorithm` does not exist or has no such tunable or value.
+        TypeError: Something is of another type or dtype than these.
+        ValueError: Something has another shape, or does not fit to the rest.
+
+    Cost: about that of sorting the boxes, and of writing the pairs. The GIL is given away. Ctrl-C ends a search as soon
+    as one of the some hundred pieces is done that it is cut into, at the earliest 50 milliseconds after the last time
+    that Python was asked; a search by one of the paper's listings ends with its next pairs. Any number of threads may
+    call it at once.
+    """
+    if output == "numpy":
+        return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+    if output == "arrow":
+        return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+    if output == "sparse":
+        return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine)
+    raise ValueError(f"output is {output!r}; expected 'numpy', 'arrow' or 'sparse'")
+
+
+def _sparse(boxes: Any, other: Any, *arguments: Any) -> csr_array:
+    from scipy.sparse import csr_array
+
+    left = _convert.boxes(boxes, "boxes")
+    right = None if other is None else _convert.boxes(other, "other")
+    algorithm, *rest = arguments
+    found = _find(_ARRAY, left, right, algorithm, True, *rest)
+    columns = len(left) if right is None else len(right)
+    starts = np.zeros(len(left) + 1, np.int64)
+    np.cumsum(np.bincount(found[:, 0], minlength=len(left)), out=starts[1:])
+    trues = np.ones(len(found), np.bool_)
+    return csr_array((trues, found[:, 1].astype(np.int64), starts), shape=(len(left), columns))
+
+
+def count(
+    boxes: Any,
+    other: Any = None,
+    *,
+    algorithm: str = "auto",
+    threads: int | None = None,
+    filters: NDArray[np.void] | None = None,
+    other_filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+) -> int:
+    """The number of pairs that `pairs` gives for the same arguments; none are kept."""
+    found: int = _find(
+        _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine
+    )
+    return found
+
+
+def filters(
+    n: int,
+    *,
+    category: ArrayLike = 1,
+    mask: ArrayLike = 0xFFFFFFFFFFFFFFFF,
+    group: ArrayLike = 0,
+    is_static: ArrayLike = False,
+) -> NDArray[np.void]:
+    """A filter for each of `n` boxes: each argument is one value for all, or n of them.
+
+    Two boxes count as a pair if they overlap and their filters accept each other: each one's `mask` has a bit of the
+    other one's `category`, and not both are static. Two of the same `group` other than 0 pair whatever their bits if it
+    is positive, and never if it is negative.
+
+    Returns:
+        A structured array of shape (n,), to be changed at will.
+
+    Raises:
+        ValueError: An argument has another shape, or is beyond uint64 (`category`, `mask`) or int32 (`group`).
+    """
+    made = np.empty(n, _FILTER)
+    fields = {"category": category, "mask": mask, "group": group, "is_static": is_static}
+    for name, values in fields.items():
+        given = np.asarray(values)
+        if name != "is_static" and given.dtype.kind not in "iu":
+            raise TypeError(f"{name} has dtype {given.dtype}; expected integers")
+        if name == "is_static" and given.dtype.kind != "b":
+            raise TypeError(f"is_static has dtype {given.dtype}; expected booleans")
+        if given.ndim > 0 and given.shape != (n,):
+            raise ValueError(f"{name} has shape {given.shape}; expected one value, or ({n},)")
+        if name != "is_static" and given.size:
+            limits = np.iinfo(_FILTER[name])
+            if int(given.min()) < limits.min or int(given.max()) > limits.max:
+                raise ValueError(f"{name} has {given.min()} to {given.max()}; expected {limits.min} to {limits.max}")
+        made[name] = given
+    return made
+
+
+def invalid_rows(boxes: Any) -> NDArray[np.intp]:
+    """The rows of invalid boxes, ascending: those with a NaN or a minimum greater than its maximum.
+
+    These are what `pairs` raises InvalidBoxError about, and leaves out with ``quarantine=True``. Absent boxes are valid.
+    """
+    return _convert.invalid_rows(_convert.boxes(boxes, "boxes"))

@@ -1,0 +1,122 @@
+// Arrays of Python's as the library's types.
+#include "bindings/python/input.hpp"
+
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace broadside::python {
+namespace {
+
+nb::object convert(const char* function) { return nb::module_::import_("broadside._convert").attr(function); }
+
+/// An array of one piece of uint64, by the function of broadside._convert.
+std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, const char* name,
+                                      std::uint64_t most) {
+  const nb::object array = convert(function)(object, name, most);
+  Py_buffer buffer;
+  if (PyObject_GetBuffer(array.ptr(), &buffer, PyBUF_C_CONTIGUOUS) != 0) throw nb::python_error();
+  std::vector<std::uint64_t> numbers(static_cast<std::size_t>(buffer.len) / sizeof(std::uint64_t));
+  if (!numbers.empty()) std::memcpy(numbers.data(), buffer.buf, numbers.size() * sizeof(std::uint64_t));
+  PyBuffer_Release(&buffer);
+  return numbers;
+}
+
+}  // namespace
+
+void Rows::swap(Rows& other) noexcept {
+  std::swap(buffer_, other.buffer_);
+  std::swap(object_, other.object_);
+  std::swap(first_, other.first_);
+  std::swap(size_, other.size_);
+  std::swap(columns_, other.columns_);
+  std::swap(stride_, other.stride_);
+  std::swap(are_doubles_, other.are_doubles_);
+}
+
+Rows::~Rows() {
+  if (buffer_) PyBuffer_Release(&*buffer_);
+}
+
+bool Rows::take(nb::handle object) {
+  if (PyObject_CheckBuffer(object.ptr()) == 0) return false;
+  Py_buffer& buffer = buffer_.emplace();
+  if (PyObject_GetBuffer(object.ptr(), &buffer, PyBUF_RECORDS_RO) != 0) {
+    PyErr_Clear();  // of another type; _convert says what is wrong
+    buffer_.reset();
+    return false;
+  }
+  const char format = buffer.format != nullptr && buffer.format[1] == 0 ? buffer.format[0] : '\0';
+  const auto row = buffer.ndim == 2 ? buffer.shape[1] * buffer.itemsize : 0;
+  const bool is_taken = (format == 'f' || format == 'd') && buffer.ndim == 2 && buffer.shape[1] > 0 &&
+                        buffer.strides[1] == buffer.itemsize &&
+                        (buffer.strides[0] >= row || buffer.shape[0] < 2);
+  if (!is_taken) {
+    PyBuffer_Release(&buffer);
+    buffer_.reset();
+    return false;
+  }
+  object_ = nb::borrow(object);
+  first_ = buffer.buf;
+  size_ = static_cast<std::size_t>(buffer.shape[0]);
+  columns_ = static_cast<std::size_t>(buffer.shape[1]);
+  stride_ = static_cast<std::size_t>(size_ < 2 ? row : buffer.strides[0]);
+  are_doubles_ = format == 'd';
+  return true;
+}
+
+Rows Rows::of_boxes(nb::handle object, const char* name) {
+  const auto are_boxes = [](const Rows& rows) { return rows.columns_ == 4 || rows.columns_ == 6; };
+  Rows rows;
+  if (rows.take(object) && are_boxes(rows)) return rows;
+  Rows converted;
+  if (!converted.take(convert("boxes")(object, name)) || !are_boxes(converted))
+    throw std::logic_error("broadside._convert.boxes() gave no rows of boxes");
+  return converted;
+}
+
+Rows Rows::of(nb::handle object, const char* name, std::size_t columns, bool are_doubles) {
+  const auto are_such = [&](const Rows& rows) {
+    return rows.columns_ == columns && rows.are_doubles_ == are_doubles;
+  };
+  Rows rows;
+  if (rows.take(object) && are_such(rows)) return rows;
+  Rows converted;
+  if (!converted.take(convert("rows_of")(object, name, columns, are_doubles)) || !are_such(converted))
+    throw std::logic_error("broadside._convert.rows_of() gave other rows");
+  return converted;
+}
+
+Rows Rows::widened(const char* name) const { return of(object_, name, columns_, true); }
+
+std::vector<std::uint64_t> integers(nb::handle object, const char* name, std::uint64_t most) {
+  return numbers_by("integers", object, name, most);
+}
+
+std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name, std::uint64_t most) {
+  return numbers_by("pairs_of_integers", object, name, most);
+}
+
+std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name) {
+  if (object.is_none()) return {};
+  const nb::object array = convert("filters")(object, count, name);
+  Py_buffer buffer;
+  if (PyObject_GetBuffer(array.ptr(), &buffer, PyBUF_C_CONTIGUOUS) != 0) throw nb::python_error();
+  // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
+  std::vector<Filter> filters;
+  filters.reserve(count);
+  const auto* numbers = static_cast<const std::uint64_t*>(buffer.buf);
+  for (std::size_t i = 0; i < count; ++i, numbers += 4)
+    filters.push_back({numbers[0], numbers[1], static_cast<std::int32_t>(numbers[2]), numbers[3] != 0});
+  PyBuffer_Release(&buffer);
+  return filters;
+}
+
+std::vector<Handle> handles(nb::handle object, const char* name) {
+  std::vector<Handle> handles;
+  for (const std::uint64_t number : integers(object, name, std::numeric_limits<std::uint64_t>::max()))
+    handles.push_back(handle_of(number));
+  return handles;
+}
+
+}  // namespace broadside::python

@@ -1,0 +1,113 @@
+// What Python hands in: arrays of rows as the library's boxes, points, handles and filters. No copy of rows
+// that lie in memory as the library has them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+
+#include "broadside/box.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/world.hpp"
+
+namespace broadside::python {
+
+namespace nb = nanobind;
+
+/// Rows of floats or doubles, each in one piece, which Python keeps as they are while this lives. To be made
+/// and destroyed with the GIL held.
+class Rows {
+ public:
+  /// The rows of `object`, boxes or points, whatever kind of array it is. What is not such rows already is
+  /// converted by broadside._convert, once, which also refuses what is none; `name` is what errors call it.
+  static Rows of_boxes(nb::handle object, const char* name);
+
+  /// Likewise, exactly converted to rows of `columns` floats or doubles where they are others.
+  static Rows of(nb::handle object, const char* name, std::size_t columns, bool are_doubles);
+
+  /// Likewise, of doubles, where they are floats.
+  Rows widened(const char* name) const;
+
+  Rows(Rows&& other) noexcept { swap(other); }
+  Rows& operator=(Rows&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Rows();
+
+  std::size_t size() const noexcept { return size_; }
+  std::size_t columns() const noexcept { return columns_; }
+  bool are_doubles() const noexcept { return are_doubles_; }
+  int dimension() const noexcept { return static_cast<int>(columns_ / 2); }
+
+  template <int D, typename Real>
+  BoxView<D, Real> boxes() const {
+    if (is_array(sizeof(Box<D, Real>), alignof(Box<D, Real>)))
+      return std::span(static_cast<const Box<D, Real>*>(first_), size_);
+    return {first_, size_, stride_};
+  }
+
+  /// The rows as an array, gathered into `scratch` where they are not one.
+  template <typename Row>
+  std::span<const Row> array(std::vector<Row>& scratch) const {
+    if (is_array(sizeof(Row), alignof(Row))) return {static_cast<const Row*>(first_), size_};
+    scratch.resize(size_);
+    for (std::size_t i = 0; i < size_; ++i)
+      std::memcpy(&scratch[i], static_cast<const std::byte*>(first_) + i * stride_, sizeof(Row));
+    return scratch;
+  }
+
+ private:
+  Rows() = default;
+  void swap(Rows& other) noexcept;
+
+  /// Whether `object` is such rows already, and then takes them.
+  bool take(nb::handle object);
+  bool is_array(std::size_t row, std::size_t alignment) const noexcept {
+    return (stride_ == row || size_ < 2) && reinterpret_cast<std::uintptr_t>(first_) % alignment == 0;
+  }
+
+  std::optional<Py_buffer> buffer_;
+  nb::object object_;
+  const void* first_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t columns_ = 0;
+  std::size_t stride_ = 0;
+  bool are_doubles_ = false;
+};
+
+/// Calls body.operator()<D, Real>() for boxes of this kind.
+template <typename Body>
+auto with_kind(int dimension, bool are_doubles, const Body& body) {
+  if (dimension == 2)
+    return are_doubles ? body.template operator()<2, double>() : body.template operator()<2, float>();
+  return are_doubles ? body.template operator()<3, double>() : body.template operator()<3, float>();
+}
+
+/// The elements of a one-dimensional array of unsigned integers, by broadside._convert.
+std::vector<std::uint64_t> integers(nb::handle object, const char* name, std::uint64_t most);
+
+/// A pair of integers a row, likewise.
+std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name, std::uint64_t most);
+
+/// None: none. Else one for each of `count` boxes.
+std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name);
+
+/// A handle as Python has it: one number, the generation in its upper half and the slot in its lower one.
+inline std::uint64_t number_of(const Handle& handle) noexcept {
+  return std::uint64_t{handle.generation} << 32 | handle.slot;
+}
+inline Handle handle_of(std::uint64_t number) noexcept {
+  return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32)};
+}
+std::vector<Handle> handles(nb::handle object, const char* name);
+
+}  // namespace broadside::python

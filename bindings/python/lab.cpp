@@ -1,0 +1,172 @@
+// What the lab brings: advice, files, drawings, and scenes for the tests.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings/python/input.hpp"
+#include "bindings/python/running.hpp"
+#include "lab/advise/advise.hpp"
+#include "lab/catalogue.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/report/drawing.hpp"
+#include "lab/scenes/scene.hpp"
+
+namespace broadside::python {
+namespace {
+
+/// Made when the module is first imported, before anything is made by name: it registers the paper's
+/// listings.
+const lab::Catalogue& catalogue() {
+  static const lab::Catalogue all;
+  return all;
+}
+
+nb::list algorithms() {
+  nb::list list;
+  for (const Algorithm& algorithm : broadside::algorithms()) {
+    nb::list tunables;
+    for (const Tunable& tunable : algorithm.tunables)
+      tunables.append(nb::make_tuple(tunable.name, tunable.summary, tunable.standard));
+    list.append(nb::make_tuple(algorithm.name, algorithm.summary, algorithm.source,
+                               std::string(name(algorithm.kind)), tunables));
+  }
+  return list;
+}
+
+template <int D, typename Real>
+nb::object array_of_boxes(std::vector<Box<D, Real>> boxes) {
+  const std::size_t count = boxes.size();
+  return array_of<Real>(std::move(boxes), {count, 2 * D});
+}
+
+nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<std::size_t> threads,
+                  double budget) {
+  const Rows rows = Rows::of_boxes(boxes, "boxes");
+  return with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() -> nb::object {
+    lab::History<D, Real> history;
+    std::vector<Box<D, Real>> memory;
+    const std::span<const Box<D, Real>> all = rows.array(memory);
+    history.boxes.assign(all.begin(), all.end());
+    const lab::Advice advice = without_gil([&](WithoutGil& released) {
+      lab::AdviseOptions options{.algorithms = algorithms, .threads = threads, .budget_seconds = budget};
+      // The lab asks between measurements, and what it measures runs undisturbed.
+      options.watch.stop = [&released] {
+        released.check_signals();
+        return false;
+      };
+      return lab::advise(catalogue(), "boxes", history, options);
+    });
+    nb::list ranking;
+    for (const lab::Ranked& ranked : advice.ranking)
+      ranking.append(nb::make_tuple(ranked.measurement.algorithm, ranked.milliseconds));
+    return nb::make_tuple(advice.spec, advice.milliseconds, advice.reasons, advice.changes, ranking,
+                          advice.all_verified(), lab::text_of(advice));
+  });
+}
+
+/// The boxes of one frame of a file, and what could not be read of it.
+nb::object read(const std::string& path, const std::string& format, const std::string& boxes,
+                const std::string& columns, const std::string& layer, int dimension, std::size_t frame,
+                bool skips_invalid) {
+  lab::ReadOptions options;
+  options.format = format;
+  options.boxes = boxes;
+  options.columns = columns;
+  options.layer = layer;
+  options.dimension = dimension;
+  std::string invalid;
+  if (skips_invalid) options.say_invalid = [&](std::string_view why) { invalid = why; };
+  std::string warning;
+  const auto read_frame = [&]<int D, typename Real>(lab::FrameReader<D, Real>& frames,
+                                                    WithoutGil& released) -> std::vector<Box<D, Real>> {
+    std::vector<Box<D, Real>> now = frames.first();
+    for (std::size_t at = 0; at < frame; ++at) {
+      released.check_signals();
+      lab::Step<D, Real> step;
+      if (!frames.next(step))
+        throw std::invalid_argument("frame is " + std::to_string(frame) + "; expected at most " +
+                                    std::to_string(at) + ", the last one of '" + path + "'");
+      lab::apply(step, now);
+    }
+    warning = frames.warning();
+    return now;
+  };
+  using AnyBoxes =
+      std::variant<std::vector<Box2>, std::vector<Box3>, std::vector<DoubleBox2>, std::vector<DoubleBox3>>;
+  AnyBoxes found = without_gil([&](WithoutGil& released) {
+    options.progress = [&released](std::uint64_t, std::uint64_t) { released.check_signals(); };
+    lab::BoxFile file = lab::open_file(path, options);
+    return std::visit([&](const auto& frames) -> AnyBoxes { return read_frame(*frames, released); },
+                      file.frames);
+  });
+  if (!invalid.empty()) warning += (warning.empty() ? "" : "\n") + invalid;
+  const nb::object array = std::visit([](auto& all) { return array_of_boxes(std::move(all)); }, found);
+  return nb::make_tuple(array, warning);
+}
+
+nb::object formats() {
+  nb::list list;
+  for (const lab::Format& format : lab::formats())
+    list.append(nb::make_tuple(format.name, format.summary, format.extensions, format.missing));
+  return list;
+}
+
+std::string draw(nb::handle boxes, const std::string& algorithms, std::size_t most,
+                 const std::string& title) {
+  // Pictures are of floats.
+  const Rows rows = Rows::of_boxes(boxes, "boxes");
+  return with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() -> std::string {
+    std::vector<Box<D, Real>> memory;
+    const std::span<const Box<D, Real>> all = rows.array(memory);
+    return without_gil([&](WithoutGil&) {
+      std::vector<Box<D>> rounded(all.size());
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t axis = 0; axis < D; ++axis) {
+          rounded[i].min[axis] = static_cast<float>(all[i].min[axis]);
+          rounded[i].max[axis] = static_cast<float>(all[i].max[axis]);
+        }
+      }
+      const std::vector<Box<D>> drawn = lab::thinned<D>(rounded, most);
+      const auto entries = algorithms.empty() ? std::vector<lab::Entry>() : catalogue().select(algorithms);
+      return lab::svg_of(lab::draw<D>(title, drawn, all.size(), entries));
+    });
+  });
+}
+
+/// For the tests: the boxes of a scene of the lab.
+nb::object scene(const std::string& spec, std::size_t boxes, int dimension, std::uint64_t seed) {
+  const lab::NamedScene named = lab::find_scene(spec);
+  const lab::SceneRequest request{.boxes = boxes, .seed = seed};
+  if (dimension == 2) return array_of_boxes(lab::make_history<2>(named.scene, named.spec, request).boxes);
+  return array_of_boxes(lab::make_history<3>(named.scene, named.spec, request).boxes);
+}
+
+nb::object scenes() {
+  nb::list list;
+  for (const lab::Scene& scene : lab::scenes())
+    list.append(nb::make_tuple(scene.name, scene.has_dimension(2), scene.has_dimension(3)));
+  return list;
+}
+
+}  // namespace
+
+void add_lab(nb::module_& module) {
+  static_cast<void>(catalogue());
+  module.def("algorithms", &algorithms);
+  module.def("advise", &advise, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("threads"),
+             nb::arg("budget"));
+  module.def("read", &read, nb::arg("path"), nb::arg("format"), nb::arg("boxes"), nb::arg("columns"),
+             nb::arg("layer"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));
+  module.def("formats", &formats);
+  module.def("draw", &draw, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("most"), nb::arg("title"));
+  module.def("scene", &scene, nb::arg("spec"), nb::arg("boxes"), nb::arg("dimension"), nb::arg("seed"));
+  module.def("scenes", &scenes);
+}
+
+}  // namespace broadside::python

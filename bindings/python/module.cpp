@@ -1,0 +1,77 @@
+// The extension module broadside._core: what broadside/*.py calls. Its arguments are checked there or where
+// they are taken; errors of the library become those of broadside._errors.
+#include <limits>
+#include <string>
+
+#include <nanobind/nanobind.h>
+
+#include "broadside/error.hpp"
+#include "broadside/version.hpp"
+
+#include "bindings/python/running.hpp"
+#include "lab/formats/format.hpp"
+
+namespace broadside::python {
+namespace {
+
+/// Sets Python's error of this class.
+void raise(const char* name, const std::exception& error) {
+  const nb::object type = nb::module_::import_("broadside._errors").attr(name);
+  PyErr_SetString(type.ptr(), error.what());
+}
+
+void raise_invalid_box(const InvalidInput& error) {
+  const nb::object type = nb::module_::import_("broadside._errors").attr("InvalidBoxError");
+  const nb::object raised = type(error.what(), error.index());
+  PyErr_SetObject(type.ptr(), raised.ptr());
+}
+
+void translate(const std::exception_ptr& pointer, void*) {
+  try {
+    std::rethrow_exception(pointer);
+  } catch (const InvalidInput& error) {
+    raise_invalid_box(error);
+  } catch (const InvalidQuery& error) {
+    raise("InvalidQueryError", error);
+  } catch (const InvalidSpec& error) {
+    raise("InvalidAlgorithmError", error);
+  } catch (const InvalidHandle& error) {
+    raise("InvalidHandleError", error);
+  } catch (const InvalidSnapshot& error) {
+    raise("InvalidSnapshotError", error);
+  } catch (const lab::FileError& error) {
+    raise("FileError", error);
+  } catch (const std::length_error&) {
+    PyErr_NoMemory();
+  }
+}
+
+}  // namespace
+
+std::size_t threads_of(nb::handle threads, std::string_view spec) {
+  const bool is_in_spec = spec.find("threads=") != std::string_view::npos;
+  if (threads.is_none()) return is_in_spec ? from_spec : 0;
+  if (is_in_spec)
+    throw std::invalid_argument("threads are given as an argument and in '" + std::string(spec) +
+                                "'; expected one of the two");
+  const long count = PyLong_AsLong(threads.ptr());
+  if (count == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+  if (count < 1 || count > 1024)
+    throw std::invalid_argument("threads is " + std::to_string(count) +
+                                "; expected 1 to 1024, or None for all");
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace broadside::python
+
+NB_MODULE(_core, module) {
+  using namespace broadside::python;
+  nb::register_exception_translator(translate);
+  module.attr("__version__") = BROADSIDE_VERSION;
+  add_arrow(module);
+  add_pairs(module);
+  add_world(module);
+  add_tracker(module);
+  add_index(module);
+  add_lab(module);
+}

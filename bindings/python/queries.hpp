@@ -1,0 +1,174 @@
+// Queries in bulk, to an index or to a world's, and their answers as arrays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "broadside/queries.hpp"
+
+#include "bindings/python/input.hpp"
+#include "bindings/python/running.hpp"
+
+namespace broadside::python {
+
+/// Asks a BoxIndex. `Asked` has `Number`, what Python calls a box by; ask(released, body), which calls
+/// body(index, number_of) with the GIL given away and the index as it is then; and D and Real.
+template <typename Asked>
+class Queries {
+  static constexpr int D = Asked::dimension;
+  using Real = typename Asked::Real;
+  using Number = typename Asked::Number;
+  using Box = broadside::Box<D, Real>;
+  using Point = broadside::Point<D, Real>;
+
+  static constexpr bool are_doubles = std::is_same_v<Real, double>;
+
+  /// Stands where no box was found.
+  static constexpr Number none = std::numeric_limits<Number>::max();
+
+ public:
+  explicit Queries(Asked& asked) : asked_(asked) {}
+
+  nb::object overlapping(nb::handle queries) const {
+    const Rows rows = Rows::of(queries, "queries", 2 * D, are_doubles);
+    std::vector<Box> memory;
+    return overlapped(rows.array(memory), [](const Box& box) { return box; });
+  }
+
+  nb::object containing(nb::handle points) const {
+    const Rows rows = Rows::of(points, "points", D, are_doubles);
+    std::vector<Point> memory;
+    return overlapped(rows.array(memory), [](const Point& point) { return Box{point, point}; });
+  }
+
+  nb::object hits(nb::handle origins, nb::handle directions, double t_max) const {
+    std::vector<std::uint32_t> queries;
+    std::vector<Number> boxes;
+    std::vector<Real> enters;
+    const Rays rays(origins, directions, t_max);
+    ask_each(rays.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
+      index.hits(rays[i], [&](const Hit<Real>& hit) {
+        queries.push_back(static_cast<std::uint32_t>(i));
+        boxes.push_back(number_of(hit.box));
+        enters.push_back(hit.t_enter);
+      });
+    });
+    const std::size_t count = queries.size();
+    return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}),
+                          array_of(std::move(enters), {count}));
+  }
+
+  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) const {
+    const Rays rays(origins, directions, t_max);
+    std::vector<Number> boxes(rays.size(), none);
+    std::vector<Real> enters(rays.size(), std::numeric_limits<Real>::infinity());
+    ask_each(rays.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
+      const std::optional<Hit<Real>> hit = index.first_hit(rays[i]);
+      if (!hit) return;
+      boxes[i] = number_of(hit->box);
+      enters[i] = hit->t_enter;
+    });
+    const std::size_t count = rays.size();
+    return nb::make_tuple(array_of(std::move(boxes), {count}), array_of(std::move(enters), {count}));
+  }
+
+  nb::object nearest(nb::handle points, std::size_t k) const {
+    const Rows rows = Rows::of(points, "points", D, are_doubles);
+    std::vector<Point> memory;
+    const std::span<const Point> asked = rows.array(memory);
+    if (k == 0) throw std::invalid_argument("k is 0; expected at least 1");
+    if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(asked.size(), 1))
+      throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(asked.size()) +
+                                  " points; expected at most 2^32 answers");
+    std::vector<Number> boxes(k * asked.size(), none);
+    std::vector<Real> distances(k * asked.size(), std::numeric_limits<Real>::infinity());
+    std::vector<Neighbour<Real>> found;
+    ask_each(asked.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
+      index.nearest(asked[i], k, found);
+      for (std::size_t j = 0; j < found.size(); ++j) {
+        boxes[i * k + j] = number_of(found[j].box);
+        distances[i * k + j] = found[j].distance_squared;
+      }
+    });
+    const std::size_t count = asked.size();
+    return nb::make_tuple(array_of(std::move(boxes), {count, k}), array_of(std::move(distances), {count, k}));
+  }
+
+ private:
+  /// Queries between two looks at signals.
+  static constexpr std::size_t queries_at_once = 64;
+
+  /// Rays of which each has a row in two arrays.
+  class Rays {
+   public:
+    Rays(nb::handle origins, nb::handle directions, double t_max)
+        : origins_(Rows::of(origins, "origins", D, are_doubles)),
+          directions_(Rows::of(directions, "directions", D, are_doubles)),
+          starts_(origins_.array(start_memory_)),
+          ways_(directions_.array(way_memory_)),
+          t_max_(static_cast<Real>(t_max)) {
+      if (starts_.size() != ways_.size())
+        throw std::invalid_argument("there are " + std::to_string(starts_.size()) + " origins and " +
+                                    std::to_string(ways_.size()) +
+                                    " directions; expected one for each origin");
+    }
+
+    std::size_t size() const noexcept { return starts_.size(); }
+    Ray<D, Real> operator[](std::size_t i) const { return {starts_[i], ways_[i], t_max_}; }
+
+   private:
+    Rows origins_;
+    Rows directions_;
+    std::vector<Point> start_memory_;
+    std::vector<Point> way_memory_;
+    std::span<const Point> starts_;
+    std::span<const Point> ways_;
+    Real t_max_;
+  };
+
+  /// Calls ask(index, number_of, i) for each i < count, with the GIL given away.
+  template <typename Ask>
+  void ask_each(std::size_t count, const Ask& ask) const {
+    if (count > std::numeric_limits<std::uint32_t>::max())
+      throw std::invalid_argument("there are " + std::to_string(count) +
+                                  " queries; expected at most 2^32 - 1");
+    without_gil([&](WithoutGil& released) {
+      asked_.ask([&](const auto& index, const auto& number_of) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (i % queries_at_once == 0) released.check_signals();
+          try {
+            ask(index, number_of, i);
+          } catch (const InvalidQuery& error) {
+            throw InvalidQuery("query " + std::to_string(i) + ": " + error.what());
+          }
+        }
+      });
+    });
+  }
+
+  template <typename Row, typename BoxOf>
+  nb::object overlapped(std::span<const Row> rows, const BoxOf& box_of) const {
+    std::vector<std::uint32_t> queries;
+    std::vector<Number> boxes;
+    ask_each(rows.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
+      index.overlapping(box_of(rows[i]), [&](BoxId id) {
+        queries.push_back(static_cast<std::uint32_t>(i));
+        boxes.push_back(number_of(id));
+      });
+    });
+    const std::size_t count = queries.size();
+    return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}));
+  }
+
+  Asked& asked_;
+};
+
+}  // namespace broadside::python

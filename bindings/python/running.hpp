@@ -1,0 +1,156 @@
+// Running searches without the GIL, so that other threads of Python run meanwhile and Ctrl-C ends them; and
+// their results as arrays.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include "broadside/executor.hpp"
+
+namespace broadside::python {
+
+namespace nb = nanobind;
+
+/// Python's error indicator is set in the thread that it is thrown in: a signal's handler has thrown.
+struct Interrupted {};
+
+/// Gives the GIL away while it lives.
+class WithoutGil {
+ public:
+  WithoutGil() : state_(PyEval_SaveThread()) {}
+  ~WithoutGil() { PyEval_RestoreThread(state_); }
+  WithoutGil(const WithoutGil&) = delete;
+  WithoutGil& operator=(const WithoutGil&) = delete;
+
+  /// Has Python run the handlers of signals that came, if it was last asked some time ago. Only in the thread
+  /// that made this. Throws Interrupted if a handler throws, as that of Ctrl-C does.
+  void check_signals() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_check_) return;
+    PyEval_RestoreThread(state_);
+    const bool has_thrown = PyErr_CheckSignals() != 0;
+    state_ = PyEval_SaveThread();
+    next_check_ = Clock::now() + between_checks;
+    if (has_thrown) throw Interrupted();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds between_checks{50};
+
+  PyThreadState* state_;
+  Clock::time_point next_check_ = Clock::now() + between_checks;
+};
+
+/// A mutex for an object that threads of Python share. Taken without the GIL, so that no thread waits for one
+/// while it holds the other. A handler of a signal that calls the object in whose call it was run gets an
+/// error instead of waiting for itself.
+class Turns {
+ public:
+  void lock() {
+    check_is_free();
+    mutex_.lock();
+    owner_ = std::this_thread::get_id();
+  }
+  bool try_lock() {
+    check_is_free();
+    if (!mutex_.try_lock()) return false;
+    owner_ = std::this_thread::get_id();
+    return true;
+  }
+  void unlock() {
+    owner_ = std::thread::id();
+    mutex_.unlock();
+  }
+
+ private:
+  void check_is_free() const {
+    if (owner_ == std::this_thread::get_id())
+      throw std::runtime_error(
+          "a handler of a signal has called the object whose call it interrupts; expected it "
+          "to leave that object alone");
+  }
+
+  std::mutex mutex_;
+  std::atomic<std::thread::id> owner_{};
+};
+
+/// Runs body(without_gil), and gives back what it gives.
+template <typename Body>
+auto without_gil(const Body& body) {
+  try {
+    WithoutGil released;
+    return body(released);
+  } catch (const Interrupted&) {
+    throw nb::python_error();
+  }
+}
+
+/// Stands for the number of threads that a spec says.
+constexpr std::size_t from_spec = std::numeric_limits<std::size_t>::max();
+
+/// Has a finder, a tracker or a world ask for signals at its checkpoints and use so many threads (0: all
+/// there are), while this lives.
+template <typename Searching>
+class Using {
+ public:
+  Using(Searching& searching, std::size_t threads, WithoutGil& released) : searching_(searching) {
+    Workers workers = searching.workers();
+    if (threads != from_spec) workers.threads = threads;
+    workers.checkpoint = [&released] { released.check_signals(); };
+    searching.set_workers(workers);
+  }
+  ~Using() {
+    Workers workers = searching_.workers();
+    workers.checkpoint = nullptr;
+    searching_.set_workers(workers);
+  }
+  Using(const Using&) = delete;
+  Using& operator=(const Using&) = delete;
+
+ private:
+  Searching& searching_;
+};
+
+/// The number of threads that `threads` says; where it is None, from_spec if the spec says one, else 0.
+/// Throws ValueError, TypeError.
+std::size_t threads_of(nb::handle threads, std::string_view spec);
+
+/// A NumPy array of this shape, of Scalars, that owns the vector's memory.
+template <typename Scalar, typename T>
+nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  void* const first = kept->data();
+  nb::capsule owner(kept.get(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
+  static_cast<void>(kept.release());
+  return nb::cast(nb::ndarray<nb::numpy, Scalar>(first, shape, owner), nb::rv_policy::reference);
+}
+template <typename T>
+nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  return array_of<T, T>(std::move(values), shape);
+}
+
+/// Parts of the module, each by the file of its name.
+void add_pairs(nb::module_& module);
+void add_world(nb::module_& module);
+void add_tracker(nb::module_& module);
+void add_index(nb::module_& module);
+void add_arrow(nb::module_& module);
+void add_lab(nb::module_& module);
+
+}  // namespace broadside::python

@@ -1,0 +1,303 @@
+// World: boxes that come, move and go under handles.
+#include "broadside/world.hpp"
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <nanobind/stl/string.h>
+
+#include "bindings/python/queries.hpp"
+
+namespace broadside::python {
+namespace {
+
+/// Handles of pairs as Python's numbers, two a row.
+nb::object array_of_pairs(std::span<const HandlePair> pairs) {
+  std::vector<std::uint64_t> numbers;
+  numbers.reserve(2 * pairs.size());
+  for (const HandlePair& pair : pairs) {
+    numbers.push_back(number_of(pair.first));
+    numbers.push_back(number_of(pair.second));
+  }
+  return array_of(std::move(numbers), {pairs.size(), 2});
+}
+
+nb::object array_of_handles(std::span<const Handle> handles) {
+  std::vector<std::uint64_t> numbers;
+  numbers.reserve(handles.size());
+  for (const Handle& handle : handles) numbers.push_back(number_of(handle));
+  return array_of(std::move(numbers), {handles.size()});
+}
+
+/// A world of any kind of boxes. Threads take turns.
+class AnyWorld {
+ public:
+  virtual ~AnyWorld() = default;
+  virtual nb::object add(nb::handle boxes, nb::handle filters) = 0;
+  virtual void move(nb::handle handles, nb::handle boxes, nb::handle velocities) = 0;
+  virtual void remove(nb::handle handles) = 0;
+  virtual void set_filters(nb::handle handles, nb::handle filters) = 0;
+  virtual void ignore(nb::handle pairs, bool ignores) = 0;
+  virtual nb::object update() = 0;
+  virtual nb::object pairs() = 0;
+  virtual nb::object boxes(nb::handle handles, bool enlarged) = 0;
+  virtual nb::object handles() = 0;
+  virtual nb::object quarantined() = 0;
+  virtual bool contains(std::uint64_t handle) = 0;
+  virtual std::size_t size() = 0;
+  virtual std::size_t bytes() = 0;
+  virtual std::string explanation() = 0;
+  virtual nb::object join(AnyWorld& other) = 0;
+  virtual nb::bytes snapshot() = 0;
+  virtual void restore(nb::bytes snapshot) = 0;
+  virtual nb::object overlapping(nb::handle queries) = 0;
+  virtual nb::object containing(nb::handle points) = 0;
+  virtual nb::object hits(nb::handle origins, nb::handle directions, double t_max) = 0;
+  virtual nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) = 0;
+  virtual nb::object nearest(nb::handle points, std::size_t k) = 0;
+};
+
+template <int Dimension, typename Coordinate>
+class WorldOf final : public AnyWorld {
+  using Box = broadside::Box<Dimension, Coordinate>;
+  using Point = broadside::Point<Dimension, Coordinate>;
+
+ public:
+  static constexpr int dimension = Dimension;
+  using Real = Coordinate;
+  using Number = std::uint64_t;
+
+  WorldOf(const WorldOptions& options, std::size_t threads) : world_(options), threads_(threads) {}
+
+  nb::object add(nb::handle boxes, nb::handle filters) override {
+    const Rows rows = rows_of(boxes, "boxes");
+    std::vector<BoxOptions> options;
+    for (const Filter& filter : python::filters(filters, rows.size(), "filters")) options.push_back({filter});
+    std::vector<Handle> handles(rows.size());
+    alone([&](WithoutGil&) { world_.add(rows.template boxes<Dimension, Real>(), handles, options); });
+    return array_of_handles(handles);
+  }
+
+  void move(nb::handle handles, nb::handle boxes, nb::handle velocities) override {
+    const std::vector<Handle> movers = python::handles(handles, "handles");
+    const Rows rows = rows_of(boxes, "boxes");
+    std::vector<Point> memory;
+    std::vector<Point> ways;
+    if (!velocities.is_none()) {
+      const Rows given = Rows::of(velocities, "velocities", Dimension, has_doubles);
+      const std::span<const Point> points = given.array(memory);
+      ways.assign(points.begin(), points.end());
+      // None at all would be taken for velocities that were not given.
+      if (ways.size() != movers.size())
+        throw std::invalid_argument("there are " + std::to_string(movers.size()) + " handles and " +
+                                    std::to_string(ways.size()) +
+                                    " velocities; expected one for each handle");
+    }
+    alone([&](WithoutGil&) { world_.move(movers, rows.template boxes<Dimension, Real>(), ways); });
+  }
+
+  void remove(nb::handle handles) override {
+    const std::vector<Handle> gone = python::handles(handles, "handles");
+    alone([&](WithoutGil&) { world_.remove(gone); });
+  }
+
+  void set_filters(nb::handle handles, nb::handle filters) override {
+    const std::vector<Handle> changed = python::handles(handles, "handles");
+    const std::vector<Filter> given = python::filters(filters, changed.size(), "filters");
+    alone([&](WithoutGil&) {
+      for (const Handle& handle : changed) static_cast<void>(world_.enlarged_box(handle));  // all or none
+      for (std::size_t i = 0; i < given.size(); ++i) world_.set_filter(changed[i], given[i]);
+    });
+  }
+
+  void ignore(nb::handle pairs, bool ignores) override {
+    const std::vector<std::uint64_t> numbers =
+        pairs_of_integers(pairs, "pairs", std::numeric_limits<std::uint64_t>::max());
+    alone([&](WithoutGil&) {
+      for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)  // all or none
+        static_cast<void>(world_.is_ignored(handle_of(numbers[i]), handle_of(numbers[i + 1])));
+      for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
+        const Handle a = handle_of(numbers[i]);
+        const Handle b = handle_of(numbers[i + 1]);
+        ignores ? world_.ignore(a, b) : world_.unignore(a, b);
+      }
+    });
+  }
+
+  nb::object update() override {
+    std::vector<HandlePair> begun;
+    std::vector<HandlePair> ended;
+    alone([&](WithoutGil& released) {
+      const Using use(world_, threads_, released);
+      const Events events = world_.update();
+      begun.assign(events.begun.begin(), events.begun.end());
+      ended.assign(events.ended.begin(), events.ended.end());
+    });
+    return nb::make_tuple(array_of_pairs(begun), array_of_pairs(ended));
+  }
+
+  nb::object pairs() override {
+    std::vector<HandlePair> pairs;
+    alone([&](WithoutGil&) {
+      const std::span<const HandlePair> current = world_.pairs();
+      pairs.assign(current.begin(), current.end());
+    });
+    return array_of_pairs(pairs);
+  }
+
+  nb::object boxes(nb::handle handles, bool enlarged) override {
+    const std::vector<Handle> asked = python::handles(handles, "handles");
+    std::vector<Box> boxes;
+    boxes.reserve(asked.size());
+    alone([&](WithoutGil&) {
+      for (const Handle& handle : asked)
+        boxes.push_back(enlarged ? world_.enlarged_box(handle) : world_.box(handle));
+    });
+    return array_of<Real>(std::move(boxes), {asked.size(), 2 * Dimension});
+  }
+
+  nb::object handles() override {
+    std::vector<Handle> handles;
+    alone([&](WithoutGil&) {
+      const std::size_t slots = world_.statistics().slots;
+      for (std::size_t slot = 0; slot < slots; ++slot) {
+        const Handle handle = world_.handle_of(static_cast<BoxId>(slot));
+        if (world_.contains(handle)) handles.push_back(handle);
+      }
+    });
+    return array_of_handles(handles);
+  }
+
+  nb::object quarantined() override {
+    return array_of_handles(alone([&](WithoutGil&) { return world_.quarantined(); }));
+  }
+
+  bool contains(std::uint64_t handle) override {
+    return alone([&](WithoutGil&) { return world_.contains(handle_of(handle)); });
+  }
+  std::size_t size() override {
+    return alone([&](WithoutGil&) { return world_.size(); });
+  }
+  std::size_t bytes() override {
+    return alone([&](WithoutGil&) { return world_.statistics().bytes.total(); });
+  }
+  std::string explanation() override {
+    return alone([&](WithoutGil&) { return world_.statistics().explanation; });
+  }
+
+  nb::object join(AnyWorld& other) override {
+    auto* const same = dynamic_cast<WorldOf*>(&other);
+    if (same == nullptr)
+      throw nb::type_error("the other world has boxes of another dimension or dtype; expected the same");
+    std::vector<HandlePair> pairs;
+    without_gil([&](WithoutGil&) {
+      std::unique_lock lock(turns_, std::defer_lock);
+      std::unique_lock other_lock(same->turns_, std::defer_lock);
+      if (same == this)
+        lock.lock();
+      else
+        std::lock(lock, other_lock);
+      world_.join(same->world_, pairs);
+    });
+    return array_of_pairs(pairs);
+  }
+
+  nb::bytes snapshot() override {
+    const std::vector<std::byte> bytes = alone([&](WithoutGil&) { return world_.snapshot(); });
+    return nb::bytes(bytes.data(), bytes.size());
+  }
+
+  void restore(nb::bytes snapshot) override {
+    const std::span bytes(static_cast<const std::byte*>(snapshot.data()), snapshot.size());
+    alone([&](WithoutGil&) { world_.restore(bytes); });
+  }
+
+  nb::object overlapping(nb::handle queries) override { return Queries(*this).overlapping(queries); }
+  nb::object containing(nb::handle points) override { return Queries(*this).containing(points); }
+  nb::object hits(nb::handle origins, nb::handle directions, double t_max) override {
+    return Queries(*this).hits(origins, directions, t_max);
+  }
+  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) override {
+    return Queries(*this).first_hit(origins, directions, t_max);
+  }
+  nb::object nearest(nb::handle points, std::size_t k) override { return Queries(*this).nearest(points, k); }
+
+  /// For Queries.
+  template <typename Body>
+  void ask(const Body& body) {
+    const std::lock_guard lock(turns_);
+    body(world_.box_index(), [&](BoxId id) { return number_of(world_.handle_of(id)); });
+  }
+
+ private:
+  static constexpr bool has_doubles = std::is_same_v<Coordinate, double>;
+
+  static Rows rows_of(nb::handle boxes, const char* name) {
+    return Rows::of(boxes, name, 2 * Dimension, has_doubles);
+  }
+
+  /// Runs body(released) without the GIL and without other threads.
+  template <typename Body>
+  auto alone(const Body& body) {
+    return without_gil([&](WithoutGil& released) {
+      const std::lock_guard lock(turns_);
+      return body(released);
+    });
+  }
+
+  Turns turns_;
+  World<Dimension, Coordinate> world_;
+  std::size_t threads_;
+};
+
+std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std::string& algorithm,
+                                     nb::handle threads, double margin, double relative_margin,
+                                     double predicted_frames, bool exact, bool quarantine,
+                                     std::uint32_t first_generation) {
+  const WorldOptions options{.algorithm = algorithm,
+                             .margin = margin,
+                             .relative_margin = relative_margin,
+                             .predicted_frames = predicted_frames,
+                             .events = exact ? WorldEvents::exact : WorldEvents::enlarged,
+                             .first_generation = first_generation,
+                             .bad_input = quarantine ? BadInput::quarantine : BadInput::reject};
+  const std::size_t most_threads = threads_of(threads, algorithm);
+  return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyWorld> {
+    return std::make_unique<WorldOf<D, Real>>(options, most_threads);
+  });
+}
+
+}  // namespace
+
+void add_world(nb::module_& module) {
+  nb::class_<AnyWorld>(module, "World")
+      .def("add", &AnyWorld::add, nb::arg("boxes"), nb::arg("filters").none())
+      .def("move", &AnyWorld::move, nb::arg("handles"), nb::arg("boxes"), nb::arg("velocities").none())
+      .def("remove", &AnyWorld::remove)
+      .def("set_filters", &AnyWorld::set_filters)
+      .def("ignore", &AnyWorld::ignore)
+      .def("update", &AnyWorld::update)
+      .def("pairs", &AnyWorld::pairs)
+      .def("boxes", &AnyWorld::boxes)
+      .def("handles", &AnyWorld::handles)
+      .def("quarantined", &AnyWorld::quarantined)
+      .def("contains", &AnyWorld::contains)
+      .def("__len__", &AnyWorld::size)
+      .def("bytes", &AnyWorld::bytes)
+      .def("explanation", &AnyWorld::explanation)
+      .def("join", &AnyWorld::join)
+      .def("snapshot", &AnyWorld::snapshot)
+      .def("restore", &AnyWorld::restore)
+      .def("overlapping", &AnyWorld::overlapping)
+      .def("containing", &AnyWorld::containing)
+      .def("hits", &AnyWorld::hits)
+      .def("first_hit", &AnyWorld::first_hit)
+      .def("nearest", &AnyWorld::nearest);
+  module.def("make_world", &make_world, nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"),
+             nb::arg("threads").none(), nb::arg("margin"), nb::arg("relative_margin"),
+             nb::arg("predicted_frames"), nb::arg("exact"), nb::arg("quarantine"),
+             nb::arg("first_generation"));
+}
+
+}  // namespace broadside::python
