@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi bench test sanitize systems clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python bench test sanitize systems clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -64,6 +64,25 @@ abi: setup-ci ## Write the dump anew that tests compare the C interface's ABI wi
 	cmake -D HEADER=$(CURDIR)/bindings/c/broadside.h -D COMPILER=cc -D FOLDER=$(CURDIR)/build/abi \
 	  -D DUMP=$(CURDIR)/bindings/c/abi/broadside.abi -P bindings/c/abi/dump.cmake
 
+# CMake's build folder and the two environments are kept. The first has what builds the wheel, the second what tests it.
+python_folder := build/python
+
+python: $(python_folder)/builder/ready ## Build the Python package as a wheel: build/python/wheels/
+	rm -rf $(python_folder)/wheels
+	$(python_folder)/builder/bin/pip wheel . --quiet --no-build-isolation --no-deps --wheel-dir $(python_folder)/wheels \
+	  --config-settings build-dir=$(python_folder)/cmake
+
+test-python: python $(python_folder)/tester/ready ## Install the wheel and run the tests of the Python package
+	$(python_folder)/tester/bin/pip install --quiet --force-reinstall --no-deps $(python_folder)/wheels/*.whl
+	$(python_folder)/tester/bin/python -m pytest -q tests/bindings/python
+
+$(python_folder)/builder/ready: bindings/python/requirements.txt
+$(python_folder)/tester/ready: tests/bindings/python/requirements.txt
+$(python_folder)/%/ready: | setup
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
 test: tests-release ## Build everything and run all tests
 
 sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
@@ -95,6 +114,7 @@ compare bench paper-results published deb: setup_options := $(if $(filter no,$(P
 paper: setup_options := --paper
 
 systems: setup_options := --systems
+python test-python: setup_options := --python
 
 setup:
 	@scripts/setup $(setup_options)

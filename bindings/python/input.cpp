@@ -1,8 +1,10 @@
 // Arrays of Python's as the library's types.
 #include "bindings/python/input.hpp"
 
+#include <bit>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace broadside::python {
@@ -22,6 +24,20 @@ std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, c
   return numbers;
 }
 
+/// The letter of the elements' type in this machine's byte order; 0 if there is no such.
+char native_format(const Py_buffer& buffer) {
+  std::string_view format(buffer.format == nullptr ? "" : buffer.format);
+  // '=' and '^' are NumPy's for arrays that are not aligned.
+  constexpr std::string_view native = std::endian::native == std::endian::little ? "@=^<" : "@=^>!";
+  if (format.size() == 2 && native.find(format[0]) != native.npos) format.remove_prefix(1);
+  return format.size() == 1 ? format[0] : '\0';
+}
+
+bool is_plain_array(nb::handle object) {
+  static PyObject* const type = nb::object(nb::module_::import_("numpy").attr("ndarray")).release().ptr();
+  return reinterpret_cast<PyObject*>(Py_TYPE(object.ptr())) == type;
+}
+
 }  // namespace
 
 void Rows::swap(Rows& other) noexcept {
@@ -39,14 +55,16 @@ Rows::~Rows() {
 }
 
 bool Rows::take(nb::handle object) {
-  if (PyObject_CheckBuffer(object.ptr()) == 0) return false;
+  // The buffer of a masked array does not tell which of its elements count.
+  if (PyObject_CheckBuffer(object.ptr()) == 0 || (!is_plain_array(object) && nb::hasattr(object, "mask")))
+    return false;
   Py_buffer& buffer = buffer_.emplace();
   if (PyObject_GetBuffer(object.ptr(), &buffer, PyBUF_RECORDS_RO) != 0) {
     PyErr_Clear();  // of another type; _convert says what is wrong
     buffer_.reset();
     return false;
   }
-  const char format = buffer.format != nullptr && buffer.format[1] == 0 ? buffer.format[0] : '\0';
+  const char format = native_format(buffer);
   const auto row = buffer.ndim == 2 ? buffer.shape[1] * buffer.itemsize : 0;
   const bool is_taken = (format == 'f' || format == 'd') && buffer.ndim == 2 && buffer.shape[1] > 0 &&
                         buffer.strides[1] == buffer.itemsize &&

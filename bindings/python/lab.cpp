@@ -33,8 +33,12 @@ nb::list algorithms() {
     nb::list tunables;
     for (const Tunable& tunable : algorithm.tunables)
       tunables.append(nb::make_tuple(tunable.name, tunable.summary, tunable.standard));
+    nb::list dimensions;
+    for (const int dimension : {2, 3}) {
+      if (algorithm.has_dimension(dimension)) dimensions.append(dimension);
+    }
     list.append(nb::make_tuple(algorithm.name, algorithm.summary, algorithm.source,
-                               std::string(name(algorithm.kind)), tunables));
+                               std::string(name(algorithm.kind)), nb::tuple(dimensions), tunables));
   }
   return list;
 }

@@ -40,13 +40,14 @@ class WithoutGil {
   /// Has Python run the handlers of signals that came, if it was last asked some time ago. Only in the thread
   /// that made this. Throws Interrupted if a handler throws, as that of Ctrl-C does.
   void check_signals() {
-    const Clock::time_point now = Clock::now();
-    if (now < next_check_) return;
-    PyEval_RestoreThread(state_);
-    const bool has_thrown = PyErr_CheckSignals() != 0;
-    state_ = PyEval_SaveThread();
-    next_check_ = Clock::now() + between_checks;
-    if (has_thrown) throw Interrupted();
+    if (!has_thrown_ && Clock::now() >= next_check_) {
+      PyEval_RestoreThread(state_);
+      has_thrown_ = PyErr_CheckSignals() != 0;
+      state_ = PyEval_SaveThread();
+      next_check_ = Clock::now() + between_checks;
+    }
+    // Also where it is asked again before the first exception has arrived.
+    if (has_thrown_) throw Interrupted();
   }
 
  private:
@@ -54,6 +55,7 @@ class WithoutGil {
   static constexpr std::chrono::milliseconds between_checks{50};
 
   PyThreadState* state_;
+  bool has_thrown_ = false;
   Clock::time_point next_check_ = Clock::now() + between_checks;
 };
 

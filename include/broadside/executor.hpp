@@ -59,10 +59,10 @@ struct Workers {
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 
-  /// Called now and then in a search, by the thread that called find() or update(): before each of the
-  /// pieces, some hundred, that the search is cut into. What it throws ends the search and is thrown by that
-  /// function. If it is empty, a search of one thread runs through. Algorithms without the tunable `threads`
-  /// do not call it.
+  /// Called now and then in a search, by the thread that called find() or update(): before each of the pieces
+  /// of about a thousand boxes that the search is cut into. What it throws ends the search and is thrown by
+  /// that function. If it is empty, a search of one thread runs through. Algorithms without the tunable
+  /// `threads` do not call it.
   std::function<void()> checkpoint{};
 };
 

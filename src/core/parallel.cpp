@@ -129,7 +129,7 @@ class Parallel::SharedSearch {
       : parallel_(parallel),
         search_(search),
         parts_(parts),
-        pieces_(std::min(parts, pieces_per_worker * parallel.workers_)),
+        pieces_(parallel.pieces_of(parts)),
         filters_(filters_before(pairs)),
         target_(filters_.empty() ? pairs : filters_.back()->target()),
         done_(parallel.workers_) {}
@@ -243,6 +243,7 @@ Parallel::~Parallel() = default;
 
 void Parallel::start(const Workers& workers, std::size_t boxes) {
   workers_ = 1;
+  boxes_ = boxes;
   checkpoint_ = workers.checkpoint;
   if (workers.threads == 1) return;
   const CallersEnvironment environment;
@@ -280,7 +281,7 @@ Statistics Parallel::share_search(std::size_t parts, PairSink& pairs, const Sear
 
 Statistics Parallel::search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search) {
   Statistics all;
-  const std::size_t pieces = std::min(parts, pieces_of_one_worker);
+  const std::size_t pieces = pieces_of(parts);
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     pass_checkpoint();
     const Statistics statistics = search(piece_of(parts, pieces, piece), 0, pairs);
@@ -288,6 +289,12 @@ Statistics Parallel::search_by_pieces(std::size_t parts, PairSink& pairs, const 
     all.references += statistics.references;
   }
   return all;
+}
+
+std::size_t Parallel::pieces_of(std::size_t parts) const noexcept {
+  const std::size_t for_workers = workers_ == 1 ? 1 : pieces_per_worker * workers_;
+  const std::size_t for_checkpoints = checkpoint_ ? boxes_ / boxes_between_checkpoints : 0;
+  return std::min(parts, std::max(for_workers, for_checkpoints));
 }
 
 void Parallel::pass_checkpoint() const {

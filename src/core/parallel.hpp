@@ -86,8 +86,8 @@ class Parallel {
   static constexpr std::size_t ranges_per_worker = 4;
   static constexpr std::size_t pieces_per_worker = 32;
 
-  /// Of a search by one thread that has a checkpoint.
-  static constexpr std::size_t pieces_of_one_worker = 256;
+  /// With a checkpoint a piece has no more boxes than this, so that the next one is not far.
+  static constexpr std::size_t boxes_between_checkpoints = 1024;
 
   using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
   using Search = std::function<Statistics(Range, std::size_t, PairSink&)>;
@@ -99,6 +99,9 @@ class Parallel {
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
   Statistics search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search);
 
+  /// How many pieces a search of so many parts is cut into.
+  std::size_t pieces_of(std::size_t parts) const noexcept;
+
   /// Calls the caller's checkpoint, if there is one. In the caller's thread.
   void pass_checkpoint() const;
 
@@ -107,6 +110,7 @@ class Parallel {
 
   Executor* executor_ = nullptr;
   std::size_t workers_ = 1;
+  std::size_t boxes_ = 0;
   std::function<void()> checkpoint_;
   PairBlocks blocks_;
 };

@@ -29,6 +29,8 @@ const std::vector<Rule>& rules() {
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"bindings/c/", library},
+      {"bindings/python/", library + R"(|"bindings/python/[a-z]+\.hpp"|<nanobind/.*>)" +
+                               R"(|"lab/((advise|formats|report|scenes)/[a-z_]+|catalogue)\.hpp")"},
       // An integration sees its engine.
       {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},

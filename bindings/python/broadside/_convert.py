@@ -79,7 +79,7 @@ def _exact_floats(array: Rows, name: str) -> Rows:
     floats: Rows = array.astype(np.float64)
     if array.dtype.itemsize == 8:
         # Python compares an integer with a float by value.
-        beyond = np.argwhere(np.abs(floats) > 2.0**53)
+        beyond = np.argwhere(np.abs(floats) >= 2.0**53)
         for place in map(tuple, beyond):
             if int(array[place]) != float(floats[place]):
                 raise ValueError(
@@ -101,8 +101,6 @@ def _as_array(found: Any, name: str, boxes_expected: bool) -> Rows:
         return bounds
     if isinstance(found, np.ndarray):
         array = found
-    elif hasattr(found, "__array__") and not _is_table(found):
-        array = np.asarray(found)
     elif hasattr(found, "__arrow_c_stream__"):
         array = _of_chunks(_core.arrow_chunks(found.__arrow_c_stream__()), name)
     elif hasattr(found, "__arrow_c_array__"):
@@ -138,11 +136,6 @@ def _of_sequence(found: Any, name: str) -> Rows:
     if array.ndim == 0:
         raise TypeError(f"{name} is of {type(found).__name__}; expected an array of shape (n, 4) or (n, 6)")
     return array
-
-
-def _is_table(found: Any) -> bool:
-    """Whether its columns have names: an array of it would lose them."""
-    return hasattr(found, "columns") or hasattr(found, "column_names") or hasattr(found, "schema")
 
 
 def _of_chunks(chunks: list[list[tuple[str, Rows]]], name: str) -> Rows:

@@ -10,7 +10,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from broadside import _core
+from broadside import _convert, _core
+from broadside._errors import InvalidBoxError
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,8 @@ class Algorithm:
     """The paper, book or program it is from."""
     kind: str
     """``"own"``, or ``"paper"`` for a listing that the library is compared with, which is not meant for use."""
+    dimensions: tuple[int, ...]
+    """2, 3 or both."""
     tunables: dict[str, tuple[str, str]]
     """By name: a summary and the standard value. A spec sets some: ``"grid:cell=2.5:threads=4"``."""
 
@@ -30,8 +33,10 @@ class Algorithm:
 def algorithms() -> list[Algorithm]:
     """The algorithms there are, the library's own first."""
     return [
-        Algorithm(name, summary, source, kind, {tunable: (text, value) for tunable, text, value in tunables})
-        for name, summary, source, kind, tunables in _core.algorithms()
+        Algorithm(
+            name, summary, source, kind, dimensions, {tunable: (text, value) for tunable, text, value in tunables}
+        )
+        for name, summary, source, kind, dimensions, tunables in _core.algorithms()
     ]
 
 
@@ -166,8 +171,13 @@ def draw(boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "box
         most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
         title: What the picture is called.
 
-    Raises InvalidAlgorithmError, ValueError.
+    Raises InvalidBoxError, InvalidAlgorithmError, ValueError.
     """
     if not 1 <= most <= 20_000:
         raise ValueError(f"most is {most}; expected 1 to 20,000")
-    return Drawing(_core.draw(boxes, algorithms, most, title))
+    array = _convert.boxes(boxes, "boxes")
+    invalid = _convert.invalid_rows(array)
+    if invalid.size:
+        row = int(invalid[0])
+        raise InvalidBoxError(f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row)
+    return Drawing(_core.draw(array, algorithms, most, title))

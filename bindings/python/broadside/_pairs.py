@@ -107,10 +107,9 @@ def pairs(
         TypeError: Something is of another type or dtype than these.
         ValueError: Something has another shape, or does not fit to the rest.
 
-    Cost: about that of sorting the boxes, and of writing the pairs. The GIL is given away. Ctrl-C ends a search as soon
-    as one of the some hundred pieces is done that it is cut into, at the earliest 50 milliseconds after the last time
-    that Python was asked; a search by one of the paper's listings ends with its next pairs. Any number of threads may
-    call it at once.
+    Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends with
+    the piece that it is at, of about a thousand boxes, and looks for signals every 50 milliseconds at most; a search by
+    one of the paper's listings ends with its next pairs. Any number of threads may call it at once.
     """
     if output == "numpy":
         return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
