@@ -8,6 +8,7 @@ set(broadside_package_of_program broadside)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME broadside)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGE_VENDOR "The Broadside authors")
 set(CPACK_PACKAGE_CONTACT "The Broadside authors <broadside@example.org>" CACHE STRING "Maintainer of the packages")
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
@@ -24,9 +25,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/src)
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${broadside_package_of_library})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "broad-phase collision detection, the shared library
 Finds every pair of overlapping axis-aligned boxes, in one call or frame after
 frame, in 2D and 3D, of floats or doubles, and answers queries.")
@@ -62,6 +63,7 @@ file(WRITE ${folder}/changelog.Debian "broadside (${PROJECT_VERSION}-${release})
 
  -- ${CPACK_PACKAGE_CONTACT}  ${released}
 ")
+file(WRITE ${folder}/triggers "activate-noawait ldconfig\n")
 file(COPY_FILE ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${folder}/changelog)
 file(COPY_FILE ${PROJECT_SOURCE_DIR}/LICENSE ${folder}/copyright)
 execute_process(COMMAND gzip -9nf changelog changelog.Debian WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
