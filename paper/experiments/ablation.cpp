@@ -1,6 +1,7 @@
 // Beyond the draft: what makes the library's two fastest searches fast, each thing left out alone.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -9,124 +10,19 @@
 
 #include <fmt/format.h>
 
-#include "broadside/executor.hpp"
-
-#include "lab/numbers.hpp"
+#include "paper/experiments/ablation_measure.hpp"
 #include "paper/experiments/descriptions.hpp"
-#include "paper/experiments/laboratory.hpp"
-#include "paper/experiments/plain.hpp"
-#include "paper/experiments/table.hpp"
 
 namespace broadside::lab {
 namespace {
 
-/// A way to search, by its spec and by what it is called in the tables.
-struct Way {
-  std::string text;
-  std::string spec;
-};
-
-/// A plain search's switches in the order in which they are left out one after the other.
-struct Switch {
-  std::string tunable;
-  std::string without;  ///< what the search is called without it
-};
-
-const std::string all_at_once = "as the library has it";
-const std::string plain = "plain, without SIMD";
-const std::string nothing = "without all of these";
-
-std::vector<Way> ways(const std::string& own, const std::vector<Switch>& switches, const std::string& peer) {
-  std::vector<Way> all = {{all_at_once, own}};
-  for (const std::string& set : instruction_sets()) {
-    if (set != instruction_set())
-      all.push_back({"by " + set, fmt::format("held_back:search={}:simd={}", own, set)});
-  }
-  const std::string name = "plain_" + own;
-  all.push_back({plain, name});
-  std::string together = name;
-  for (const Switch& left_out : switches) {
-    all.push_back({"and " + left_out.without, fmt::format("{}:{}=no", name, left_out.tunable)});
-    together += fmt::format(":{}=no", left_out.tunable);
-  }
-  all.push_back({nothing, together});
-  if (!peer.empty()) all.push_back({peer, peer});
-  return all;
-}
-
-std::vector<Way> ways_of_grid(const std::string& peer) {
-  return ways("grid",
-              {{"arrays", "an array of boxes"},
-               {"branch_free", "a branch at each test"},
-               {"buckets", "std::sort in each cell"},
-               {"carry", "a copy in each cell"},
-               {"sample", "no sample"}},
-              peer);
-}
-
-std::vector<Way> ways_of_bvh(const std::string& peer) {
-  return ways("bvh",
-              {{"arrays", "an array of boxes"},
-               {"branch_free", "a branch at each test"},
-               {"buckets", "std::sort to pack"},
-               {"join", "a query for each box"}},
-              peer);
-}
-
-/// What the columns of a dimension are called.
-std::string time_in(int dimension) { return fmt::format("{}D", dimension); }
-std::string ratio_in(int dimension) { return fmt::format("{}D ratio", dimension); }
-
-Table measure_search(const Laboratory& laboratory, const Catalogue& catalogue, const std::string& own,
-                     const std::vector<Way>& ways) {
-  const auto boxes = laboratory.either<std::size_t>(100'000, 20'000);
-  Table table{.name = own,
-              .title = fmt::format("What makes {} fast, each thing left out alone: {} uniform boxes", own,
-                                   grouped(boxes)),
-              .columns = {{"search"}}};
-  std::vector<std::string> specs;
-  std::vector<std::vector<Cell>> rows;
-  for (const Way& way : ways) {
-    specs.push_back(way.spec);
-    rows.push_back({way.text});
-  }
-  for (const int dimension : {2, 3}) {
-    table.columns.push_back({time_in(dimension), "ms"});
-    append(table.columns, ratio_columns(ratio_in(dimension)));
-    table.charts.push_back({.title = fmt::format("Time over that of {} in {}D", own, dimension),
-                            .kind = ChartKind::bars,
-                            .x = "search",
-                            .y = ratio_in(dimension),
-                            .log_y = true});
-    const CaseResult result = laboratory.measure(
-        catalogue, list_of(specs), {.scene = "uniform", .dimension = dimension, .boxes = boxes});
-    const Measurement& library = measurement_of(result, own);
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const Measurement& measurement = measurement_of(result, specs[i]);
-      rows[i].push_back(time_cell(measurement));
-      append(rows[i], ratio_cells(result, measurement, library));
-    }
-  }
-  for (std::vector<Cell>& row : rows) table.add(std::move(row));
-  return table;
-}
-
-/// A peer that looks for one box after the other, without SIMD.
-const std::string simple_peer = "boost_rtree";
-
-std::vector<Table> measure(const Laboratory& laboratory) {
-  Catalogue catalogue;
-  for (Algorithm algorithm : {plain_grid(), plain_bvh(), held_back()}) catalogue.add(std::move(algorithm));
-  const bool has_peer = find_algorithm(simple_peer, catalogue.algorithms()) != nullptr;
-  const std::string peer = has_peer ? simple_peer : "";
-  return {measure_search(laboratory, catalogue, "grid", ways_of_grid(peer)),
-          measure_search(laboratory, catalogue, "bvh", ways_of_bvh(peer))};
-}
+/// With what rows of a single switch began in results of a former version.
+const std::string former_but = "and ";
 
 /// The ratios of one search in one dimension.
 class Ratios {
  public:
-  Ratios(const Table& table, int dimension) : table_(table), column_(ratio_in(dimension)) {}
+  Ratios(const Table& table, int dimension) : table_(table), column_(ablation_ratio(dimension)) {}
 
   /// The time over that of the library's. Throws std::invalid_argument if the table lacks it.
   double of(const std::string& search) const { return table_.where("search", search).number(column_); }
@@ -172,53 +68,158 @@ std::string figure_name(std::string text) {
   return text;
 }
 
+/// A ratio whose interval is known where both of its parts' are: as wide as they allow.
+struct Bounded {
+  double value = 0;
+  std::optional<Interval> interval{};
+
+  Figure figure(std::string name) const { return {std::move(name), value, "", interval}; }
+};
+
+/// By the table of shares, in which both ratios are of the same rounds; results of a former version have
+/// none.
+std::optional<Bounded> measured_share(const Table& row, const std::string& column) {
+  const std::vector<double> value = row.numbers(column);
+  if (value.empty()) return std::nullopt;
+  const std::vector<double> low = row.numbers(column + " low");
+  const std::vector<double> high = row.numbers(column + " high");
+  if (low.empty() || high.empty()) return Bounded{value[0]};
+  return Bounded{value[0], Interval{low[0], high[0]}};
+}
+
+Bounded quotient(const Figure& a, const Figure& b) {
+  Bounded all{a.value / b.value};
+  if (a.interval && b.interval)
+    all.interval = Interval{a.interval->low / b.interval->high, a.interval->high / b.interval->low};
+  return all;
+}
+
+/// Gains multiply, so that their shares are of logarithms.
+Bounded share_of(const Figure& part, const Figure& whole) {
+  Bounded share{std::log(part.value) / std::log(whole.value)};
+  if (part.interval && whole.interval && whole.interval->low > 1)
+    share.interval = Interval{std::log(part.interval->low) / std::log(whole.interval->high),
+                              std::log(part.interval->high) / std::log(whole.interval->low)};
+  return share;
+}
+
+/// The rows of a search in the table of shares, if there is one.
+Table shares_of(const std::vector<Table>& tables, const std::string& own, const std::string& scene,
+                int dimension) {
+  const auto found = std::ranges::find(tables, std::string("shares"), &Table::name);
+  const Table shares = found == tables.end() ? table_of_shares() : *found;
+  return shares.where("search", own).where("scene", scene).where("dimension", fmt::format("{}D", dimension));
+}
+
+/// Most of the gain.
+constexpr double most = 0.5;
+
+/// What became of the claim in one search, on one scene and in one dimension.
+struct Part {
+  std::string text;
+  std::optional<Interval> share{};
+
+  bool is_most() const { return share && share->low > most; }
+  bool is_less() const { return share && share->high < most; }
+};
+
+void judge_search(const std::vector<Table>& tables, const std::string& own, const std::string& scene,
+                  Finding& finding, Statement& simd, std::vector<Part>& parts,
+                  std::vector<std::string>& reasons) {
+  const Table& table = table_named(tables, ablation_table(own, scene));
+  for (const int dimension : {2, 3}) {
+    const Ratios ratios(table, dimension);
+    const std::string prefix = fmt::format("{}_{}d_", table.name, dimension);
+    const Figure without_simd = ratios.figure(prefix + "without_simd", ratios.without_simd());
+    const Figure without_all = ratios.figure(prefix + "without_all", ablation_nothing);
+    const Figure written_plainly = ratios.figure(prefix + "plain", ablation_plain);
+    if (!(without_all.value > 1))
+      throw std::invalid_argument(
+          fmt::format("table '{}': {} it takes {} times as long in {}D; expected more than 1", table.name,
+                      ablation_nothing, without_all.value, dimension));
+    const Table shares = shares_of(tables, own, scene, dimension);
+    const Bounded share = measured_share(shares, simd_share).value_or(share_of(without_simd, without_all));
+    const Bounded rest =
+        measured_share(shares, rest_share)
+            .value_or(share_of(quotient(without_all, written_plainly).figure(""), without_all));
+    append(finding.figures,
+           {without_simd, written_plainly, without_all, share.figure(prefix + "share_of_simd"),
+            rest.figure(prefix + "share_of_the_rest"),
+            quotient(written_plainly, without_simd).figure(prefix + "plain_over_without_simd"),
+            quotient(without_all, written_plainly).figure(prefix + "without_all_over_plain")});
+    for (const std::string& beginning : {ablation_but, former_but}) {
+      for (const std::string& text : ratios.that_begin_with(beginning))
+        finding.figures.push_back(quotient(ratios.figure("", text), written_plainly)
+                                      .figure(prefix + "but_" + figure_name(text.substr(beginning.size()))));
+    }
+    const std::string search = fmt::format("{} on {} boxes in {}D", own, scene, dimension);
+    std::string reason = fmt::format(
+        "{} takes {:.1f} times as long without SIMD, {:.1f} times written plainly and {:.1f} times {}",
+        search, without_simd.value, written_plainly.value, without_all.value, ablation_nothing);
+    if (ratios.has(ablation_peer)) {
+      const Figure boost = ratios.figure(prefix + "boost", ablation_peer);
+      const auto over = [&](const std::string& column, const Figure& other) {
+        return measured_share(shares, column).value_or(quotient(boost, other));
+      };
+      append(finding.figures,
+             {boost, over(peer_over_without_simd, without_simd).figure(prefix + "boost_over_without_simd"),
+              over(peer_over_without_all, without_all).figure(prefix + "boost_over_without_all")});
+      reason += fmt::format(", Boost's tree {:.1f} times", boost.value);
+    }
+    reasons.push_back(std::move(reason));
+    simd.evidence.push_back(prefix + "share_of_simd");
+    parts.push_back({search, share.interval});
+  }
+}
+
+std::string names_of(const std::vector<Part>& parts, bool (Part::*is)() const) {
+  std::vector<std::string> names;
+  for (const Part& part : parts) {
+    if ((part.*is)()) names.push_back(part.text);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 Finding judge(const std::vector<Table>& tables) {
   Finding finding;
-  Statement simd{.name = "simd", .text = "most of what these searches gain, they gain by SIMD"};
+  Statement simd{.name = "simd",
+                 .text = "most of what these searches gain, they gain by SIMD",
+                 .threshold = fmt::format("the interval of SIMD's share of the whole gain, by logarithms, is "
+                                          "above {}",
+                                          most)};
   std::vector<std::string> reasons;
-  std::vector<std::string> mostly_simd;
-  for (const std::string& own : {std::string("grid"), std::string("bvh")}) {
-    const Table& table = table_named(tables, own);
-    for (const int dimension : {2, 3}) {
-      const Ratios ratios(table, dimension);
-      const double without_simd = ratios.of(ratios.without_simd());
-      const double without_all = ratios.of(nothing);
-      if (!(without_all > 1))
-        throw std::invalid_argument(
-            fmt::format("table '{}': {} it takes {} times as long in {}D; expected more than 1", own, nothing,
-                        without_all, dimension));
-      // Gains multiply, so that their shares are of logarithms.
-      const double share = std::log(without_simd) / std::log(without_all);
-      const std::string search = fmt::format("{} in {}D", own, dimension);
-      const std::string prefix = fmt::format("{}_{}d_", own, dimension);
-      append(finding.figures,
-             {ratios.figure(prefix + "without_simd", ratios.without_simd()),
-              ratios.figure(prefix + "plain", plain), ratios.figure(prefix + "without_all", nothing),
-              Figure{prefix + "share_of_simd", share}});
-      for (const std::string& text : ratios.that_begin_with("and "))
-        finding.figures.push_back({prefix + figure_name(text), ratios.of(text) / ratios.of(plain)});
-      std::string reason = fmt::format("{} takes {:.1f} times as long without SIMD and {:.1f} times {}",
-                                       search, without_simd, without_all, nothing);
-      if (ratios.has(simple_peer)) {
-        append(finding.figures,
-               {ratios.figure(prefix + "boost", simple_peer),
-                Figure{prefix + "boost_over_without_simd", ratios.of(simple_peer) / without_simd},
-                Figure{prefix + "boost_over_without_all", ratios.of(simple_peer) / without_all}});
-        reason += fmt::format(", Boost's tree {:.1f} times", ratios.of(simple_peer));
-      }
-      reasons.push_back(std::move(reason));
-      simd.evidence.push_back(prefix + "share_of_simd");
-      if (share > 0.5) mostly_simd.push_back(search);
+  std::vector<Part> parts;
+  for (const std::string& scene : ablation_scenes) {
+    for (const std::string& own : {std::string("grid"), std::string("bvh")}) {
+      // Results of a former version have one scene.
+      const bool is_there =
+          std::ranges::find(tables, ablation_table(own, scene), &Table::name) != tables.end();
+      if (scene == ablation_scenes[0] || is_there)
+        judge_search(tables, own, scene, finding, simd, parts, reasons);
     }
   }
-  if (mostly_simd.size() == reasons.size()) {
+  const auto how_many = [&](bool (Part::*is)() const) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(parts, [is](const Part& part) { return (part.*is)(); }));
+  };
+  const std::size_t confirmed = how_many(&Part::is_most);
+  const std::size_t refuted = how_many(&Part::is_less);
+  if (confirmed == parts.size()) {
     simd.verdict = Verdict::confirmed;
-  } else if (!mostly_simd.empty()) {
+  } else if (confirmed > 0) {
     simd.verdict = Verdict::within_bounds;
-    simd.condition = fmt::format("it is {}", fmt::join(mostly_simd, " or "));
+    simd.condition = fmt::format("it is {}", names_of(parts, &Part::is_most));
+    if (refuted > 0) simd.condition += fmt::format("; not {}", names_of(parts, &Part::is_less));
+    if (confirmed + refuted < parts.size()) simd.condition += "; the others are open";
+  } else if (refuted == 0) {
+    simd.verdict = Verdict::not_testable;
+    simd.condition = "each interval holds one half";
   }
   finding.statements = {simd};
-  finding.reason = fmt::format("On uniform boxes, {}.", fmt::join(reasons, "; "));
+  finding.figures.push_back({"confirmed_in", static_cast<double>(confirmed)});
+  finding.figures.push_back({"refuted_in", static_cast<double>(refuted)});
+  finding.figures.push_back({"parts", static_cast<double>(parts.size())});
+  finding.reason = fmt::format("{}.", fmt::join(reasons, "; "));
   return finding;
 }
 
@@ -234,10 +235,12 @@ Experiment ablation() {
           .section = "beyond",
           .measured =
               "grid and bvh with each instruction set that the processor has; the same algorithms written "
-              "plainly, without SIMD, and then without one more thing each, and without all of them: the "
+              "once more, plainly and without SIMD, then without one thing each, the others left in, and "
+              "without all of them: the "
               "memory layout, output without branches, sorting by buckets, carrying boxes on (or joining "
-              "the tree with itself), and choosing by a sample. Beside them Boost's R-tree.",
-          .measure = measure,
+              "the tree with itself), and choosing by a sample. Beside them Boost's R-tree. On uniform and "
+              "on clustered boxes.",
+          .measure = measure_ablation,
           .judge = judge};
 }
 

@@ -25,6 +25,9 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   return {table};
 }
 
+/// How far an exponent may be from the one that is claimed.
+constexpr double about = 0.2;
+
 Finding judge(const std::vector<Table>& tables) {
   const Table& table = table_named(tables, "tests");
   std::size_t exact = 0;
@@ -48,7 +51,8 @@ Finding judge(const std::vector<Table>& tables) {
        .evidence = {"share_of_all_pairs"}},
       {.name = "quadratic",
        .text = "with unique pairs, too, the running time is quadratic",
-       .verdict = growth > 1.8 && growth < 2.2 ? Verdict::confirmed : Verdict::refuted,
+       .verdict = std::abs(growth - 2) < about ? Verdict::confirmed : Verdict::refuted,
+       .threshold = fmt::format("time grows as n to the power 2, give or take {}", about),
        .evidence = {"growth"}}};
   finding.reason = fmt::format(
       "{} of {} numbers of boxes took exactly n (n - 1) / 2 tests; with {} boxes that is {:.4f} of n^2, and "

@@ -49,6 +49,7 @@ struct Statement {
   std::string text;  ///< what the claim says here, in short
   Verdict verdict = Verdict::refuted;
   std::string condition{};              ///< of within_bounds: where it is true; of not_testable: why
+  std::string threshold{};              ///< what was asked of the figures; empty: of not_testable
   std::vector<std::string> evidence{};  ///< the names of the figures that decided
 
   friend bool operator==(const Statement&, const Statement&) = default;

@@ -169,7 +169,8 @@ Finding judge(const std::vector<Table>& tables) {
   // Memory that did not explode would go with the boxes, whose number is fixed: a growth of 0. What is left
   // of the purpose is gone where a box is tested against twice as many.
   const bool explodes = matrix.growth > 1 && matrix.cell_bytes > 0;
-  const bool is_defeated = capped.tests_growth > 2;
+  constexpr double gone = 2;
+  const bool is_defeated = capped.tests_growth > gone;
   // 16 GB, as in a usual computer.
   const double full = matrix.cell_bytes > 0 ? std::sqrt(16e9 / matrix.cell_bytes) : 0;
   const double printed_bytes = std::max(0.0, matrix.cell_bytes * printed);
@@ -187,6 +188,7 @@ Finding judge(const std::vector<Table>& tables) {
       {.name = "purpose",
        .text = "cells that grow with the world defeat the purpose of small collections",
        .verdict = is_defeated ? Verdict::confirmed : Verdict::refuted,
+       .threshold = fmt::format("a box is tested more than {} times as often in the largest world", gone),
        .evidence = {"capped_tests_growth"}}};
   finding.reason = fmt::format(
       "Memory grows with the side of the world to the power {:.2f}, {:.1f} bytes a cell: a world {} cells "

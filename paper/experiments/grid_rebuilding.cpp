@@ -1,6 +1,7 @@
 // Section VI-B: where most boxes move, a grid is rebuilt faster than they are reinserted into it.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -95,6 +96,7 @@ struct Race {
   RatioAt frame_at_all{};
   double looks = 0;  ///< entries looked at, likewise
 
+  double time() const { return at_all.ratio; }
   double from() const { return crossing.at.value_or(200); }
 };
 
@@ -121,6 +123,22 @@ constexpr double two = 2;
 /// What lies closer to it than this is two.
 constexpr double about = 0.2;
 
+/// The verdict on a statement that something is twice as much where all boxes move.
+template <typename Value>
+Statement judge_two(const std::vector<Race>& races, Statement statement, const Value& value) {
+  std::vector<std::string> names;
+  for (const Race& race : races) {
+    if (std::abs(std::invoke(value, race) - two) <= about) names.push_back(race.name);
+  }
+  if (names.size() == races.size()) {
+    statement.verdict = Verdict::confirmed;
+  } else if (!names.empty()) {
+    statement.verdict = Verdict::within_bounds;
+    statement.condition = fmt::format("there are {}", fmt::join(names, " or "));
+  }
+  return statement;
+}
+
 Finding judge(const std::vector<Table>& tables) {
   const Table& table = table_named(tables, "times");
   std::vector<Race> races;
@@ -136,29 +154,31 @@ Finding judge(const std::vector<Table>& tables) {
   Finding finding;
   Statement rebuilding{.name = "rebuilding",
                        .text = "where most objects move, rebuilding is faster than reinserting",
+                       .threshold = fmt::format("it is faster wherever more than {:.0f} % move", most),
                        .evidence = {"earliest_crossover", "latest_crossover"}};
   if (last->from() <= most) {
     rebuilding.verdict = Verdict::confirmed;
   } else if (last->from() <= 100) {
     rebuilding.verdict = Verdict::within_bounds;
-    rebuilding.condition = fmt::format("more than {:.0f} % of the boxes move", last->from());
+    std::vector<std::string> bounds;
+    for (const Race& race : races) bounds.push_back(fmt::format("{:.0f} % of {}", race.from(), race.name));
+    rebuilding.condition = fmt::format("more of the boxes move than {}", fmt::join(bounds, ", "));
   }
-  Statement hashes{.name = "two_hashes",
-                   .text = "since reinserting takes two hashes and rebuilding one, twice as much work",
-                   .evidence = {"least_entries_ratio_where_all_move", "greatest_entries_ratio_where_all_move",
-                                "least_ratio_where_all_move", "greatest_ratio_where_all_move"}};
-  const auto is_two = [](const Race& race) { return std::abs(race.looks - two) <= about; };
-  if (std::ranges::all_of(races, is_two)) {
-    hashes.verdict = Verdict::confirmed;
-  } else if (std::ranges::any_of(races, is_two)) {
-    std::vector<std::string> names;
-    for (const Race& race : races) {
-      if (is_two(race)) names.push_back(race.name);
-    }
-    hashes.verdict = Verdict::within_bounds;
-    hashes.condition = fmt::format("there are {}", fmt::join(names, " or "));
-  }
-  finding.statements = {rebuilding, hashes};
+  const Statement work =
+      judge_two(races,
+                {.name = "two_hashes",
+                 .text = "since reinserting takes two hashes and rebuilding one, twice as much work",
+                 .threshold = fmt::format("{} times the entries looked at, give or take {}", two, about),
+                 .evidence = {"least_entries_ratio_where_all_move", "greatest_entries_ratio_where_all_move"}},
+                &Race::looks);
+  const Statement time =
+      judge_two(races,
+                {.name = "two_hashes_time",
+                 .text = "and so twice the time",
+                 .threshold = fmt::format("{} times the time, give or take {}", two, about),
+                 .evidence = {"least_ratio_where_all_move", "greatest_ratio_where_all_move"}},
+                &Race::time);
+  finding.statements = {rebuilding, work, time};
   finding.reason = fmt::format(
       "Building all cells anew is faster than reinserting from {:.0f} % moving boxes on ({}) at the earliest "
       "and {} at the latest. Where all move, reinserting takes {:.2f} ({}) to {:.2f} times ({}) as long, and "

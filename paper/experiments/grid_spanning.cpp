@@ -82,13 +82,19 @@ std::string shares_text(const Table& smallest, const std::string& share) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// References over width times height: up to the first they are as many, up to the second nearly.
+constexpr double exactly = 1.02;
+constexpr double nearly = 1.25;
+
 Finding judge(const std::vector<Table>& tables) {
   const Table& shares = table_named(tables, "shares");
   const Table smallest = of_smallest_cells(shares);
   const std::optional<double> kept = limit_of(smallest, "adding");
   const std::optional<double> fresh = limit_of(smallest, "adding to new cells");
 
-  Statement adding{.name = "adding", .text = "then most of the time is spent in adding references"};
+  Statement adding{.name = "adding",
+                   .text = "then most of the time is spent in adding references",
+                   .threshold = "adding takes more than half of the time"};
   for (const double neighbours : smallest.numbers("neighbours"))
     append(adding.evidence, {fmt::format("adding_with_{:.0f}_neighbours", neighbours),
                              fmt::format("adding_to_new_cells_with_{:.0f}_neighbours", neighbours)});
@@ -113,12 +119,14 @@ Finding judge(const std::vector<Table>& tables) {
   const double over_product = of_longest / (longest * longest);
 
   Finding finding;
-  Statement slots{.name = "slots",
-                  .text = "a box has a reference in its width times its height of cells",
-                  .evidence = {"references_over_product"}};
-  if (over_product < 1.02) {
+  Statement slots{
+      .name = "slots",
+      .text = "a box has a reference in its width times its height of cells",
+      .threshold = fmt::format("at most {} times as many; up to {} times within bounds", exactly, nearly),
+      .evidence = {"references_over_product"}};
+  if (over_product < exactly) {
     slots.verdict = Verdict::confirmed;
-  } else if (over_product < 1.25) {
+  } else if (over_product < nearly) {
     slots.verdict = Verdict::within_bounds;
     slots.condition = fmt::format(
         "boxes are much longer than cells; {} cells long they are in {:.2f} times as many "

@@ -115,7 +115,8 @@ std::vector<Table> measure(const Laboratory& laboratory) {
 /// One way of moving, from the boxes of fewest cells to those of most.
 struct Line {
   std::vector<RatioAt> gains;  ///< by cells a box: reinserting over translating
-  Crossing from{};             ///< cells a box from which on translating stays faster
+  Crossing from{};             ///< cells a box from which on translating stays faster by the margin
+  Crossing even{};             ///< likewise by anything
 
   const RatioAt& single() const { return gains.front(); }
   const RatioAt& most() const { return gains.back(); }
@@ -124,6 +125,7 @@ struct Line {
 Line line_of(const Table& table, const std::string& step) {
   Line line{.gains = ratios_over(table.where("step", step), "cells a box", "reinserting over translating")};
   line.from = rises_above(1 + margin, line.gains);
+  line.even = rises_above(1, line.gains);
   return line;
 }
 
@@ -160,10 +162,16 @@ Finding judge(const std::vector<Table>& tables) {
   Statement translating{.name = "translating",
                         .text = "translating can be faster than reinserting if the object spans many cells",
                         .verdict = wins_large ? Verdict::confirmed : Verdict::refuted,
+                        .threshold = fmt::format("with steps of a cell, and boxes in the most cells, more "
+                                                 "than {:.0f} % faster",
+                                                 100 * margin),
                         .evidence = {"most_cells_step_of_a_cell", "most_cells_small_step"}};
   if (wins_large) translating.evidence.emplace_back("translating_wins_from");
   Statement single{.name = "single_cell",
                    .text = "in a single cell reinserting is always faster",
+                   .threshold = fmt::format("with boxes in the fewest cells, more than {:.0f} % faster, "
+                                            "whatever the step",
+                                            100 * margin),
                    .evidence = {"single_cell_step_of_a_cell", "single_cell_small_step"}};
   const auto loses = [](const RatioAt& at) { return at.ratio < 1 / (1 + margin); };
   if (loses(whole.single()) && loses(small.single())) {
@@ -175,6 +183,7 @@ Finding judge(const std::vector<Table>& tables) {
   Statement offset{.name = "offset",
                    .text = "a change greater than the offset tells that a cell is left",
                    .verdict = wrong == 0 ? Verdict::confirmed : Verdict::refuted,
+                   .threshold = "it is right about each end of a box that moved",
                    .evidence = {"rule_is_wrong"}};
   finding.statements = {translating, single, offset};
   const std::string from = wins_large
@@ -206,6 +215,11 @@ Finding judge(const std::vector<Table>& tables) {
   if (wins_large)
     finding.figures.push_back(
         {"translating_wins_from", *whole.from.at, "cells", whole.from.interval(whole.most().x)});
+  if (whole.even.at)
+    finding.figures.push_back(
+        {"translating_is_even_from", *whole.even.at, "cells", whole.even.interval(whole.most().x)});
+  const RatioAt least_small = std::ranges::min(small.gains, {}, &RatioAt::ratio);
+  finding.figures.push_back(ratio("least_gain_small_step", least_small));
   return finding;
 }
 

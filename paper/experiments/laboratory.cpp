@@ -58,8 +58,8 @@ CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene
 }
 
 CaseResult Laboratory::measure(const Catalogue& catalogue, const std::string& algorithms,
-                               const CaseRequest& request) const {
-  return measure(catalogue, algorithms, request, effort(), CompareOptions{}.find);
+                               const CaseRequest& request, const Effort& effort) const {
+  return measure(catalogue, algorithms, request, effort, CompareOptions{}.find);
 }
 
 CaseResult Laboratory::measure(const Catalogue& catalogue, const std::string& algorithms,

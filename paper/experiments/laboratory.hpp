@@ -51,8 +51,8 @@ class Laboratory {
   CaseResult measure(const std::string& algorithms, const Scene& scene, const CaseRequest& request) const;
 
   /// The same of algorithms of the experiment's own.
-  CaseResult measure(const Catalogue& catalogue, const std::string& algorithms,
-                     const CaseRequest& request) const;
+  CaseResult measure(const Catalogue& catalogue, const std::string& algorithms, const CaseRequest& request,
+                     const Effort& effort) const;
 
   /// How steady everything was that it has measured until now.
   const Steadiness& steadiness() const noexcept { return steadiness_; }

@@ -124,7 +124,8 @@ Finding judge(const std::vector<Table>& tables) {
   const std::vector<Density> listed = densities(paper, usual_capacity);
   const std::vector<Density> owned = densities(table_named(tables, "own"), own_capacity);
 
-  // A world is dense where a box's references are at least twice those in the sparsest one.
+  // A world is dense where a box has so many times the references that it has in the sparsest one.
+  constexpr double dense_times = 2;
   std::size_t dense = 0;
   std::size_t slowed_dense = 0;
   std::vector<double> slowed;
@@ -135,7 +136,7 @@ Finding judge(const std::vector<Table>& tables) {
         density.best_capacity > usual_capacity && density.best_references < density.usual_references;
     const bool is_slowed = density.penalty.ratio >= notable && is_alleviated;
     if (is_slowed) slowed.push_back(density.neighbours);
-    if (density.usual_references < 2 * listed.front().usual_references) continue;
+    if (density.usual_references < dense_times * listed.front().usual_references) continue;
     ++dense;
     slowed_dense += is_slowed ? 1 : 0;
   }
@@ -143,22 +144,28 @@ Finding judge(const std::vector<Table>& tables) {
   for (const Density& density : owned) own_worst = std::max(own_worst, density.penalty.ratio);
 
   Finding finding;
-  Statement larger{.name = "larger_leaves",
-                   .text = "these slow it down, and larger leaves alleviate that",
-                   .verdict = slowed_dense == 0       ? Verdict::refuted
-                              : slowed_dense == dense ? Verdict::confirmed
-                                                      : Verdict::within_bounds,
-                   .evidence = {"worst_time_over_best", "time_over_best_in_densest"}};
+  Statement larger{
+      .name = "larger_leaves",
+      .text = "these slow it down, and larger leaves alleviate that",
+      .verdict = slowed_dense == 0       ? Verdict::refuted
+                 : slowed_dense == dense ? Verdict::confirmed
+                                         : Verdict::within_bounds,
+      .threshold = fmt::format("in dense worlds leaves of {} take {} times the time of the best, "
+                               "or more, and the best are larger and have fewer references",
+                               usual_capacity, notable),
+      .evidence = {"worst_time_over_best", "time_over_best_in_densest"}};
   if (larger.verdict == Verdict::within_bounds) {
     larger.condition =
         fmt::format("a box overlaps from {} to {} others; beyond, the pairs themselves take the time",
                     slowed.front(), slowed.back());
   }
-  finding.statements = {{.name = "references",
-                         .text = "in a dense world a box has references in numerous nodes",
-                         .verdict = dense > 0 ? Verdict::confirmed : Verdict::refuted,
-                         .evidence = {"references_in_sparsest", "references_in_densest"}},
-                        larger};
+  finding.statements = {
+      {.name = "references",
+       .text = "in a dense world a box has references in numerous nodes",
+       .verdict = dense > 0 ? Verdict::confirmed : Verdict::refuted,
+       .threshold = fmt::format("{} times the references of the sparsest world, or more", dense_times),
+       .evidence = {"references_in_sparsest", "references_in_densest"}},
+      larger};
   const Density& sparsest = listed.front();
   const Density& densest = listed.back();
   constexpr double margin = 100 * (as_good - 1);

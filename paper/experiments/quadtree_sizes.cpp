@@ -173,6 +173,14 @@ double doubling_size(const Table& sizes) {
   return points.back().first;
 }
 
+/// Fourfold a level is what a box comes to that covers whole nodes; a box of a leaf's size stays well below.
+constexpr double suits = 2.5;
+constexpr double least_fourfold = 3;
+constexpr double most_fourfold = 4.05;
+
+/// So many times the references are a burden.
+constexpr double burden = 2;
+
 Finding judge(const std::vector<Table>& tables) {
   const Table& levels = table_named(tables, "levels");
   const Table& sizes = table_named(tables, "sizes");
@@ -203,22 +211,27 @@ Finding judge(const std::vector<Table>& tables) {
       sizes.where("algorithm", listing).numbers("pairs a box").empty())
     throw std::invalid_argument("table 'sizes' has no sizes or no pairs a box; expected both");
 
-  // Fourfold is what a box comes to that covers whole nodes; a box of a leaf's size must stay well below.
-  const bool is_fourfold = largest_factor > 3 && largest_factor < 4.05;
-  const bool is_burden = references >= 2;
+  const bool is_fourfold = largest_factor > least_fourfold && largest_factor < most_fourfold;
+  const bool is_burden = references >= burden;
   Finding finding;
   finding.statements = {{.name = "unit_size",
                          .text = "boxes of a unit size suit the tree",
-                         .verdict = unit_factor < 2.5 ? Verdict::confirmed : Verdict::refuted,
+                         .verdict = unit_factor < suits ? Verdict::confirmed : Verdict::refuted,
+                         .threshold = fmt::format("with a level more, a box of a unit or less is in fewer "
+                                                  "than {} times as many leaves",
+                                                  suits),
                          .evidence = {"factor_a_level_of_small_boxes"}},
                         {.name = "fourfold",
                          .text = "large boxes propagate up to fourfold with each level",
                          .verdict = is_fourfold ? Verdict::confirmed : Verdict::refuted,
+                         .threshold = fmt::format("{} to {} times as many leaves a level, at most",
+                                                  least_fourfold, most_fourfold),
                          .evidence = {"factor_a_level"}},
                         {.name = "book_keeping",
                          .text = "that adds unnecessary book keeping",
                          .verdict = is_burden ? Verdict::confirmed : Verdict::within_bounds,
                          .condition = is_burden ? "" : "more than one box in a hundred is large",
+                         .threshold = fmt::format("the references grow {} times, or more", burden),
                          .evidence = {"references_growth", "own_references_growth", "time_growth"}}};
   finding.reason = fmt::format(
       "With each level a large box is in up to {:.2f} times as many leaves, one of a unit or less in up to "

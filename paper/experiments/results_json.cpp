@@ -73,6 +73,7 @@ std::string json_text_of(const ExperimentResult& result) {
                           {"text", statement.text},
                           {"verdict", name(statement.verdict)},
                           {"condition", statement.condition},
+                          {"threshold", statement.threshold},
                           {"evidence", statement.evidence}});
   }
   Json head = {{"label", experiment.label()},   {"name", experiment.name},

@@ -155,6 +155,9 @@ std::vector<Table> measure(const Laboratory& laboratory) {
   return {measure_worlds(laboratory), measure_axes(laboratory), measure_growth(laboratory)};
 }
 
+/// What costs fewer times than this is taken to cost nothing.
+constexpr double much = 2;
+
 /// What a world without bounds costs against the same with bounds: the most of `algorithms`.
 struct Cost {
   double tests = 0;
@@ -162,7 +165,7 @@ struct Cost {
   double time = 0;
 
   /// Whether it does not grow with the world, which is a thousand times as wide and more.
-  bool is_none() const { return tests < 2 && memory < 2 && time < 2; }
+  bool is_none() const { return tests < much && memory < much && time < much; }
 };
 
 Cost cost(const Table& worlds, const std::vector<std::string>& algorithms, bool of_infinite) {
@@ -244,6 +247,8 @@ Finding judge(const std::vector<Table>& tables) {
                   : endless.is_none() ? Verdict::confirmed
                                       : Verdict::within_bounds,
        .condition = far.is_none() && !endless.is_none() ? "no box is infinite" : "",
+       .threshold =
+           fmt::format("tests, memory and time less than {} times those in a world with bounds", much),
        .evidence = {"tests_without_bounds", "time_without_bounds", "tests_of_infinite_boxes"}},
       {.name = "one_axis",
        .text = "only one axis has been chosen, the x axis",

@@ -158,6 +158,9 @@ Finding judge(const std::vector<Table>& tables) {
   const auto grows = [&growth](const std::string& world, std::string_view column) {
     return growth_of(growth.where("world", world).points("boxes", column));
   };
+  const auto fit = [&growth](const std::string& world) {
+    return growth_interval_of(growth.where("world", world).points("boxes", "places moved"));
+  };
   const double in_corridor = grows(corridor, "places moved");
   const double in_plane = grows(plane, "places moved");
   const double in_space = grows(space, "places moved");
@@ -178,15 +181,18 @@ Finding judge(const std::vector<Table>& tables) {
   Finding finding;
   Statement linear_time{.name = "linear",
                         .text = "insertion sort mends an order that is nearly kept in O(n)",
+                        .threshold = fmt::format("places moved grow as n to the power {} at most", linear),
                         .evidence = {"growth_in_corridor", "growth_in_plane", "growth_in_space"}};
   if (in_plane <= linear && in_space <= linear && in_corridor <= linear) {
     linear_time.verdict = Verdict::confirmed;
   } else if (in_corridor <= linear) {
     linear_time.verdict = Verdict::within_bounds;
-    linear_time.condition = "a box passes as many others a frame, however many boxes there are";
+    linear_time.condition =
+        "the number of others that a box passes in a frame does not grow with the number of boxes";
   }
   Statement improved{.name = "improved",
                      .text = "that improves on keeping the objects in a heap",
+                     .threshold = "a frame takes less time than by a heap, beyond noise",
                      .evidence = {"least_frame_over_heap", "most_frame_over_heap"}};
   const Crossing lost = rises_above(1, over_heap);
   if (std::ranges::none_of(over_heap, [](const RatioAt& at) { return at.is_above(1); }) &&
@@ -215,9 +221,9 @@ Finding judge(const std::vector<Table>& tables) {
     return Figure{name, at.ratio, "", at.interval};
   };
   append(finding.figures,
-         {{"growth_in_corridor", in_corridor},
-          {"growth_in_plane", in_plane},
-          {"growth_in_space", in_space},
+         {{"growth_in_corridor", in_corridor, "", fit(corridor)},
+          {"growth_in_plane", in_plane, "", fit(plane)},
+          {"growth_in_space", in_space, "", fit(space)},
           {"time_growth_in_corridor", grows(corridor, "insertion")},
           {"time_growth_in_plane", grows(plane, "insertion")},
           {"time_growth_in_space", grows(space, "insertion")},

@@ -169,6 +169,7 @@ Finding judge(const std::vector<Table>& tables) {
       {.name = "bound",
        .text = "so k reinsertions take O(k lg n) in the worst case",
        .verdict = boxes_beyond_logarithm(far_work) ? Verdict::refuted : Verdict::confirmed,
+       .threshold = "comparisons and places moved, together, stay below twice what lg n predicts",
        .evidence = {"work_growth_anywhere", "work_growth_nearby", "places_moved_anywhere",
                     "time_over_logarithm"}},
       {.name = "heap",

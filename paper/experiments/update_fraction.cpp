@@ -182,7 +182,12 @@ void judge_limits(const std::vector<Limit>& limits, Statement& statement) {
 /// Whether it costs less to know what changed, in each way, and to mend that, than to build the structure
 /// anew.
 Statement judge_detection(const Table& table, std::vector<Figure>& figures) {
-  Statement statement{.name = "detection", .text = "a flag, or a previous state, tells what changed"};
+  Statement statement{
+      .name = "detection",
+      .text = "a flag, or a previous state, tells what changed",
+      .threshold = fmt::format("where {:.0f} % move, detecting and mending take less time than "
+                               "building, beyond noise",
+                               100 * few)};
   std::vector<std::string> paying;
   for (const std::string& detect : detections) {
     const Table rows = table.where("detection", detect);
@@ -227,14 +232,17 @@ Finding judge(const std::vector<Table>& tables) {
 
   Finding finding;
   Statement structure{.name = "structure",
-                      .text = "where only a subset changed, the collection need not be rebuilt"};
+                      .text = "where only a subset changed, the collection need not be rebuilt",
+                      .threshold = "the fastest way of mending takes less time than building"};
   Statement frame{.name = "frames",
-                  .text = "so whole frames, with the search of all that was kept, take less time"};
+                  .text = "so whole frames, with the search of all that was kept, take less time",
+                  .threshold = "a frame by the fastest way takes less time than one that builds anew"};
   Statement reinsertion{
       .name = "search_delete_reinsert",
       .text =
           "all of this can be done by searching, deleting and reinserting the object (with one "
           "search for all that moved, erratum T10)",
+      .threshold = "that takes less time than building",
       .evidence = {"search_pays_up_to", "search_gain_where_fewest_move"}};
   judge_limits(mending, structure);
   judge_limits(frames, frame);

@@ -89,16 +89,6 @@ std::vector<Record> records_of(const Table& fields) {
   return records;
 }
 
-/// Whether auto lost less, in the mean over these fields, than each single algorithm that was in all of them.
-bool loses_least(const std::vector<Record>& records, std::vector<double> Record::*fields) {
-  const std::vector<double>& of_auto = records[0].*fields;
-  return !of_auto.empty() &&
-         std::ranges::all_of(records.begin() + 1, records.end(), [&](const Record& other) {
-           return (other.*fields).size() < of_auto.size() ||
-                  geometric_mean(of_auto) < geometric_mean(other.*fields);
-         });
-}
-
 /// In the fields that the BVH wins, the time of the best of the others over the BVH's.
 std::vector<double> bvh_gains(const Table& fields) {
   const std::vector<std::string> names = single_algorithms_in(fields);
@@ -169,6 +159,66 @@ Interval interval_of_mean(const std::vector<double>& ratios) {
   return middle_of(means);
 }
 
+/// Auto against the best single algorithm of those that were in all of some fields.
+struct Choice {
+  double automatic = 0;  ///< times over the fastest, the geometric mean
+  double automatic_worst = 0;
+  std::string single{};  ///< empty where there is none
+  double single_mean = 0;
+  double single_worst = 0;
+  double over = 0;  ///< auto's over the single one's, field by field
+  Interval over_interval{};
+
+  bool is_better() const { return !single.empty() && over_interval.high < 1; }
+};
+
+Choice choice_of(const std::vector<Record>& records, std::vector<double> Record::*fields) {
+  Choice choice;
+  const std::vector<double>& of_auto = records[0].*fields;
+  if (of_auto.empty()) return choice;
+  choice.automatic = geometric_mean(of_auto);
+  choice.automatic_worst = std::ranges::max(of_auto);
+  for (const Record& record : std::span(records).subspan(1)) {
+    const std::vector<double>& of_single = record.*fields;
+    if (of_single.size() < of_auto.size()) continue;
+    const double mean = geometric_mean(of_single);
+    if (!choice.single.empty() && mean >= choice.single_mean) continue;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < of_auto.size(); ++i) ratios.push_back(of_auto[i] / of_single[i]);
+    choice.single = record.name;
+    choice.single_mean = mean;
+    choice.single_worst = std::ranges::max(of_single);
+    choice.over = geometric_mean(ratios);
+    choice.over_interval = interval_of_mean(ratios);
+  }
+  return choice;
+}
+
+void add_choice(Finding& finding, const std::string& where, const Choice& choice, std::size_t fields) {
+  if (choice.single.empty()) return;
+  append(finding.figures, {{"fields_" + where, static_cast<double>(fields)},
+                           {"auto_mean_" + where, choice.automatic},
+                           {"auto_worst_" + where, choice.automatic_worst},
+                           {"single_mean_" + where, choice.single_mean},
+                           {"single_worst_" + where, choice.single_worst},
+                           {"auto_over_single_" + where, choice.over, "", choice.over_interval}});
+}
+
+/// In how many fields the second of the single algorithms took less than 1.05 times the time of the first.
+std::size_t near_ties(const Table& fields) {
+  constexpr double close = 1.05;
+  std::size_t ties = 0;
+  for (const std::vector<Cell>& row : fields.rows) {
+    std::vector<double> times;
+    for (const std::string& name : single_algorithms_in(fields)) {
+      if (const auto* const time = std::get_if<double>(&row[fields.column(name)])) times.push_back(*time);
+    }
+    std::ranges::sort(times);
+    ties += times.size() > 1 && times[1] < close * times[0] ? 1 : 0;
+  }
+  return ties;
+}
+
 /// Adds the geometric mean, the least and the greatest of some ratios, if there are any.
 void add_spread(Finding& finding, const std::string& name, const std::vector<double>& ratios) {
   if (ratios.empty()) return;
@@ -225,12 +275,17 @@ Finding judge(const std::vector<Table>& tables) {
     if (safest == nullptr || record.mean() < safest->mean()) safest = &record;
     any_everywhere_best = any_everywhere_best || record.worst() <= noise;
   }
-  const bool still = loses_least(records, &Record::still);
-  const bool moving = loses_least(records, &Record::moving);
+  const Choice at_rest = choice_of(records, &Record::still);
+  const Choice in_motion = choice_of(records, &Record::moving);
+  const bool still = at_rest.is_better();
+  const bool moving = in_motion.is_better();
 
   Finding finding;
   Statement choice{.name = "choosing",
                    .text = "looking at the boxes and choosing loses less than any single algorithm",
+                   .threshold =
+                       "auto's times over those of the best single algorithm, field by field: the "
+                       "interval of their mean is below 1",
                    .evidence = {"auto_mean", "auto_worst"}};
   if (still && moving) {
     choice.verdict = Verdict::confirmed;
@@ -239,11 +294,13 @@ Finding judge(const std::vector<Table>& tables) {
     choice.condition = still ? "the boxes stand still" : "boxes move";
   }
   if (safest != nullptr) append(choice.evidence, {"single_mean", "single_worst"});
-  finding.statements = {{.name = "no_best",
-                         .text = "no single algorithm is the fastest everywhere",
-                         .verdict = any_everywhere_best ? Verdict::refuted : Verdict::confirmed,
-                         .evidence = {}},
-                        choice};
+  finding.statements = {
+      {.name = "no_best",
+       .text = "no single algorithm is the fastest everywhere",
+       .verdict = any_everywhere_best ? Verdict::refuted : Verdict::confirmed,
+       .threshold = fmt::format("none stays within {} times the fastest in all fields", noise),
+       .evidence = {}},
+      choice};
   for (const Record& record : std::span(records).subspan(1)) {
     if (record.wins > 0) finding.statements[0].evidence.push_back("won_by_" + record.name);
   }
@@ -251,6 +308,7 @@ Finding judge(const std::vector<Table>& tables) {
       "Of {} fields the fastest was {}. Auto took {:.2f} times the fastest of ours in the geometric mean and "
       "{:.2f} times at worst ({})",
       fields.rows.size(), wins, automatic.mean(), automatic.worst(), automatic.worst_field);
+  std::vector<std::string> choice_evidence;
   finding.figures = {{"fields", static_cast<double>(fields.rows.size())},
                      {"most_boxes", std::ranges::max(fields.numbers("boxes")), "boxes"},
                      {"auto_mean", automatic.mean(), "", interval_of_mean(automatic.all)},
@@ -262,10 +320,13 @@ Finding judge(const std::vector<Table>& tables) {
     finding.figures.push_back({"single_worst", safest->worst()});
   }
   finding.reason += ".";
-  if (!automatic.still.empty())
-    finding.figures.push_back({"auto_mean_still", geometric_mean(automatic.still)});
-  if (!automatic.moving.empty())
-    finding.figures.push_back({"auto_mean_moving", geometric_mean(automatic.moving)});
+  add_choice(finding, "still", at_rest, automatic.still.size());
+  add_choice(finding, "moving", in_motion, automatic.moving.size());
+  for (const auto& [where, compared] : {std::pair("still", at_rest), std::pair("moving", in_motion)}) {
+    if (!compared.single.empty()) choice_evidence.push_back(fmt::format("auto_over_single_{}", where));
+  }
+  append(finding.statements[1].evidence, choice_evidence);
+  finding.figures.push_back({"near_ties", static_cast<double>(near_ties(fields))});
   for (const Record& record : std::span(records).subspan(1))
     finding.figures.push_back({"won_by_" + record.name, static_cast<double>(record.wins)});
   tell_parts(finding, tables);

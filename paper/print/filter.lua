@@ -10,10 +10,16 @@ local function anchor(element)
   if element.format == "html" then return {} end
 end
 
--- Other pages of the repository are not beside what is printed: their names stay.
+-- Other pages of the repository are not beside what is printed: where a name is a file's, its path there stands.
 local function link(element)
-  if element.target:match("^#") or element.target:match("^%a+:") then return nil end
-  return element.content
+  local target = element.target
+  if target:match("^#") or target:match("^%a+:") then return nil end
+  local path = target:gsub("#.*$", "")
+  if pandoc.utils.stringify(element.content) ~= path:match("[^/]*$") then return element.content end
+  if path:match("^%.%./%.%./") then path = path:sub(7)
+  elseif path:match("^%.%./") then path = "docs/" .. path:sub(4)
+  else path = "docs/paper/" .. path end
+  return pandoc.Str(path)
 end
 
 local function size_of(path)
@@ -63,7 +69,7 @@ local function tex_figures(figures)
       line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.82\\linewidth")
       i = i + 1
     end
-    table.insert(floats, pandoc.RawBlock("latex", "\\begin{figure}[tbp]\\centering " .. line .. "\\end{figure}"))
+    table.insert(floats, pandoc.RawBlock("latex", "\\begin{figure}[!htbp]\\centering " .. line .. "\\end{figure}"))
   end
   return floats
 end
@@ -97,6 +103,15 @@ local function tex_sources(list)
   return {pandoc.RawBlock("latex", "\\begingroup\\footnotesize"), list, pandoc.RawBlock("latex", "\\endgroup")}
 end
 
+-- A table that is not cut in two, with the title before it.
+local function captioned_table(title, block)
+  local caption = title and title.t == "Para" and #title.content == 1 and title.content[1].t == "Emph"
+  local table_there = block and block.t == "RawBlock" and block.text:match("^\\begin{center}")
+  if not caption or not table_there then return nil end
+  return pandoc.RawBlock("latex", "\\par\\medskip\\noindent\\begin{minipage}{\\linewidth}\\centering{\\footnotesize\\itshape " ..
+    tex(title.content[1].content) .. "\\par}" .. block.text .. "\\end{minipage}\\medskip")
+end
+
 local function is_sources(block)
   return block and block.t == "Header" and pandoc.utils.stringify(block) == "References"
 end
@@ -117,6 +132,9 @@ local function blocks_of(blocks)
     end
     if #figures > 0 then
       done:extend(latex and tex_figures(figures) or html_figures(figures))
+    elseif latex and captioned_table(blocks[i], blocks[i + 1]) then
+      done:insert(captioned_table(blocks[i], blocks[i + 1]))
+      i = i + 2
     elseif latex and is_title(blocks[i]) and blocks[i + 1] and blocks[i + 1].t == "CodeBlock" then
       done:insert(tex_listing(blocks[i], blocks[i + 1]))
       i = i + 2

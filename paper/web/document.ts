@@ -53,6 +53,8 @@ export function documentOf(sources: Sources): Document {
   if (unused.length > 0) throw new Problem(`no page quotes ${listed(unused)}; expected each on a page`);
   const uncited = paper.uncited();
   if (uncited.length > 0) throw new Problem(`nothing cites the source ${listed(uncited)}; expected every one cited`);
+  const unjudged = paper.unjudged();
+  if (unjudged.length > 0) throw new Problem(`no row is of the statement ${listed(unjudged)}; expected one of each`);
   const figures = paper.figureCount("paper.md");
   if (figures > mostFigures)
     throw new Problem(`paper.md: ${figures} figures; expected at most ${mostFigures}: move some to a supplement`);

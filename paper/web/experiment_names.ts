@@ -15,17 +15,28 @@ export function sectionText(section: string): string {
   return section === "beyond" ? "our own claim" : `section ${section}`;
 }
 
-/** What a statement says and what became of it, a line each. */
-export function statementsList({ statements }: Experiment): string {
-  return statements
-    .map((one) => `- *${plain(one.text)}*: ${outcome(one)}${one.condition === "" ? "" : `: ${plain(one.condition)}`}.`)
+/** What a statement says, what became of it, what was asked and the figures that decided, a line each. */
+export function statementsList(experiment: Experiment): string {
+  return experiment.statements
+    .map((one) => {
+      const asked = one.threshold ? ` Asked: ${plain(one.threshold)}.` : "";
+      const evidence = one.evidence.map((name) => plain(evidenceText(experiment, name))).join("; ");
+      const condition = one.condition === "" ? "" : `: ${plain(one.condition)}`;
+      return `- *${plain(one.text)}*: ${outcome(one)}${condition}.${asked}${evidence === "" ? "" : ` Figures: ${evidence}.`}`;
+    })
     .join("\n");
+}
+
+/** The beginning of a row: the claim, what it says, what became of it, and what was asked; the evidence follows. */
+export function judgedRow(one: Statement, address: string): string {
+  const condition = one.condition === "" ? "" : `: ${plain(one.condition)}`;
+  return `| [${one.label}](${address}) | ${plain(one.text)} | ${outcome(one)}${condition} | ${plain(one.threshold || "-")} |`;
 }
 
 const outcome = ({ verdict }: Statement): string => `**${verdict}**`;
 
 /** "1.45 to 1.55"; empty for counts, and for times of too few rounds to tell. */
-const intervalText = ({ low, high }: Figure): string =>
+export const intervalText = ({ low, high }: Figure): string =>
   low === null || high === null || low === high ? "" : `${shown(low)} to ${shown(high)}`;
 
 /** "mending growth 1.50 (1.45 to 1.55)". */
@@ -71,26 +82,10 @@ export function machineData(results: Experiments): Record<string, unknown> {
       time: timeText(1000 * experiments.reduce((sum, one) => sum + one.seconds, 0)),
       command: results.command.join(" "),
       quick: results.quick,
+      measurements: shown(experiments.reduce((sum, one) => sum + (one.steadiness?.measurements ?? 0), 0)),
+      unsteady: shown(experiments.reduce((sum, one) => sum + (one.steadiness?.unsteady ?? 0), 0)),
     },
   };
-}
-
-/** The statements of these claims, with what became of each and the figures that decided. */
-export function verdictsTable(
-  experiments: readonly Experiment[], address: (experiment: Experiment) => string,
-): string {
-  return tableText(
-    ["claim", "what it says", "outcome", "condition", "evidence"],
-    experiments.flatMap((one) =>
-      one.statements.map((statement) => [
-        `[${statement.label}](${address(one)})`,
-        plain(statement.text),
-        outcome(statement),
-        statement.condition === "" ? "-" : plain(statement.condition),
-        statement.evidence.map((name) => plain(evidenceText(one, name))).join("; ") || "-",
-      ]),
-    ),
-  );
 }
 
 /** Every figure that an experiment came to. */
@@ -108,17 +103,30 @@ export function figuresTable({ experiments }: Experiments): string {
   );
 }
 
-/** A table of results as Markdown. */
+/** The places of the columns of a ratio's bounds, where these stand behind it. */
+function boundsOf({ columns }: Table, i: number): [low: number, high: number] | undefined {
+  const name = columns[i]!.name;
+  return columns[i + 1]?.name === `${name} low` && columns[i + 2]?.name === `${name} high` ? [i + 1, i + 2] : undefined;
+}
+
+/** A table of results as Markdown; a ratio has its interval in brackets. */
 export function resultsTable(table: Table): string {
-  const columns = table.columns.map(({ name, unit }, i) => {
+  const bounds = table.columns.map((_, i) => boundsOf(table, i));
+  const hidden = new Set(bounds.flatMap((places) => places ?? []));
+  const kept = table.columns.flatMap((column, i) => (hidden.has(i) ? [] : [{ ...column, i }]));
+  const columns = kept.map(({ name, unit, i }) => {
     const heading = plain(unit === "" || unit === "bytes" ? name : `${name} (${unit})`);
     return table.rows.some((row) => typeof row[i] === "string") ? heading : ` ${heading}`;
   });
   const rows = table.rows.map((row) =>
-    row.map((cell, i) => {
+    kept.map(({ unit, i }) => {
+      const cell = row[i] ?? null;
       if (cell === null) return "-";
       if (typeof cell === "string") return plain(cell);
-      return table.columns[i]?.unit === "bytes" ? bytesText(cell) : shown(cell);
+      const [low, high] = (bounds[i] ?? []).map((at) => row[at]);
+      if (typeof low === "number" && typeof high === "number" && low !== high)
+        return `${shown(cell)} (${shown(low)} to ${shown(high)})`;
+      return unit === "bytes" ? bytesText(cell) : shown(cell);
     }),
   );
   return tableText(columns, rows);

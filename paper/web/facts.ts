@@ -23,6 +23,19 @@ export interface Group {
   leads: Lead[];
   /** Likewise of `auto`, in place of our fastest. */
   autoLeads: Lead[];
+  /** Of our fastest over the fastest of the literature's. */
+  literature: Lead[];
+  /** Of our fastest over the fastest peer that was compiled as it is released, without assertions. */
+  released: Lead[];
+}
+
+/** One of the literature's algorithms against the fastest peer, in the cases that both do. */
+export interface Rival {
+  algorithm: string;
+  /** In how many of these it takes less time, beyond noise. */
+  faster: number;
+  /** The time of the fastest peer over its own. */
+  ratios: Ratio[];
 }
 
 export interface Facts {
@@ -36,13 +49,16 @@ export interface Facts {
   /** Cases in which an algorithm by the literature has a time, and the lead over the fastest of these. */
   literature: Lead[];
   leads: Lead[];
-  /** Leads that a peer has on us, and those in which nothing tells the two apart. */
-  lost: Lead[];
-  level: Lead[];
+  released: Lead[];
+  /** The literature's algorithm that is faster than the fastest peer in the most cases. */
+  rival: Rival | undefined;
+  /** Cases in which a mended listing is faster than the fastest peer. */
+  listings: Case[];
   choices: Choice[];
   standings: Standing[];
   timed: number;
   skipped: number;
+  unsteady: number;
 }
 
 function isAuto({ algorithm }: Timed): boolean {
@@ -73,11 +89,10 @@ function autoLeadsOf(cases: readonly Case[]): Lead[] {
   });
 }
 
-/** The leads of our fastest over the fastest of the literature's. */
-function literatureLeadsOf(cases: readonly Case[]): Lead[] {
+/** The leads of our fastest over the fastest of those that `counts` accepts. */
+function leadsOver(cases: readonly Case[], counts: (measurement: Timed) => boolean): Lead[] {
   return cases.flatMap((of) => {
-    const theirs = ranking(of).filter((measurement) => measurement.kind === "literature");
-    const leads = theirs.flatMap((measurement) => {
+    const leads = ranking(of).filter(counts).flatMap((measurement) => {
       const lead = leadOver(of, measurement);
       return lead ? [{ of, ...lead }] : [];
     });
@@ -85,13 +100,48 @@ function literatureLeadsOf(cases: readonly Case[]): Lead[] {
   });
 }
 
+/** Debian compiles these with assertions (docs/peers.md). */
+const withAssertions = ["box2d", "embree", "fcl"];
+
+export function hasAssertions({ algorithm }: Timed): boolean {
+  return withAssertions.includes(algorithm.split("_", 1)[0]!);
+}
+
+function rivalIn(cases: readonly Case[]): Rival | undefined {
+  const rivals = new Map<string, Rival>();
+  for (const { algorithm, kind, ratio_to_fastest_peer: ratio } of cases.flatMap(ranking)) {
+    if (kind !== "literature" || ratio === null) continue;
+    const rival = rivals.get(algorithm) ?? { algorithm, faster: 0, ratios: [] };
+    rivals.set(algorithm, rival);
+    rival.ratios.push(inverse(ratio));
+    if (isFaster(ratio)) ++rival.faster;
+  }
+  return [...rivals.values()].sort((a, b) => b.faster - a.faster)[0];
+}
+
+function isListingFaster(of: Case): boolean {
+  const ratio = ranking(of).find((measurement) => measurement.kind === "paper")?.ratio_to_fastest_peer;
+  return ratio != null && isFaster(ratio);
+}
+
+/** The leads that the other has on us, and those in which nothing tells the two apart. */
+export const lostOf = (leads: readonly Lead[]): Lead[] => leads.filter(({ ratio }) => isFaster(ratio));
+export const levelOf = (leads: readonly Lead[]): Lead[] => leads.filter(({ ratio }) => isLevel(ratio));
+
 /** Whether a scene is one that a physics engine made, which its name says. */
 function isRecorded({ scene }: Case): boolean {
   return /^(box2d|bullet|jolt|rapier)_/.test(scene);
 }
 
 function groupOf(name: string, cases: Case[]): Group {
-  return { name, cases, leads: leadsOf(cases), autoLeads: autoLeadsOf(cases) };
+  return {
+    name,
+    cases,
+    leads: leadsOf(cases),
+    autoLeads: autoLeadsOf(cases),
+    literature: leadsOver(cases, ({ kind }) => kind === "literature"),
+    released: leadsOver(cases, (one) => one.kind === "peer" && !hasAssertions(one)),
+  };
 }
 
 /** The one with the least ratio of at least one. */
@@ -128,13 +178,15 @@ export function factsOf(comparison: Comparison, file: string): Facts {
     moving,
     groups,
     autoLeads: autoLeadsOf(cases),
-    literature: literatureLeadsOf(cases),
+    literature: leadsOver(cases, ({ kind }) => kind === "literature"),
     leads,
-    lost: leads.filter((lead) => isFaster(lead.ratio)),
-    level: leads.filter((lead) => isLevel(lead.ratio)),
+    released: leadsOver(cases, (one) => one.kind === "peer" && !hasAssertions(one)),
+    rival: rivalIn(cases),
+    listings: cases.filter(isListingFaster),
     choices,
     standings: standings(cases),
     timed: measurements.filter((measurement) => measurement.median_ms !== null).length,
     skipped: measurements.filter((measurement) => measurement.skipped !== null).length,
+    unsteady: measurements.filter((measurement) => measurement.unsteady === true).length,
   };
 }

@@ -3,12 +3,13 @@ import type { ChartSpec, Comparison, Experiment, Experiments, Figure, Statement,
 import type { Drawn, Place } from "../../web/charts/frame.ts";
 import { drawTableChart } from "../../web/charts/table_chart.ts";
 import {
-  comparisonCharts, comparisonData, groupsTable, leadsTable, literatureTable, lostList, standingsTable,
+  comparisonCharts, comparisonData, groupsTable, leadsTable, literatureTable, lostList, rivalsTable, sceneParameters,
+  standingsTable, versionOf,
 } from "./comparison_names.ts";
 import {
-  figuresTable, isOwn, machineData, resultsTable, sectionText, statementsList, verdictText, verdictsTable,
+  figuresTable, intervalText, judgedRow, machineData, resultsTable, sectionText, statementsList, verdictText,
 } from "./experiment_names.ts";
-import { factsOf, type Facts } from "./facts.ts";
+import { factsOf, levelOf, lostOf, type Facts } from "./facts.ts";
 import type { Names } from "./fill.ts";
 import { plain } from "./markdown.ts";
 import { Numbering } from "./numbering.ts";
@@ -60,6 +61,7 @@ export class Paper {
   private readonly sourcePages = new Map<string, string>();
   private readonly sources = new Numbering("source");
   private readonly cited = new Set<string>();
+  private readonly judged = new Set<string>();
   private readonly experiments: Record<string, Experiment>;
   private readonly facts: Facts;
 
@@ -106,6 +108,12 @@ export class Paper {
     return this.address(experiment.name, this.sectionPages.get(experiment.name));
   }
 
+  /** Statements that no row has, where there are rows of some. */
+  unjudged(): string[] {
+    const all = this.results.experiments.flatMap((one) => one.statements.map(({ name }) => `${one.name}: ${name}`));
+    return this.judged.size === 0 ? [] : all.filter((name) => !this.judged.has(name));
+  }
+
   /** Sources that no template cites. */
   uncited(): string[] {
     return this.sources.all().filter((source) => !this.cited.has(source));
@@ -139,9 +147,9 @@ export class Paper {
     return this.show(`figures/${name}.svg`, name, drawing.caption);
   }
 
-  private drawChart(experiment: Experiment, table: Table, chart: ChartSpec): string {
+  private drawChart(experiment: Experiment, table: Table, chart: ChartSpec, caption = captionOf(table, chart)): string {
     const draw = (place: Place) => drawTableChart(table, chart, place);
-    return this.draw(drawingName(experiment, table, chart), { caption: captionOf(table, chart), width: narrow, draw });
+    return this.draw(drawingName(experiment, table, chart), { caption, width: narrow, draw });
   }
 
   private see(names: readonly string[]): string {
@@ -155,8 +163,6 @@ export class Paper {
     const is = (verdict: Verdict) => (experiment: string, name: string) =>
       this.statement(experiment, name).verdict === verdict;
     const comparison = comparisonCharts(this.facts);
-    const verdicts = (shown: (experiment: Experiment) => boolean) =>
-      verdictsTable(this.results.experiments.filter(shown), (experiment) => this.addressOf(experiment));
     return {
       data: { ...machineData(this.results), comparison: comparisonData(this.facts, this.comparison) },
       helpers: {
@@ -176,11 +182,19 @@ export class Paper {
           return withUnit(figure.value, figure.unit);
         },
         value: (experiment, name) => shown(value(experiment, name)),
-        table: (experiment, name) => resultsTable(this.table(experiment, name)),
+        table: (experiment, name) => {
+          const table = this.table(experiment, name);
+          return `*${plain(table.title)}*\n\n${resultsTable(table)}`;
+        },
         chart: (experiment, name, title) => {
           const table = this.table(experiment, name);
           const charts = by(table.charts, (chart) => chart.title);
           return this.drawChart(of(experiment), table, oneOf(charts, title, `chart of the table '${name}':`));
+        },
+        captioned_chart: (experiment, name, title, caption) => {
+          const table = this.table(experiment, name);
+          const charts = by(table.charts, (chart) => chart.title);
+          return this.drawChart(of(experiment), table, oneOf(charts, title, `chart of the table '${name}':`), caption);
         },
         charts: (experiment) =>
           of(experiment)
@@ -192,8 +206,17 @@ export class Paper {
               table.charts.map((chart) => drawingName(of(experiment), table, chart)),
             ),
           ),
-        draft_verdicts: () => verdicts((one) => !isOwn(one)),
-        own_verdicts: () => verdicts(isOwn),
+        judged: (experiment, name) => {
+          const one = of(experiment);
+          this.judged.add(`${experiment}: ${name}`);
+          return judgedRow(this.statement(experiment, name), this.addressOf(one));
+        },
+        with_interval: (experiment, name) => {
+          const figure = this.figure(experiment, name);
+          const interval = intervalText(figure);
+          return interval === "" ? withUnit(figure.value, figure.unit)
+            : `${shown(figure.value)} (${interval})${figure.unit === "" ? "" : ` ${figure.unit}`}`;
+        },
         all_figures: () => figuresTable(this.results),
         confirmed: is("confirmed"),
         within_bounds: is("holds within bounds"),
@@ -208,11 +231,14 @@ export class Paper {
         },
         leads: (which) => leadsTable(this.facts, which),
         groups: () => groupsTable(this.facts),
+        rivals: () => rivalsTable(this.facts),
+        parameters: (scene) => plain(sceneParameters(this.facts, scene)),
+        version: (algorithm) => versionOf(this.comparison, algorithm),
         literature: () => literatureTable(this.facts),
         any_literature: () => this.facts.literature.length > 0,
         lost: () => lostList(this.facts),
-        any_lost: () => this.facts.lost.length > 0,
-        any_level: () => this.facts.level.length > 0,
+        any_lost: () => lostOf(this.facts.leads).length > 0,
+        any_level: () => levelOf(this.facts.leads).length > 0,
         standings: () => standingsTable(this.facts),
         picture: (name, caption) => {
           const path = oneOf(by(this.pictures, (picture) => picture.split("/").at(-1)!), `${name}.svg`, "picture");

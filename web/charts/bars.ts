@@ -1,6 +1,6 @@
-// Bars: one or several for each text. They lie where the texts are long or many, so that these can be read.
+// Bars, or dots: one or several for each text. They lie where the texts are long or many, so that these can be read.
 import {
-  above, axisName, below, categoryAxis, frame, legendHeight, shortened, textWidth, valueAxis,
+  above, axisName, below, categoryAxis, frame, legendHeight, mark, shortened, textWidth, valueAxis,
 } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
@@ -17,7 +17,7 @@ export interface BarsSpec {
   series: readonly { name: string; values: readonly (number | null)[] }[];
   /** Of each label; only where there is one series. */
   colours?: readonly string[];
-  /** Where bars begin, marked by a line; standard: 0, or where a logarithmic axis begins. */
+  /** Where bars begin, marked by a line; standard: 0. Without it there are dots on a logarithmic axis. */
   from?: number;
   /** Of each label, where there is one series: what stands at its bar, and in full where there is room. */
   texts?: readonly { short: string; full: string }[];
@@ -35,7 +35,7 @@ function describe(spec: BarsSpec, text: (value: number, at: number) => string): 
     return ` ${label}: ${values.join(", ")}.`;
   });
   const more = spec.labels.length > most ? ` And ${spec.labels.length - most} more.` : "";
-  return `${spec.title}. Bar chart of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
+  return `${spec.title}. ${spec.y.log && spec.from === undefined ? "Dots" : "Bar chart"} of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
 }
 
 /** Bars of `spec`, the first label at the top or at the left. */
@@ -48,15 +48,15 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
   const colours = coloursOf(names, theme);
   const single = spec.series.length === 1;
   const widest = Math.max(0, ...spec.labels.map(textWidth));
+  // On a logarithmic axis without a natural beginning lengths mean nothing, so that there are dots.
+  const dots = spec.y.log && spec.from === undefined;
   const lying = widest > (place.width - 60) / Math.max(1, spec.labels.length) - 10 || spec.labels.length > 12;
   const legend = legendHeight(names, place.width);
   const values = [
     ...spec.series.flatMap((series) => series.values.filter((value) => value !== null)),
     ...whiskers.flatMap((interval) => interval ?? []),
   ];
-  // A bar on a logarithmic axis begins where the axis does, so the least one needs room to be seen.
-  const ends = spec.from !== undefined ? [...values, spec.from]
-    : spec.y.log ? [...values, ...values.map((value) => value / 1.3)] : values;
+  const ends = spec.from === undefined ? values : [...values, spec.from];
   const axis = valueAxis(spec.y, ends, place);
   const numberAxis: Record<string, unknown> = {
     ...axis,
@@ -91,16 +91,19 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
         ...frame(names, description, place).tooltip,
         trigger: "axis",
         axisPointer: { type: "shadow" },
-        valueFormatter: (value: unknown, at: number) => (typeof value === "number" ? text(value, at) : "–"),
+        valueFormatter: (shown: unknown, at: number) => {
+          const value: unknown = Array.isArray(shown) ? shown[lying ? 0 : 1] : shown;
+          return typeof value === "number" ? text(value, at) : "–";
+        },
       },
       series: [...spec.series.map((series, i) => ({
-        type: "bar" as const,
+        ...(dots ? { type: "scatter" as const, symbol: mark(i).symbol, symbolSize: 9 } : { type: "bar" as const }),
         name: series.name === "" ? axisName(spec.y) : series.name,
         color: colours[i] ?? theme.muted,
         barMaxWidth: lying ? thick : 48,
         barGap: "10%",
         data: series.values.map((value, at) => ({
-          value: value ?? "-",
+          value: dots ? (lying ? [value ?? "-", at] : [at, value ?? "-"]) : value ?? "-",
           ...(single && spec.colours?.[at] !== undefined ? { itemStyle: { color: spec.colours[at] } } : {}),
           // Its whisker carries the text.
           ...(whiskers[at] === undefined ? {} : { label: { show: false } }),
@@ -110,8 +113,10 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
           position: lying ? "right" as const : "top" as const,
           color: theme.text,
           fontSize: 11,
-          formatter: (bar: { value: unknown; dataIndex: number }) =>
-            (typeof bar.value === "number" ? spec.texts?.[bar.dataIndex]?.short ?? text(bar.value, bar.dataIndex) : ""),
+          formatter: (bar: { dataIndex: number }) => {
+            const value = series.values[bar.dataIndex];
+            return typeof value === "number" ? spec.texts?.[bar.dataIndex]?.short ?? text(value, bar.dataIndex) : "";
+          },
         },
         ...(i === 0 && spec.from !== undefined ? {
           markLine: {

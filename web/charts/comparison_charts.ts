@@ -82,7 +82,7 @@ export function drawLeads(cases: readonly Case[], place: Place): Drawn {
     title: "The fastest peer's time over that of our best",
     x: { name: "case", unit: "" },
     y: { name: "times as fast", unit: "", log: true },
-    labels: leads.map(({ of }) => shortName(of)),
+    labels: leads.map(({ of, own }) => `${shortName(of)}: ${own.algorithm}`),
     ...ratioBars(leads.map(({ ratio }) => ratio)),
     colours: leads.map(({ own }) => colourOf(own, place.theme)),
     from: 1,

@@ -40,6 +40,8 @@ export interface Statement {
   verdict: Verdict;
   /** Where it holds within bounds, or why it is not testable; else empty. */
   condition: string;
+  /** What was asked of the figures; empty if it is not testable. Not in results of before it was noted. */
+  threshold?: string;
   /** Names of figures. */
   evidence: string[];
 }

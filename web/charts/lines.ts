@@ -2,13 +2,17 @@
 import { above, axisName, below, categoryAxis, frame, legendHeight, mark, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
+import type { Interval } from "./ratios.ts";
 import { coloursOf } from "./theme.ts";
+import { pointWhiskers } from "./whiskers.ts";
 
 export interface Line {
   /** Empty where there is only one. */
   name: string;
   /** By x. */
   points: readonly (readonly [number | string, number])[];
+  /** Intervals, each with the x that it stands at. */
+  intervals?: readonly (readonly [number | string, Interval])[];
   /** A level that is marked with a dashed line: [what it is, where]. */
   level?: readonly [string, number];
   dashed?: boolean;
@@ -56,6 +60,8 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const all = lines.flatMap((line) => line.points);
   const levels = lines.flatMap((line) => (line.level === undefined ? [] : [line.level[1]]));
   if (spec.reference !== undefined) levels.push(spec.reference);
+  const intervals = lines.flatMap((line) => (line.intervals ?? []).flatMap(([, interval]) => interval))
+    .filter((end) => shown(end, spec.y));
   const numeric = all.every(([x]) => typeof x === "number");
   const categories = [...new Set(all.map(([x]) => String(x)))];
   const x = numeric
@@ -74,7 +80,7 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
       grid: { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
       xAxis: { ...x, ...(counts ? { minInterval: 1 } : {}), ...below(axisName(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
       yAxis: {
-        ...valueAxis(spec.y, [...all.map(([, at]) => at), ...levels], place),
+        ...valueAxis(spec.y, [...all.map(([, at]) => at), ...levels, ...intervals], place),
         scale: false,
         ...above(axisName(spec.y), place),
       },
@@ -83,7 +89,7 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
         trigger: spec.plain === true ? "item" : "axis",
         valueFormatter: (value: unknown) => (typeof value === "number" ? withUnit(value, spec.y.unit) : String(value)),
       },
-      series: lines.map((line, i) => {
+      series: [...lines.map((line, i) => {
         const { symbol, dash } = mark(i);
         const marked = [
           ...(line.level === undefined ? [] : [{ yAxis: line.level[1], name: line.level[0] }]),
@@ -111,7 +117,11 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
             },
           }),
         };
-      }),
+      }), ...lines.flatMap((line, i) => {
+        const here = (line.intervals ?? []).filter(([at, [low]]) => shown(at, spec.x) && shown(low, spec.y));
+        if (here.length === 0) return [];
+        return [pointWhiskers(here.map(([at, interval]) => [numeric ? at : String(at), interval]), line.name, colours[i] ?? place.theme.muted)];
+      })],
     },
   };
 }

@@ -5,6 +5,7 @@ import type { Drawn, Place } from "./frame.ts";
 import { drawLines } from "./lines.ts";
 import { drawMap } from "./map.ts";
 import { rounded } from "./numbers.ts";
+import type { Interval } from "./ratios.ts";
 
 /** The place of a column. Throws an Error naming those there are. */
 export function columnOf(table: Table, name: string): number {
@@ -42,6 +43,16 @@ function ordered(rows: readonly Cell[][], column: number): string[] {
   if (cells.every((cell) => typeof cell === "number"))
     cells.sort((a, b) => Number(a) - Number(b));
   return [...new Set(cells.map(cellText))];
+}
+
+/** Of the rows whose y has an interval, in columns behind it: where they stand, and the interval. */
+function intervalsOf(table: Table, rows: readonly Cell[][], x: number, y: number): [number | string, Interval][] {
+  const name = table.columns[y]?.name;
+  const [low_at, high_at] = [`${name} low`, `${name} high`].map((other) => table.columns.findIndex((column) => column.name === other));
+  return rows.flatMap((row): [number | string, Interval][] => {
+    const [at, low, high] = [row[x], row[low_at!], row[high_at!]];
+    return at != null && typeof low === "number" && typeof high === "number" && low < high ? [[at, [low, high]]] : [];
+  });
 }
 
 /** Throws an Error if the chart names a column that the table has not. */
@@ -95,7 +106,7 @@ export function drawTableChart(table: Table, chart: ChartSpec, place: Place): Dr
         return at != null && typeof value === "number" ? [[at, value]] : [];
       });
       if (points.every(([at]) => typeof at === "number")) points.sort((a, b) => Number(a[0]) - Number(b[0]));
-      return { name, points };
+      return { name, points, intervals: intervalsOf(table, rows.filter((row) => nameOf(row) === name), x, y) };
     }),
   }, place);
 }

@@ -1,4 +1,4 @@
-// Intervals on bars: a line from end to end with a cap at each, and the bar's text behind it.
+// Intervals: a line from end to end with a cap at each; on bars with the bar's text behind it.
 import type { CustomSeriesOption, CustomSeriesRenderItem } from "echarts";
 
 import type { Place } from "./frame.ts";
@@ -57,5 +57,29 @@ export function whiskerSeries({ whiskers, texts, from, lying }: WhiskersSpec, { 
     z: 3,
     data: whiskers.map((interval, i) => (lying ? [interval?.[1] ?? "-", i] : [i, interval?.[1] ?? "-"])),
     encode: { x: 0, y: 1, tooltip: [] },
+  };
+}
+
+/** Upright whiskers at the points of a line, in its colour and shown and hidden with it by `name`. */
+export function pointWhiskers(
+  intervals: readonly (readonly [number | string, Interval])[], name: string, colour: string,
+): CustomSeriesOption {
+  const renderItem: CustomSeriesRenderItem = (_, api) => {
+    const point = (value: number): number[] => api.coord([api.value(0), value]);
+    const [[x = 0, low = 0], [, high = 0]] = [point(Number(api.value(1))), point(Number(api.value(2)))];
+    const at = (dx: number, y: number): string => `${(x + dx).toFixed(2)} ${y.toFixed(2)}`;
+    const d = `M${at(-cap, low)}L${at(cap, low)}M${at(-cap, high)}L${at(cap, high)}M${at(0, low)}L${at(0, high)}`;
+    return { type: "path", silent: true, shape: { pathData: d }, style: { stroke: colour, lineWidth: 1.2, fill: "none" } };
+  };
+  return {
+    type: "custom",
+    name,
+    renderItem,
+    silent: true,
+    tooltip: { show: false },
+    z: 3,
+    color: colour,
+    data: intervals.map(([at, [low, high]]) => [at, low, high]),
+    encode: { x: 0, y: [1, 2], tooltip: [] },
   };
 }

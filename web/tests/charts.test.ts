@@ -33,7 +33,7 @@ function spec(changes: Partial<ChartSpec>): ChartSpec {
   };
 }
 
-type Series = { name: string; data: unknown[]; color: string };
+type Series = { type: string; name: string; data: unknown[]; color: string };
 
 function seriesOf(drawn: Drawn): Series[] {
   return drawn.option.series as unknown as Series[];
@@ -246,4 +246,17 @@ test("lines of ratios have a line at 1, which is in sight", () => {
   };
   assert.match(lines("time over best"), /"min":1,.*"data":\[\{"yAxis":1,/);
   assert.doesNotMatch(lines("tests a box"), /"yAxis":1,/);
+});
+
+test("on a logarithmic axis without a beginning there are dots, whose lengths say nothing", () => {
+  const typesOf = (log_y: boolean) => seriesOf(drawTableChart(table, spec({ kind: "bars", log_y }), place)).map(({ type }) => type);
+  assert.deepEqual(new Set(typesOf(true)), new Set(["scatter"]));
+  assert.deepEqual(new Set(typesOf(false)), new Set(["bar"]));
+});
+
+test("points whose interval is known have a whisker of their line's name", () => {
+  const columns = ["cell size", "time", "time low", "time high"].map((name) => ({ name, unit: "" }));
+  const intervals = { ...table, columns, rows: [[1, 3, 2, 4], [10, 5, 5, 5]] };
+  const [line, whiskers] = seriesOf(drawTableChart(intervals, spec({ series: "" }), place));
+  assert.deepEqual([line?.type, whiskers?.type, whiskers?.data], ["line", "custom", [[1, 2, 4]]]);
 });

@@ -45,6 +45,7 @@ export function experiments(): Experiments {
             text: "tests grow | squarely",
             verdict: "holds within bounds",
             condition: "there are more than 12 boxes",
+            threshold: "more than 1",
             evidence: ["crossover", "slope"],
           },
           { label: "1b", name: "square", text: "n items make n*n", verdict: "not testable", condition: "a tautology", evidence: [] },

@@ -57,16 +57,30 @@ test("a verdict is quoted with its condition", () => {
   assert.equal(textOf('{{verdict "tests" "growth"}}'), "holds within bounds: there are more than 12 boxes");
 });
 
-test("verdicts stand in a table with the figures that decided and their intervals, ours apart", () => {
-  const row = "[1a](#tests) | tests grow \\| squarely | **holds within bounds** | there are more than 12 boxes | " +
-    "crossover 12 boxes; slope 1.50 (1.25 to 1.75) |";
-  assert.ok(textOf("{{draft_verdicts}}").includes(row), textOf("{{draft_verdicts}}"));
-  assert.doesNotMatch(textOf("{{own_verdicts}}"), /1a/);
+test("a statement's row has what it says, what became of it, what was asked, and the evidence behind it", () => {
+  const template = '{{judged "tests" "growth"}} {{with_interval "tests" "slope"}} |\n{{judged "tests" "square"}} - |';
+  assert.equal(
+    textOf(template),
+    "| [1a](#tests) | tests grow \\| squarely | **holds within bounds**: there are more than 12 boxes | more than 1 | " +
+      "1.50 (1.25 to 1.75) |\n| [1b](#tests) | n items make n\\*n | **not testable**: a tautology | - | - |",
+  );
+  assert.equal(textOf('{{with_interval "tests" "crossover"}}'), "12 boxes");
+});
+
+refuses("rows of some statements without the others", '{{judged "tests" "growth"}}', /no row is of the statement tests: square/);
+
+test("our own claims are counted apart", () => {
   const own = experiments();
   own.experiments[0]!.section = "beyond";
   const given = { experiments: JSON.stringify(own) };
-  assert.ok(textOf("{{own_verdicts}}", given).includes(row));
   assert.equal(textOf("{{experiments.claims}} {{experiments.own.statements}}", given), "0 2");
+});
+
+test("a supplement lists statements with what was asked and the figures that decided", () => {
+  assert.match(
+    textOf('{{statements "tests"}}').replaceAll("\n", " "),
+    /more than 12 boxes\. Asked: more than 1\. Figures: +crossover 12 boxes; slope 1\.50 \(1\.25 to 1\.75\)\./,
+  );
 });
 
 test("outcomes are counted by statement", () => {
@@ -96,7 +110,7 @@ test("what would be Markdown in results is shown as it is", () => {
 test("tables have a row a line and nothing where nothing is known", () => {
   assert.equal(
     textOf('{{table "tests" "times"}}'),
-    "| boxes | time (ms) |\n| ---: | ---: |\n| 10 | 1.23 |\n| 100 | - |\n| 1,000 | 123 |",
+    "*Times*\n\n| boxes | time (ms) |\n| ---: | ---: |\n| 10 | 1.23 |\n| 100 | - |\n| 1,000 | 123 |",
   );
 });
 
@@ -141,14 +155,60 @@ refuses("a quote without an end", "a", /^p\.md: 2 quotes begin and 1 end/, {
 });
 refuses("a quote that no page has", "a", /no page quotes lead; expected each on a page/, { quotes: lead });
 
-test("leads are given by group, of our best and of auto", () => {
-  const { groups } = { groups: textOf("{{groups}}").split("\n").slice(2).map((line) => line.split(" | ").slice(1, 6)) };
+test("leads are given by group, of auto and of our best, with how many are lost and level", () => {
+  const groups = textOf("{{groups}}").split("\n").slice(2).map((line) => line.replace(/ \|$/, "").split(" | ").slice(1));
   assert.deepEqual(groups, [
-    ["1", "8.00 (7.55 to 8.48)", "8.0 (7.5 to 8.5)", "7.27 (6.86 to 7.71)", "7.3 (6.9 to 7.7)"],
-    ["1", "0.400 (0.377 to 0.424)", "0.40 (0.38 to 0.42)", "0.500 (0.472 to 0.530)", "0.50 (0.47 to 0.53)"],
-    ["2", "1.79 (1.72 to 1.86)", "0.40 (0.38 to 0.42)", "1.91 (1.83 to 1.99)", "0.50 (0.47 to 0.53)"],
+    ["1", "7.27 (6.86 to 7.71)", "7.3 (6.9 to 7.7)", "0 / 0", "8.00 (7.55 to 8.48)", "8.0 (7.5 to 8.5)", "0 / 0"],
+    ["1", "0.500 (0.472 to 0.530)", "0.50 (0.47 to 0.53)", "1 / 0", "0.400 (0.377 to 0.424)", "0.40 (0.38 to 0.42)", "1 / 0"],
+    ["2", "1.91 (1.83 to 1.99)", "0.50 (0.47 to 0.53)", "1 / 0", "1.79 (1.72 to 1.86)", "0.40 (0.38 to 0.42)", "1 / 0"],
   ]);
   assert.equal(textOf("{{comparison.groups.rest_3d.any}} {{comparison.groups.rest_2d.auto.mean}}"), "false 7.27");
+  assert.match(textOf("{{comparison.auto_lead.lost_named}}"), /^uniform, 2D, 1,000 boxes, 10 % moving: 0\.50 \(0\.47 to 0\.53\)$/);
+});
+
+test("peers with assertions are left out of leads over the others, and marked", () => {
+  assert.equal(textOf("{{comparison.released.cases}} {{comparison.released.mean}}"), "2 1.79");
+  const given = { comparison: JSON.stringify(comparison()).replaceAll("bullet_dbvt", "box2d_tree") };
+  assert.equal(textOf("{{comparison.released.cases}} {{comparison.released.mean}}", given), "1 8.00");
+  assert.match(textOf('{{leads "moving"}}', given), /`box2d_tree` ‡ \|/);
+});
+
+test("listings that are faster than every peer are counted, and how results were checked", () => {
+  assert.equal(textOf("{{comparison.listings_faster}}"), "1");
+  assert.equal(textOf("{{comparison.checked.by_definition}} {{comparison.checked.by_others}}"), "7 0");
+  const by = "cross-checked by 15 structures of 6 libraries";
+  const given = { comparison: JSON.stringify(comparison()).replaceAll('"the definition"', `"${by}"`) };
+  assert.equal(textOf("{{comparison.checked.by_others}} {{comparison.checked.fewest_structures}} {{comparison.checked.fewest_libraries}}", given), "7 15 6");
+});
+
+test("unsteady measurements are counted and marked", () => {
+  assert.equal(textOf("{{comparison.unsteady}}"), "0");
+  const given = { comparison: JSON.stringify(comparison()).replaceAll('"verified":true', '"verified":true,"unsteady":true') };
+  assert.equal(textOf("{{comparison.unsteady}}", given), "7");
+  assert.match(textOf('{{leads "still"}}', given), /\| `grid` \| 1 † \|/);
+});
+
+test("a scene's parameters are those of its cases, and a library's version is the one that was measured", () => {
+  assert.equal(textOf('{{parameters "uniform"}}'), "1,000 boxes, 1 seed; in motion 1,000 boxes, 1 seed, 5 frames, 10 % moving");
+  assert.equal(textOf('{{version "bullet_dbvt"}}'), "1");
+});
+
+refuses("an unknown library", '{{version "x"}}', /no peer 'x'; there are boost_rtree and bullet_dbvt/);
+refuses("parameters of an unknown scene", '{{parameters "x"}}', /no scene 'x'; there are uniform/);
+
+test("ratios have their interval in brackets, and no columns for it", () => {
+  const results = experiments();
+  const [table] = results.experiments[0]!.tables;
+  table!.columns.push({ name: "ratio", unit: "" }, { name: "ratio low", unit: "" }, { name: "ratio high", unit: "" });
+  table!.rows = [[10, 1.5, 2, 1.5, 2.5], [20, 1.5, 1, 1, 1], [30, null, null, null, null]];
+  assert.match(
+    textOf('{{table "tests" "times"}}', { experiments: JSON.stringify(results) }),
+    /\| ratio \|\n.*\n\| 10 \| 1\.50 \| 2 \(1\.50 to 2\.50\) \|\n\| 20 \| 1\.50 \| 1 \|\n\| 30 \| - \| - \|$/,
+  );
+});
+
+test("a chart may have a caption of its own", () => {
+  assert.match(textOf('{{captioned_chart "tests" "times" "Time over boxes" "As it is"}}'), /\*Figure 1\. As it is\*/);
 });
 
 test("the literature's algorithms are compared where there are any", () => {

@@ -1,5 +1,6 @@
 // The plain searches against the definition, whatever is left out; and what the experiment makes of tables
 // made by hand.
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 
 #include "broadside/algorithm.hpp"
 
+#include "paper/experiments/ablation_measure.hpp"
 #include "paper/experiments/plain.hpp"
 #include "tests/support/model.hpp"
 #include "tests/support/scattered.hpp"
@@ -102,7 +104,7 @@ std::vector<Table> tables_of(double grid_without_simd, double bvh_without_simd, 
     add("by AVX2", 1.1);
     add("by SCALAR", without_simd);
     add("plain, without SIMD", 1.2 * without_simd);
-    add("and std::sort to pack", 2.4 * without_simd);
+    add("plain, but std::sort to pack", 2.4 * without_simd);
     add("without all of these", without_all);
     tables.push_back(std::move(table));
   }
@@ -113,16 +115,53 @@ TEST(Ablation, IsConfirmedWhereSimdIsMostOfTheGain) {
   const Finding finding = judged("ablation", tables_of(4, 4, 8));
   EXPECT_EQ(verdict(finding, "simd"), "confirmed");
   EXPECT_NEAR(figure(finding, "grid_2d_share_of_simd"), 2.0 / 3, 1e-12);
-  EXPECT_NEAR(figure(finding, "bvh_3d_and_std__sort_to_pack"), 2, 1e-12);
+  EXPECT_NEAR(figure(finding, "bvh_3d_but_std__sort_to_pack"), 2, 1e-12);
 }
 
 TEST(Ablation, HoldsForTheSearchesOfWhichSimdIsMost) {
   EXPECT_EQ(verdict(judged("ablation", tables_of(4, 2, 8)), "simd"),
-            "holds within bounds: it is grid in 2D or grid in 3D");
+            "holds within bounds: it is grid on uniform boxes in 2D, grid on uniform boxes in 3D; not bvh on "
+            "uniform "
+            "boxes in 2D, bvh on uniform boxes in 3D");
 }
 
 TEST(Ablation, IsRefutedWhereTheRestGainsMore) {
   EXPECT_EQ(verdict(judged("ablation", tables_of(2, 2, 8)), "simd"), "refuted");
+}
+
+TEST(Ablation, IsOpenWhereTheIntervalOfTheShareHoldsOneHalf) {
+  EXPECT_EQ(verdict(judged("ablation", tables_of(std::sqrt(8.0), std::sqrt(8.0), 8)), "simd"),
+            "not testable: each interval holds one half");
+  EXPECT_EQ(verdict(judged("ablation", tables_of(4, std::sqrt(8.0), 8)), "simd"),
+            "holds within bounds: it is grid on uniform boxes in 2D, grid on uniform boxes in 3D; the others "
+            "are open");
+}
+
+TEST(Ablation, TakesSharesOfTheSameRoundsWhereTheyWereMeasured) {
+  std::vector<Table> tables = tables_of(4, 4, 8);
+  Table shares = table_of_shares();
+  for (const std::string own : {"grid", "bvh"}) {
+    for (const std::string dimension : {"2D", "3D"}) {
+      std::vector<Cell> row = {own, "uniform", dimension, 0.4, 0.35, 0.45};
+      row.resize(shares.columns.size());
+      shares.add(row);
+    }
+  }
+  tables.push_back(shares);
+  const Finding finding = judged("ablation", tables);
+  EXPECT_EQ(verdict(finding, "simd"), "refuted");
+  EXPECT_EQ(figure(finding, "grid_2d_share_of_simd"), 0.4);
+}
+
+TEST(Ablation, JudgesClusteredBoxesWhereTheyWereMeasured) {
+  std::vector<Table> tables = tables_of(4, 4, 8);
+  for (Table table : tables_of(2, 2, 8)) {
+    table.name += "_clustered";
+    tables.push_back(std::move(table));
+  }
+  const Finding finding = judged("ablation", tables);
+  EXPECT_THAT(verdict(finding, "simd"), HasSubstr("not grid on clustered boxes in 2D"));
+  EXPECT_EQ(figure(finding, "parts"), 8);
 }
 
 TEST(Ablation, SaysWhatBoostTakesOnlyWhereItIsMeasured) {

@@ -254,6 +254,10 @@ TEST(GridCellSize, IsAMatterOfHandsInTheSceneThatTheRuleMisses) {
       "long as the best");
 }
 
+TEST(GridCellSize, IsNoMatterOfHandsWhereNoiseAloneMakesTheRuleMiss) {
+  EXPECT_EQ(verdict(judged("grid_cell_size", curves({}, 1.1, 1.255)), "by_hand"), "refuted");
+}
+
 TEST(GridCellSize, NamesTheScenesInWhichOnlySomeHaveAnOptimum) {
   EXPECT_EQ(verdict(judged("grid_cell_size", curves({"uniform", "mixed", "thin"}, 2)), "balance"),
             "holds within bounds: boxes are as in power_law, clustered");

@@ -279,7 +279,7 @@ TEST(GridRebuilding, IsConfirmedWhereRebuildingIsFasterBeforeMostBoxesMove) {
 TEST(GridRebuilding, HoldsWhereMoreMoveThanMost) {
   EXPECT_EQ(verdict(judged("grid_rebuilding", grids([](double moving) { return moving / 80; }, twentieth)),
                     "rebuilding"),
-            "holds within bounds: more than 80 % of the boxes move");
+            "holds within bounds: more of the boxes move than 80 % of few, 20 % of many");
 }
 
 TEST(GridRebuilding, IsRefutedWhereReinsertingIsFasterEvenIfAllMove) {
@@ -296,6 +296,14 @@ TEST(GridRebuilding, CountsTheEntriesThatTwoHashesAreSaidToLookAt) {
   EXPECT_EQ(hashes(2, 2.1), "confirmed");
   EXPECT_EQ(hashes(2, 4), "holds within bounds: there are few");
   EXPECT_EQ(hashes(3, 4), "refuted");
+}
+
+TEST(GridRebuilding, JudgesTwiceTheTimeApartFromTwiceTheWork) {
+  const auto half = [](double moving) { return moving / 50; };
+  EXPECT_EQ(verdict(judged("grid_rebuilding", grids(half, half, 4, 4)), "two_hashes_time"), "confirmed");
+  const Finding finding = judged("grid_rebuilding", grids(half, twentieth, 2, 2));
+  EXPECT_EQ(verdict(finding, "two_hashes_time"), "holds within bounds: there are few");
+  EXPECT_EQ(verdict(finding, "two_hashes"), "confirmed");
 }
 
 // Experiment 14: how many times as fast as from the root the other ways are, by the leaves a box is in.
@@ -321,23 +329,22 @@ std::vector<Table> siblings(
           trees("spanning", "neighbours", across, common)};
 }
 
-TEST(QuadtreeSiblings, PayInFewLeavesAndAreHorribleInMany) {
+TEST(QuadtreeSiblings, PayInFewLeavesAndTellTheGreatestLossInMany) {
   const Finding finding = judged("quadtree_siblings", siblings([](double leaves) { return 2 / leaves; }));
   EXPECT_TRUE(
       verdict(finding, "translating").starts_with("holds within bounds: boxes are in fewer than 1.8 leaves"))
       << verdict(finding, "translating");
-  EXPECT_EQ(verdict(finding, "spanning"), "confirmed");
+  EXPECT_EQ(finding.statement("spanning").verdict, Verdict::not_testable);
   EXPECT_EQ(verdict(finding, "relative"), "refuted");
   EXPECT_EQ(figure(finding, "worst_slowdown"), 4);
   EXPECT_EQ(figure(finding, "worst_leaves"), 8);
 }
 
-TEST(QuadtreeSiblings, AreConfirmedWhereTheyPayInAnyNumberOfLeavesAndAreThenNotHorrible) {
+TEST(QuadtreeSiblings, AreConfirmedWhereTheyPayInAnyNumberOfLeaves) {
   const Finding finding =
       judged("quadtree_siblings", siblings([](double) { return 1.5; }, [](double) { return 1.2; }));
   EXPECT_EQ(verdict(finding, "translating"), "confirmed");
   EXPECT_EQ(verdict(finding, "relative"), "confirmed");
-  EXPECT_EQ(verdict(finding, "spanning"), "refuted");
 }
 
 TEST(QuadtreeSiblings, ArePaidForByTreesOfSomeCapacityOnly) {
@@ -348,15 +355,6 @@ TEST(QuadtreeSiblings, ArePaidForByTreesOfSomeCapacityOnly) {
   }
   EXPECT_EQ(verdict(judged("quadtree_siblings", tables), "relative"),
             "holds within bounds: leaves are of capacity 8");
-}
-
-TEST(QuadtreeSiblings, AreALossBelowTwiceTheTime) {
-  const Finding finding =
-      judged("quadtree_siblings", siblings([](double leaves) { return leaves == 4 ? 0.625 : 1.5; }));
-  EXPECT_TRUE(
-      verdict(finding, "spanning").starts_with("holds within bounds: a loss, of up to 1.60 times the time"))
-      << verdict(finding, "spanning");
-  EXPECT_EQ(figure(finding, "worst_leaves"), 4);
 }
 
 TEST(QuadtreeSiblings, AreJudgedByReferencesCarriedAcrossAndNotByTheWayThroughTheCommonNode) {
