@@ -37,6 +37,14 @@ std::string paragraph(const std::string& name, const std::string& text) {
   return fmt::format(".TP\n.B {}\n{}\n", escaped(name), escaped(text));
 }
 
+/// The words of a text that was wrapped.
+std::string in_one_line(const std::string& text) {
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
 /// What a footer says: examples, and then the meaning of exit statuses.
 std::string footer_of(const CLI::App& app) {
   static constexpr std::string_view status = "Exit status: ";
@@ -68,10 +76,9 @@ std::string ManPageFormatter::make_help(const CLI::App* app, std::string name, C
   page += heading("NAME") +
           fmt::format("{} \\- {}\n", escaped(page_name), escaped(first_clause(app->get_description())));
 
-  std::string usage = CLI::Formatter::make_usage(app, name);
-  usage = usage.substr(usage.find(name) + name.size());
-  usage.erase(usage.find_last_not_of('\n') + 1);
-  page += heading("SYNOPSIS") + fmt::format(".B {}\n{}\n", escaped(name), escaped(usage.substr(1)));
+  const std::string usage = in_one_line(make_usage(app, name));
+  const std::string arguments = usage.substr(usage.find(name) + name.size() + 1);
+  page += heading("SYNOPSIS") + fmt::format(".B {}\n{}\n", escaped(name), escaped(arguments));
   page += heading("DESCRIPTION") + escaped(app->get_description()) + "\n";
 
   const std::vector<const CLI::App*> verbs =
