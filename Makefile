@@ -69,18 +69,18 @@ python_folder := build/python
 
 python: $(python_folder)/builder/ready ## Build the Python package as a wheel: build/python/wheels/
 	rm -rf $(python_folder)/wheels
-	$(python_folder)/builder/bin/pip wheel . --quiet --no-build-isolation --no-deps --wheel-dir $(python_folder)/wheels \
+	$(python_folder)/builder/bin/python -m pip wheel . --quiet --no-build-isolation --no-deps --wheel-dir $(python_folder)/wheels \
 	  --config-settings build-dir=$(python_folder)/cmake
 
 test-python: python $(python_folder)/tester/ready ## Install the wheel and run the tests of the Python package
-	$(python_folder)/tester/bin/pip install --quiet --force-reinstall --no-deps $(python_folder)/wheels/*.whl
+	$(python_folder)/tester/bin/python -m pip install --quiet --force-reinstall --no-deps $(python_folder)/wheels/*.whl
 	$(python_folder)/tester/bin/python -m pytest -q tests/bindings/python
 
 $(python_folder)/builder/ready: bindings/python/requirements.txt
 $(python_folder)/tester/ready: tests/bindings/python/requirements.txt
 $(python_folder)/%/ready: | setup
 	python3 -m venv --clear $(@D)
-	$(@D)/bin/pip install --quiet --requirement $<
+	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
 
 test: tests-release ## Build everything and run all tests

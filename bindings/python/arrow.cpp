@@ -347,7 +347,12 @@ PairTable::PairTable(std::span<const Pair> pairs) {
 
 void add_arrow(nb::module_& module) {
   // A schema that is asked for is a wish, which the interface lets an exporter pass over.
-  nb::class_<PairTable>(module, "PairTable")
+  nb::class_<PairTable>(
+      module, "PairTable",
+      "Pairs as a table of two columns of uint32, `first` and `second`, by the Arrow C data interface.\n\n"
+      "pyarrow, polars and duckdb take it as it is: ``pyarrow.table(pairs)``, ``polars.DataFrame(pairs)``. "
+      "They\n"
+      "share its memory.")
       .def("__len__", &PairTable::size)
       .def("__arrow_c_schema__", [](const PairTable&) { return schema_capsule(); })
       .def(

@@ -67,6 +67,7 @@ std::size_t threads_of(nb::handle threads, std::string_view spec) {
 NB_MODULE(_core, module) {
   using namespace broadside::python;
   nb::register_exception_translator(translate);
+  WithoutGil::find_main_thread();
   module.attr("__version__") = BROADSIDE_VERSION;
   add_arrow(module);
   add_pairs(module);

@@ -33,15 +33,16 @@ struct Interrupted {};
 class WithoutGil {
  public:
   WithoutGil() : state_(PyEval_SaveThread()) {}
-  ~WithoutGil() { PyEval_RestoreThread(state_); }
+  ~WithoutGil() { take_back(state_); }
   WithoutGil(const WithoutGil&) = delete;
   WithoutGil& operator=(const WithoutGil&) = delete;
 
   /// Has Python run the handlers of signals that came, if it was last asked some time ago. Only in the thread
-  /// that made this. Throws Interrupted if a handler throws, as that of Ctrl-C does.
+  /// that made this; only Python's main thread runs handlers, so others are not held up. Throws Interrupted
+  /// if a handler throws, as that of Ctrl-C does.
   void check_signals() {
-    if (!has_thrown_ && Clock::now() >= next_check_) {
-      PyEval_RestoreThread(state_);
+    if (!has_thrown_ && Clock::now() >= next_check_ && is_main_thread()) {
+      take_back(state_);
       has_thrown_ = PyErr_CheckSignals() != 0;
       state_ = PyEval_SaveThread();
       next_check_ = Clock::now() + between_checks;
@@ -50,9 +51,18 @@ class WithoutGil {
     if (has_thrown_) throw Interrupted();
   }
 
+  /// For the module's import: remembers Python's main thread.
+  static void find_main_thread();
+
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds between_checks{50};
+
+  static bool is_main_thread();
+
+  /// Takes the GIL. A daemon thread that asks for it while Python ends would be ended by an exception that
+  /// must not be caught; it sleeps instead until the process ends.
+  static void take_back(PyThreadState* state);
 
   PyThreadState* state_;
   bool has_thrown_ = false;

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, overload
+from importlib import import_module
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from broadside import _convert, _core
-from broadside._core import PairTable
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+from broadside._core import PairTable as PairTable
 
 _find = _core.find
 _ARRAY = _core.ARRAY
@@ -60,7 +58,7 @@ def pairs(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
-) -> csr_array: ...
+) -> Any: ...
 def pairs(
     boxes: Any,
     other: Any = None,
@@ -120,9 +118,8 @@ def pairs(
     raise ValueError(f"output is {output!r}; expected 'numpy', 'arrow' or 'sparse'")
 
 
-def _sparse(boxes: Any, other: Any, *arguments: Any) -> csr_array:
-    from scipy.sparse import csr_array
-
+def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
+    csr_array = import_module("scipy.sparse").csr_array
     left = _convert.boxes(boxes, "boxes")
     right = None if other is None else _convert.boxes(other, "other")
     algorithm, *rest = arguments

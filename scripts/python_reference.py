@@ -11,7 +11,7 @@ import broadside
 HEAD = """\
 # Python reference
 
-Made from the docstrings by `bindings/python/reference.py`; [python.md](python.md) shows how things are used.
+Made from the docstrings by `scripts/python_reference.py`; [python.md](python.md) shows how things are used.
 """
 
 
