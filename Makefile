@@ -9,7 +9,7 @@ soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
 results := paper/results
 published := build/published
 PROCESSES := 10
-sources := find $(wildcard include src integrations paper lab cli tests bench examples) -name '*.[ch]pp'
+sources := find $(wildcard include src bindings integrations paper lab cli tests bench examples) -name '*.[ch]pp'
 
 help: ## List the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24

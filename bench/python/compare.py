@@ -80,7 +80,7 @@ def make_rtree(threads: int) -> Callable[..., Pairs] | None:
         right = np.ascontiguousarray(a if b is None else b)
         tree = index.Index((np.arange(len(right)), right[:, :half], right[:, half:]), properties=index.Property(dimension=half))
         found, counts = tree.intersection_v(a[:, :half], a[:, half:])
-        rows = np.column_stack([np.repeat(np.arange(len(a)), counts), found])
+        rows = np.column_stack([np.repeat(np.arange(len(a)), counts.astype(np.int64)), found])
         return self_pairs(rows) if b is None else rows
 
     return search
@@ -93,11 +93,12 @@ def make_prtree(threads: int) -> Callable[..., Pairs] | None:
         kind = prtree.PRTree2D if a.shape[1] == 4 else prtree.PRTree3D
         right = a if b is None else b
         tree = kind(np.arange(len(right)), right)
-        if b is None:
-            return np.asarray(tree.query_intersections())
         found = tree.batch_query(a)
         counts = [len(one) for one in found]
-        return np.column_stack([np.repeat(np.arange(len(a)), counts), np.concatenate([np.asarray(f, int) for f in found])])
+        rows = np.column_stack(
+            [np.repeat(np.arange(len(a)), counts), np.concatenate([np.asarray(one, np.int64) for one in found])]
+        )
+        return self_pairs(rows) if b is None else rows
 
     return search
 

@@ -106,8 +106,9 @@ def pairs(
         ValueError: Something has another shape, or does not fit to the rest.
 
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends with
-    the piece that it is at, of about a thousand boxes, and looks for signals every 50 milliseconds at most; a search by
-    one of the paper's listings ends with its next pairs. Any number of threads may call it at once.
+    the piece that it is at, of about a thousand boxes (of ``quadtree``, up to sixteen thousand or a third of a thread's
+    share); it looks for signals every 50 milliseconds at most. A search by one of the paper's listings ends with its
+    next pairs. Any number of threads may call it at once.
     """
     if output == "numpy":
         return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)

@@ -41,6 +41,9 @@ namespace {
 /// One thread splits nodes until each thread has this many.
 constexpr std::size_t parts_per_worker = 3;
 
+/// With a checkpoint a part has no more boxes than this, and little is split by one thread.
+constexpr std::size_t most_between_checkpoints = 16'384;
+
 /// Boxes in a leaf: up to about this many, a sweep costs what a further split would.
 template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
@@ -81,14 +84,16 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     first.stack.references.clear();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
       first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
-    if (parallel_.workers() == 1) {
+    if (parallel_.workers() == 1 && !this->workers().checkpoint) {
       search(first, 0, first.stack.references.size(), pairs);
       this->count(first.statistics);
       return;
     }
     parts_.clear();
     part_references_.clear();
-    expand(first, 0, first.stack.references.size(), boxes.size() / (parts_per_worker * parallel_.workers()));
+    std::size_t most_in_part = boxes.size() / (parts_per_worker * parallel_.workers());
+    if (this->workers().checkpoint) most_in_part = std::min(most_in_part, most_between_checkpoints);
+    expand(first, 0, first.stack.references.size(), most_in_part);
     const auto search_parts = [&](core::Range parts, std::size_t worker, PairSink& sink) {
       workers_[worker].statistics = {};
       for (std::size_t part = parts.begin; part < parts.end; ++part)

@@ -114,10 +114,10 @@ def test_refuses_arguments_that_do_not_fit():
     for arguments, error, message in [
         ({"algorithm": "gird"}, broadside.InvalidAlgorithmError, "did you mean 'grid'"),
         ({"algorithm": "grid:cell=-1"}, broadside.InvalidAlgorithmError, "cell"),
-        ({"algorithm": 7}, TypeError, ""),
+        ({"algorithm": 7}, TypeError, "find"),
         ({"output": "pandas"}, ValueError, "expected 'numpy', 'arrow' or 'sparse'"),
         ({"threads": 0}, ValueError, "threads is 0; expected 1 to 1024"),
-        ({"threads": "two"}, TypeError, ""),
+        ({"threads": "two"}, TypeError, "int"),
         ({"threads": 2, "algorithm": "grid:threads=2"}, ValueError, "expected one of the two"),
         ({"filters": broadside.filters(9)}, ValueError, r"shape \(9,\); expected \(10,\)"),
         ({"filters": np.zeros(10)}, TypeError, "expected what broadside.filters"),
