@@ -70,7 +70,7 @@ def test_gives_named_arrays_of_uint64():
 def test_refuses_stale_and_foreign_handles():
     world, other = broadside.World(2), broadside.World(2)
     a, b = world.add([[0, 0, 1, 1], [0, 0, 1, 1]])
-    (foreign,) = other.add([[0, 0, 1, 1]])
+    _, foreign = other.add([[0, 0, 1, 1], [0, 0, 1, 1]])  # in the slot of b
     world.remove(a)
     for wrong in (a, foreign, np.uint64(0), np.uint64(2**64 - 1)):
         assert wrong not in world
