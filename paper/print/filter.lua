@@ -66,7 +66,7 @@ local function tex_figures(figures)
       line = tex_figure(one, "0.485\\linewidth") .. "\\hfill" .. tex_figure(other, "0.485\\linewidth")
       i = i + 2
     else
-      line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.82\\linewidth")
+      line = tex_figure(one, one.width <= narrow and "0.485\\linewidth" or "0.66\\linewidth")
       i = i + 1
     end
     table.insert(floats, pandoc.RawBlock("latex", "\\begin{figure}[!htbp]\\centering " .. line .. "\\end{figure}"))
@@ -103,13 +103,13 @@ local function tex_sources(list)
   return {pandoc.RawBlock("latex", "\\begingroup\\footnotesize"), list, pandoc.RawBlock("latex", "\\endgroup")}
 end
 
--- A table that is not cut in two, with the title before it.
+-- A table that is not cut in two, with the title before it: text goes on where it does not fit.
 local function captioned_table(title, block)
   local caption = title and title.t == "Para" and #title.content == 1 and title.content[1].t == "Emph"
   local table_there = block and block.t == "RawBlock" and block.text:match("^\\begin{center}")
   if not caption or not table_there then return nil end
-  return pandoc.RawBlock("latex", "\\par\\medskip\\noindent\\begin{minipage}{\\linewidth}\\centering{\\footnotesize\\itshape " ..
-    tex(title.content[1].content) .. "\\par}" .. block.text .. "\\end{minipage}\\medskip")
+  return pandoc.RawBlock("latex", "\\begin{table}[!htbp]\\centering{\\footnotesize\\itshape " ..
+    tex(title.content[1].content) .. "\\par}" .. block.text .. "\\end{table}")
 end
 
 local function is_sources(block)
@@ -156,27 +156,34 @@ end
 local function fit(element)
   local most, sums = {}, {}
   for column = 1, #element.colspecs do most[column], sums[column] = 1, 1 end
-  local function look(rows)
+  local function look(rows, words)
     for _, row in ipairs(rows) do
       for column, cell in ipairs(row.cells) do
-        local length = #pandoc.utils.stringify(cell.contents)
+        local length = 0
+        for word in pandoc.utils.stringify(cell.contents):gmatch(words) do length = math.max(length, utf8.len(word)) end
         most[column] = math.max(most[column], length)
         sums[column] = sums[column] + length
       end
     end
   end
-  look(element.head.rows)
-  for _, body in ipairs(element.bodies) do look(body.body) end
+  look(element.head.rows, "%S+")  -- a heading may take several lines
+  for _, body in ipairs(element.bodies) do look(body.body, ".+") end
   local whole = 0
   for _, length in ipairs(most) do whole = whole + length end
-  local line = 128  -- characters
-  if whole <= line then return end
+  local line = 128  -- characters, of which the gaps between columns take some
+  local heads = 0
+  for _, row in ipairs(element.head.rows) do
+    for _, cell in ipairs(row.cells) do heads = heads + utf8.len(pandoc.utils.stringify(cell.contents)) end
+  end
+  if math.max(whole, heads) + 3 * #most <= line then return end
   local short, left, shares = 30, line, 0
   for column, length in ipairs(most) do
     if length <= short then left = left - length - 2 else shares = shares + math.sqrt(sums[column]) end
   end
+  -- Where all are short, what is left is spread.
+  local stretch = shares == 0 and line / (line - left) or 1
   for column, length in ipairs(most) do
-    local width = length <= short and (length + 2) or left * math.sqrt(sums[column]) / shares
+    local width = length <= short and (length + 2) * stretch or left * math.sqrt(sums[column]) / shares
     element.colspecs[column] = {element.colspecs[column][1], width / line}
   end
 end
