@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 
 import { documentOf, type Sources } from "../document.ts";
+import { inRounds } from "../../../web/tests/fixture.ts";
 import { Problem } from "../problem.ts";
 import { run } from "../program.ts";
 import { comparison, experiments, oldComparison } from "./fixture.ts";
@@ -175,6 +176,9 @@ test("peers with assertions are left out of leads over the others, and marked", 
 
 test("listings that are faster than every peer are counted, and how results were checked", () => {
   assert.equal(textOf("{{comparison.listings_faster}}"), "1");
+  const slow = oldComparison();
+  slow.measurements.find(({ kind }) => kind === "paper")!.median_ms = 16;
+  assert.equal(textOf("{{comparison.listings_faster}}", { comparison: JSON.stringify(inRounds(slow)) }), "0");
   assert.equal(textOf("{{comparison.checked.by_definition}} {{comparison.checked.by_others}}"), "7 0");
   const by = "cross-checked by 15 structures of 6 libraries";
   const given = { comparison: JSON.stringify(comparison()).replaceAll('"the definition"', `"${by}"`) };

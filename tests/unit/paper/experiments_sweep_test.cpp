@@ -120,7 +120,9 @@ Table motion_frames(double milliseconds_a_place, double heap = 160) {
 TEST(SweepInsertionExperiment, IsLinearWhereAsManyArePassedWhereMoreBoxesMeanMorePlaces) {
   const Finding finding = judged("sweep_insertion", {order_growth(1, 1.5, 1.67), motion_frames(1)});
   EXPECT_EQ(verdict(finding, "linear"),
-            "holds within bounds: a box passes as many others a frame, however many boxes there are");
+            "holds within bounds: the number of others that a box passes in a frame does not grow with the "
+            "number of "
+            "boxes");
   EXPECT_NE(finding.reason.find("n^1.50 in a plane"), std::string::npos) << finding.reason;
 }
 
