@@ -188,12 +188,12 @@ local function fit(element)
   end
 end
 
--- A table of a few rows is never cut in two; pandoc's own may be, and runs into the foot of a page that has figures.
+-- A table of a few short rows is never cut in two; pandoc's own may be, and runs into the foot of a page that has figures.
 local function table_of(element)
   fit(element)
-  local rows = 0
+  local rows, characters = 0, #pandoc.utils.stringify(element)
   for _, body in ipairs(element.bodies) do rows = rows + #body.body end
-  if rows > 14 then return element end
+  if rows > 14 or characters > 1500 then return element end
   local text = pandoc.write(pandoc.Pandoc({element}), "latex")
     :gsub("\\begin{longtable}%[%]", "\\begin{center}\\footnotesize\\begin{tabular}")
     :gsub("\\end{longtable}", "\\end{tabular}\\end{center}"):gsub("\\endhead\n", "")
