@@ -300,7 +300,8 @@ TEST(GridRebuilding, CountsTheEntriesThatTwoHashesAreSaidToLookAt) {
 
 TEST(GridRebuilding, JudgesTwiceTheTimeApartFromTwiceTheWork) {
   const auto fiftieth = [](double moving) { return moving / 50; };
-  EXPECT_EQ(verdict(judged("grid_rebuilding", grids(fiftieth, fiftieth, 4, 4)), "two_hashes_time"), "confirmed");
+  EXPECT_EQ(verdict(judged("grid_rebuilding", grids(fiftieth, fiftieth, 4, 4)), "two_hashes_time"),
+            "confirmed");
   const Finding finding = judged("grid_rebuilding", grids(fiftieth, twentieth, 2, 2));
   EXPECT_EQ(verdict(finding, "two_hashes_time"), "holds within bounds: there are few");
   EXPECT_EQ(verdict(finding, "two_hashes"), "confirmed");
