@@ -35,6 +35,11 @@ double student_quantile(std::size_t degrees_of_freedom) {
   return 1.960 + 2.372 / n + 2.822 / (n * n);
 }
 
+/// The geometric mean; of one number that very number.
+double mean_of_processes(const std::vector<double>& numbers) {
+  return numbers.size() == 1 ? numbers[0] : lab::geometric_mean(numbers);
+}
+
 /// The times of one process among those of all.
 std::span<const double> part_of(std::span<const double> times, const Measurement& measurement,
                                 std::size_t process) {
@@ -137,14 +142,11 @@ std::vector<double> RatiosByProcess::ratios() const {
   return ratios;
 }
 
-double RatiosByProcess::ratio() const {
-  const std::vector<double> all = ratios();
-  return all.size() == 1 ? all[0] : lab::geometric_mean(all);
-}
+double RatiosByProcess::ratio() const { return mean_of_processes(ratios()); }
 
-double RatiosByProcess::milliseconds() const { return lab::geometric_mean(medians_ms_); }
+double RatiosByProcess::milliseconds() const { return mean_of_processes(medians_ms_); }
 
-double RatiosByProcess::other_milliseconds() const { return lab::geometric_mean(other_medians_ms_); }
+double RatiosByProcess::other_milliseconds() const { return mean_of_processes(other_medians_ms_); }
 
 std::optional<Interval> RatiosByProcess::interval() const {
   const std::vector<double> all = ratios();

@@ -76,8 +76,9 @@ TEST_F(MergeResults, ReadsAFileOfTheSchemaAsItWasBefore) {
   const Json written = Json::parse(text_of(BROADSIDE_SOURCE_DIR "/tests/fixtures/results_v2.json"));
   const Json& ratio = written["measurements"][0]["ratio_to_fastest"];
   EXPECT_EQ(result.measurements[0].to_fastest->of, ratio["of"]);
-  EXPECT_DOUBLE_EQ(result.measurements[0].to_fastest->median, ratio["median"]);
-  EXPECT_DOUBLE_EQ(result.measurements[0].to_fastest->interval->low, ratio["low"]);
+  // Computed anew from the samples: that version's medians were not of logarithms.
+  EXPECT_NEAR(result.measurements[0].to_fastest->median, ratio["median"], 0.05);
+  EXPECT_NEAR(result.measurements[0].to_fastest->interval->low, ratio["low"], 0.05);
 }
 
 TEST_F(MergeResults, TakesFilesOfOneMachineForItsProcesses) {

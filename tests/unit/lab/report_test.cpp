@@ -310,16 +310,23 @@ TEST(JsonResults, HoldRatiosOfTheRoundsThatBothTookPartIn) {
                                       timed("theirs", {8, 8})};
   entries[2].kind = AlgorithmKind::peer;
   const Json json = parsed(entries);
-  EXPECT_EQ(
-      json["measurements"][0]["ratio_to_best_own"],
-      (Json{{"of", "grid"}, {"median", 1.5}, {"low", 1.5}, {"high", 1.5}, {"rounds", 6}, {"processes", 1}}));
+  EXPECT_EQ(json["measurements"][0]["ratio_to_best_own"], (Json{{"of", "grid"},
+                                                                {"median", 1.5},
+                                                                {"low", 1.5},
+                                                                {"high", 1.5},
+                                                                {"rounds", 6},
+                                                                {"processes", 1},
+                                                                {"ms", 3},
+                                                                {"of_ms", 2}}));
   EXPECT_EQ(json["measurements"][0]["ratio_to_fastest_peer"]["median"], 3.0 / 8);
   EXPECT_EQ(json["measurements"][2]["ratio_to_fastest"], (Json{{"of", "grid"},
                                                                {"median", 4.0},
                                                                {"low", nullptr},
                                                                {"high", nullptr},
                                                                {"rounds", 2},
-                                                               {"processes", 1}}));
+                                                               {"processes", 1},
+                                                               {"ms", 8},
+                                                               {"of_ms", 2}}));
 }
 
 TEST(JsonResults, SayHowMuchOfAProcessorTheRunHad) {
