@@ -55,16 +55,17 @@ export function ranking(of: Case): Timed[] {
   return of.measurements.filter(isTimed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
-/** The one that the case's ratios of this name are to; undefined where there are none. */
-function referenceOf(of: Case, name: RatioName): Timed | undefined {
+/** Of a kind's, the one that the case's ratios of this name are to; where there are no ratios, the fastest. */
+function referenceOf(of: Case, name: RatioName, those: readonly Timed[]): Timed | undefined {
   const spec = of.measurements.find((measurement) => measurement[name] !== null)?.[name]?.of;
-  return ranking(of).find(({ algorithm }) => algorithm === spec);
+  return those.find(({ algorithm }) => algorithm === spec) ?? those[0];
 }
 
 /** The fastest of ours other than auto, which takes one of the others; auto where it is the only one. */
 export function bestOwn(of: Case): Timed | undefined {
   const own = ranking(of).filter((measurement) => measurement.kind === "own");
-  return referenceOf(of, "ratio_to_best_own") ?? own.find(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto") ?? own[0];
+  const others = own.filter(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto");
+  return referenceOf(of, "ratio_to_best_own", others.length > 0 ? others : own);
 }
 
 /** One of the other libraries, or of the literature, over our best. */
@@ -87,8 +88,8 @@ export function leadOver(of: Case, peer: Timed | undefined): LeadOf | undefined 
 
 /** The time of the fastest peer over that of our best; undefined where one of them is not there. */
 export function leadOf(of: Case): LeadOf | undefined {
-  const fastest = ranking(of).find((measurement) => measurement.kind === "peer");
-  return leadOver(of, referenceOf(of, "ratio_to_fastest_peer") ?? fastest);
+  const peers = ranking(of).filter((measurement) => measurement.kind === "peer");
+  return leadOver(of, referenceOf(of, "ratio_to_fastest_peer", peers));
 }
 
 export interface Standing {
