@@ -109,9 +109,11 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench paper-results published deb: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper: setup_options := --paper
+
+deb: setup_options := --deb
 
 systems: setup_options := --systems
 python test-python: setup_options := --python

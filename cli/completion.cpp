@@ -112,7 +112,7 @@ _{0}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} options= values=
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W '{1} {2}' -- "$word"))
+    mapfile -t COMPREPLY < <(compgen -W '{1} {2}' -- "$word")
     return
   fi
   case ${{COMP_WORDS[COMP_CWORD - 1]}} in
@@ -123,8 +123,8 @@ _{0}() {{
       ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "$options" -- "$word")) ;;
-    *) COMPREPLY=($(compgen -W "$values" -- "$word") $(compgen -f -- "$word")) ;;
+    -*) mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word") ;;
+    *) mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word"; compgen -f -- "$word") ;;
   esac
 }}
 complete -o filenames -F _{0} {0}

@@ -14,7 +14,7 @@ foreach(page IN LISTS pages)
   write_output(${FOLDER}/man1/broadside-${verb}.1 help --man ${verb})
 endforeach()
 file(GLOB pages ${FOLDER}/man1/*.1)
-execute_process(COMMAND gzip -9n ${pages} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${GZIP} -9n ${pages} COMMAND_ERROR_IS_FATAL ANY)
 
 write_output(${FOLDER}/broadside completion bash)
 write_output(${FOLDER}/_broadside completion zsh)

@@ -59,10 +59,11 @@ struct Workers {
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 
-  /// Called now and then in a search, by the thread that called find() or update(): before each of the pieces
-  /// of about a thousand boxes that the search is cut into. What it throws ends the search and is thrown by
-  /// that function. If it is empty, a search of one thread runs through. Algorithms without the tunable
-  /// `threads` do not call it.
+  /// Called now and then in a search, by the thread that called find() or update(): before each piece of the
+  /// search that this thread takes. Pieces are of about a thousand boxes, those of `quadtree` of up to
+  /// 16,384; sorting and building have none, nor have algorithms without the tunable `threads`, and an
+  /// executor that leaves the calling thread out leaves it none. What it throws ends the search and is thrown
+  /// by that function. If it is empty, a search of one thread runs through.
   std::function<void()> checkpoint{};
 };
 

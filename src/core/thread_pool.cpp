@@ -4,7 +4,23 @@
 #include <atomic>
 #include <system_error>
 
+#ifndef _WIN32
+#include <unistd.h>
+#endif
+
 namespace broadside::core {
+namespace {
+
+/// A number that is another one in a forked child.
+long this_process() noexcept {
+#ifdef _WIN32
+  return 0;
+#else
+  return getpid();
+#endif
+}
+
+}  // namespace
 
 struct ThreadPool::Job {
   const std::function<void(std::size_t)>& task;
@@ -12,6 +28,8 @@ struct ThreadPool::Job {
   std::atomic<std::size_t> next{0};
   std::size_t helpers = 0;  // that take part in it
 };
+
+ThreadPool::ThreadPool(std::size_t threads) : threads_(threads), process_(this_process()) {}
 
 ThreadPool::~ThreadPool() {
   {
@@ -24,7 +42,8 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& task) {
   Job job{task, count};
-  if (count < 2 || threads_ < 2) return take_part(job);
+  // A forked child has the mutex as some thread of its parent's held it, perhaps for ever.
+  if (count < 2 || threads_ < 2 || process_ != this_process()) return take_part(job);
   {
     const std::lock_guard lock(mutex_);
     start_helpers();

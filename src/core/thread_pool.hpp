@@ -13,13 +13,14 @@
 namespace broadside::core {
 
 /// Threads that sleep until there is something to run. run() may be called from several threads and from
-/// within tasks: whoever calls it takes part, so that it needs no other thread to end. In a forked child,
-/// where the threads are gone, the caller does all by itself.
+/// within tasks: whoever calls it takes part, so that it needs no other thread to end. In a forked child of
+/// the process that made the pool, where the threads are gone, the caller does all by itself; but a run()
+/// that is under way in the forking thread does not end there.
 class ThreadPool final : public Executor {
  public:
   /// `threads` counts the calling thread, and is at least 1. The others start with the first run() that can
   /// use them; those that the system refuses are done without.
-  explicit ThreadPool(std::size_t threads) : threads_(threads) {}
+  explicit ThreadPool(std::size_t threads);
 
   /// No run() may be under way.
   ~ThreadPool() override;
@@ -37,6 +38,7 @@ class ThreadPool final : public Executor {
   void help();
 
   std::size_t threads_;
+  long process_;      // that made it
   std::mutex mutex_;  // guards all below, and a job's helpers
   std::condition_variable wake_;
   std::condition_variable done_;
