@@ -196,7 +196,12 @@ template <typename Structure>
 Structure& structure_of(nb::handle capsule) {
   void* const structure = PyCapsule_GetPointer(capsule.ptr(), capsule_name<Structure>);
   if (structure == nullptr) throw nb::python_error();
-  return *static_cast<Structure*>(structure);
+  auto& exported = *static_cast<Structure*>(structure);
+  if (exported.release == nullptr)
+    throw nb::value_error((std::string("the capsule '") + capsule_name<Structure> +
+                           "' was already taken; expected a new one from each call")
+                              .c_str());
+  return exported;
 }
 
 /// What was taken over from an exporter, and is released with the last array that sees it.
@@ -261,6 +266,14 @@ void check_nulls(const ArrowArray& array, std::int64_t offset, std::int64_t leng
 }
 
 /// `columns` = 0: one value a row.
+nb::object array_of_type(const nb::dlpack::dtype& type, const void* data, std::int64_t rows,
+                         std::size_t columns, nb::handle owner) {
+  const std::array<std::size_t, 2> shape{static_cast<std::size_t>(rows), columns};
+  return nb::cast(nb::ndarray<nb::numpy, nb::ro>(const_cast<void*>(data), columns == 0 ? 1 : 2, shape.data(),
+                                                 owner, nullptr, type),
+                  nb::rv_policy::reference);
+}
+
 nb::object column(const TakenArray& taken, const ArrowSchema& schema, const ArrowArray& values,
                   std::int64_t first, std::int64_t rows, std::size_t columns) {
   const nb::dlpack::dtype type = type_of(schema);
@@ -270,34 +283,25 @@ nb::object column(const TakenArray& taken, const ArrowSchema& schema, const Arro
   auto kept = std::make_unique<TakenArray>(taken);
   nb::capsule owner(kept.get(), [](void* held) noexcept { delete static_cast<TakenArray*>(held); });
   static_cast<void>(kept.release());
-  const std::array<std::size_t, 2> shape{static_cast<std::size_t>(rows), columns};
   const void* const data = bytes == nullptr ? nullptr : bytes + first * (type.bits / 8);
-  return nb::cast(nb::ndarray<nb::numpy, nb::ro>(const_cast<void*>(data), columns == 0 ? 1 : 2, shape.data(),
-                                                 owner, nullptr, type),
-                  nb::rv_policy::reference);
+  return array_of_type(type, data, rows, columns, owner);
 }
 
-/// The columns of a struct by name, or the one array of rows of lists of a fixed length, without a name.
-nb::list columns_of(const ArrowSchema& schema, ArrowArray& exported) {
-  const auto taken = std::make_shared<Taken<ArrowArray>>(exported);
-  const ArrowArray& array = taken->structure;
+/// The columns of a struct by name, or the one array of rows of lists of a fixed length, without a name. Each
+/// is what array_of(schema, i, width) gives for its child; width 0: one value a row.
+template <typename ArrayOf>
+nb::list named_columns(const ArrowSchema& schema, const ArrayOf& array_of) {
   const std::string format = schema.format;
   nb::list columns;
-  check_nulls(array, array.offset, array.length, schema.name);
   if (format == "+s") {
     for (std::int64_t i = 0; i < schema.n_children; ++i) {
       const ArrowSchema& child = *schema.children[i];
-      const ArrowArray& values = *array.children[i];
       columns.append(
-          nb::make_tuple(std::string(child.name == nullptr ? "" : child.name),
-                         column(taken, child, values, array.offset + values.offset, array.length, 0)));
+          nb::make_tuple(std::string(child.name == nullptr ? "" : child.name), array_of(child, i, 0)));
     }
   } else if (format.starts_with("+w:")) {
-    const std::int64_t width = std::stoll(format.substr(3));
-    const ArrowArray& values = *array.children[0];
-    columns.append(nb::make_tuple(
-        std::string(), column(taken, *schema.children[0], values, array.offset * width + values.offset,
-                              array.length, static_cast<std::size_t>(width))));
+    columns.append(
+        nb::make_tuple(std::string(), array_of(*schema.children[0], 0, std::stoll(format.substr(3)))));
   } else {
     throw nb::type_error(
         ("an Arrow array of type '" + format + "'; expected a struct of columns or lists of a fixed size")
@@ -306,7 +310,25 @@ nb::list columns_of(const ArrowSchema& schema, ArrowArray& exported) {
   return columns;
 }
 
-/// Those of each chunk.
+nb::list columns_of(const ArrowSchema& schema, ArrowArray& exported) {
+  const auto taken = std::make_shared<Taken<ArrowArray>>(exported);
+  const ArrowArray& array = taken->structure;
+  check_nulls(array, array.offset, array.length, schema.name);
+  return named_columns(schema, [&](const ArrowSchema& child, std::int64_t i, std::int64_t width) {
+    const ArrowArray& values = *array.children[i];
+    const std::int64_t first = array.offset * (width == 0 ? 1 : width) + values.offset;
+    return column(taken, child, values, first, array.length, static_cast<std::size_t>(width));
+  });
+}
+
+/// The columns of no rows.
+nb::list empty_columns_of(const ArrowSchema& schema) {
+  return named_columns(schema, [](const ArrowSchema& child, std::int64_t, std::int64_t width) {
+    return array_of_type(type_of(child), nullptr, 0, static_cast<std::size_t>(width), nb::none());
+  });
+}
+
+/// Those of each chunk; of a stream of none, those of no rows.
 nb::list columns_of_stream(nb::handle capsule) {
   Taken<ArrowArrayStream> stream(structure_of<ArrowArrayStream>(capsule));
   const auto check = [&](int error) {
@@ -322,9 +344,11 @@ nb::list columns_of_stream(nb::handle capsule) {
   while (true) {
     ArrowArray array{};
     check(stream.structure.get_next(&stream.structure, &array));
-    if (array.release == nullptr) return chunks;
+    if (array.release == nullptr) break;
     chunks.append(columns_of(schema.structure, array));
   }
+  if (nb::len(chunks) == 0) chunks.append(empty_columns_of(schema.structure));
+  return chunks;
 }
 
 nb::list columns_of_array(nb::handle schema_capsule, nb::handle array_capsule) {

@@ -86,11 +86,12 @@ void add_index(nb::module_& module) {
       .def("dimension", &Index::dimension)
       .def("has_doubles", &Index::has_doubles)
       .def("bytes", &Index::bytes)
-      .def("overlapping", &Index::overlapping)
-      .def("containing", &Index::containing)
-      .def("hits", &Index::hits)
-      .def("first_hit", &Index::first_hit)
-      .def("nearest", &Index::nearest);
+      .def("overlapping", &Index::overlapping, nb::arg("queries").none())
+      .def("containing", &Index::containing, nb::arg("points").none())
+      .def("hits", &Index::hits, nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"))
+      .def("first_hit", &Index::first_hit, nb::arg("origins").none(), nb::arg("directions").none(),
+           nb::arg("t_max"))
+      .def("nearest", &Index::nearest, nb::arg("points").none(), nb::arg("k"));
   module.def("make_index", &make_index);
 }
 

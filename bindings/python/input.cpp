@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include <nanobind/stl/string.h>
+
 namespace broadside::python {
 namespace {
 
@@ -33,12 +35,17 @@ char native_format(const Py_buffer& buffer) {
   return format.size() == 1 ? format[0] : '\0';
 }
 
+PyObject* array_type = nullptr;
+
 bool is_plain_array(nb::handle object) {
-  static PyObject* const type = nb::object(nb::module_::import_("numpy").attr("ndarray")).release().ptr();
-  return reinterpret_cast<PyObject*>(Py_TYPE(object.ptr())) == type;
+  return reinterpret_cast<PyObject*>(Py_TYPE(object.ptr())) == array_type;
 }
 
 }  // namespace
+
+void find_array_type() {
+  array_type = nb::object(nb::module_::import_("numpy").attr("ndarray")).release().ptr();
+}
 
 void Rows::swap(Rows& other) noexcept {
   std::swap(buffer_, other.buffer_);
@@ -105,7 +112,34 @@ Rows Rows::of(nb::handle object, const char* name, std::size_t columns, bool are
   return converted;
 }
 
+Rows Rows::of_boxes_or_empty(nb::handle object, const char* name, std::size_t columns) {
+  return is_empty_sequence(object) ? of(object, name, columns, false) : of_boxes(object, name);
+}
+
 Rows Rows::widened(const char* name) const { return of(object_, name, columns_, true); }
+
+bool is_empty_sequence(nb::handle object) {
+  return (nb::isinstance<nb::list>(object) || nb::isinstance<nb::tuple>(object)) && nb::len(object) == 0;
+}
+
+std::string text(nb::handle object, const char* name) {
+  std::string found;
+  if (nb::try_cast(object, found)) return found;
+  throw nb::type_error((std::string(name) + " is of " +
+                        nb::cast<std::string>(object.type().attr("__name__")) + "; expected a str")
+                           .c_str());
+}
+
+bool truth(nb::handle object) {
+  const int is_true = PyObject_IsTrue(object.ptr());
+  if (is_true < 0) throw nb::python_error();
+  return is_true != 0;
+}
+
+nb::object text_of(std::string_view bytes) {
+  return nb::steal(
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "surrogateescape"));
+}
 
 std::vector<std::uint64_t> integers(nb::handle object, const char* name, std::uint64_t most) {
   return numbers_by("integers", object, name, most);

@@ -9,11 +9,13 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 
 #include "broadside/box.hpp"
+#include "broadside/error.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
@@ -29,6 +31,9 @@ class Rows {
   /// The rows of `object`, boxes or points, whatever kind of array it is. What is not such rows already is
   /// converted by broadside._convert, once, which also refuses what is none; `name` is what errors call it.
   static Rows of_boxes(nb::handle object, const char* name);
+
+  /// Likewise, or none where `object` is an empty list or tuple, whose rows are taken for so long.
+  static Rows of_boxes_or_empty(nb::handle object, const char* name, std::size_t columns = 4);
 
   /// Likewise, exactly converted to rows of `columns` floats or doubles where they are others.
   static Rows of(nb::handle object, const char* name, std::size_t columns, bool are_doubles);
@@ -91,6 +96,42 @@ auto with_kind(int dimension, bool are_doubles, const Body& body) {
     return are_doubles ? body.template operator()<2, double>() : body.template operator()<2, float>();
   return are_doubles ? body.template operator()<3, double>() : body.template operator()<3, float>();
 }
+
+/// An invalid box of the argument of this name.
+class InvalidBoxOf : public InvalidInput {
+ public:
+  InvalidBoxOf(const char* argument, const InvalidInput& error)
+      : InvalidInput(error.index(), error.what()), argument_(argument) {}
+  InvalidBoxOf(const char* argument, std::size_t index, const std::string& message)
+      : InvalidInput(index, message), argument_(argument) {}
+
+  const char* argument() const noexcept { return argument_; }
+
+ private:
+  const char* argument_;
+};
+
+/// Whether no algorithm may see the box.
+template <int D, typename Real>
+bool is_invalid(const Box<D, Real>& box) noexcept {
+  return !is_present(box) && !is_absent(box);
+}
+
+/// For the module's import: remembers NumPy's type of arrays. Not asked for in a call: an import may let
+/// another thread run, which must not wait for this one while it holds the GIL.
+void find_array_type();
+
+/// Whether this is an empty list or tuple, which tells no dimension.
+bool is_empty_sequence(nb::handle object);
+
+/// A str, or TypeError.
+std::string text(nb::handle object, const char* name);
+
+/// Python's bool() of it.
+bool truth(nb::handle object);
+
+/// A str of UTF-8, and of whatever a file's name may be.
+nb::object text_of(std::string_view bytes);
 
 /// The elements of a one-dimensional array of unsigned integers, by broadside._convert.
 std::vector<std::uint64_t> integers(nb::handle object, const char* name, std::uint64_t most);

@@ -75,9 +75,10 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
 }
 
 /// The boxes of one frame of a file, and what could not be read of it.
-nb::object read(const std::string& path, const std::string& format, const std::string& boxes,
+nb::object read(const nb::bytes& name, const std::string& format, const std::string& boxes,
                 const std::string& columns, const std::string& layer, int dimension, std::size_t frame,
                 bool skips_invalid) {
+  const std::string path(name.c_str(), name.size());
   lab::ReadOptions options;
   options.format = format;
   options.boxes = boxes;
@@ -111,7 +112,7 @@ nb::object read(const std::string& path, const std::string& format, const std::s
   });
   if (!invalid.empty()) warning += (warning.empty() ? "" : "\n") + invalid;
   const nb::object array = std::visit([](auto& all) { return array_of_boxes(std::move(all)); }, found);
-  return nb::make_tuple(array, warning);
+  return nb::make_tuple(array, text_of(warning));
 }
 
 nb::object formats() {
@@ -163,7 +164,7 @@ nb::object scenes() {
 void add_lab(nb::module_& module) {
   static_cast<void>(catalogue());
   module.def("algorithms", &algorithms);
-  module.def("advise", &advise, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("threads"),
+  module.def("advise", &advise, nb::arg("boxes").none(), nb::arg("algorithms"), nb::arg("threads"),
              nb::arg("budget"));
   module.def("read", &read, nb::arg("path"), nb::arg("format"), nb::arg("boxes"), nb::arg("columns"),
              nb::arg("layer"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));

@@ -8,6 +8,7 @@
 #include "broadside/error.hpp"
 #include "broadside/version.hpp"
 
+#include "bindings/python/input.hpp"
 #include "bindings/python/running.hpp"
 #include "lab/formats/format.hpp"
 
@@ -17,20 +18,22 @@ namespace {
 /// Sets Python's error of this class.
 void raise(const char* name, const std::exception& error) {
   const nb::object type = nb::module_::import_("broadside._errors").attr(name);
-  PyErr_SetString(type.ptr(), error.what());
+  PyErr_SetObject(type.ptr(), text_of(error.what()).ptr());
 }
 
-void raise_invalid_box(const InvalidInput& error) {
+void raise_invalid_box(const InvalidInput& error, const char* argument) {
   const nb::object type = nb::module_::import_("broadside._errors").attr("InvalidBoxError");
-  const nb::object raised = type(error.what(), error.index());
+  const nb::object raised = type(error.what(), error.index(), argument);
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
 void translate(const std::exception_ptr& pointer, void*) {
   try {
     std::rethrow_exception(pointer);
+  } catch (const InvalidBoxOf& error) {
+    raise_invalid_box(error, error.argument());
   } catch (const InvalidInput& error) {
-    raise_invalid_box(error);
+    raise_invalid_box(error, "boxes");
   } catch (const InvalidQuery& error) {
     raise("InvalidQueryError", error);
   } catch (const InvalidSpec& error) {
@@ -41,6 +44,8 @@ void translate(const std::exception_ptr& pointer, void*) {
     raise("InvalidSnapshotError", error);
   } catch (const lab::FileError& error) {
     raise("FileError", error);
+  } catch (const std::invalid_argument& error) {
+    PyErr_SetObject(PyExc_ValueError, text_of(error.what()).ptr());
   } catch (const std::length_error&) {
     PyErr_NoMemory();
   }
@@ -54,10 +59,13 @@ std::size_t threads_of(nb::handle threads, std::string_view spec) {
   if (is_in_spec)
     throw std::invalid_argument("threads are given as an argument and in '" + std::string(spec) +
                                 "'; expected one of the two");
-  const long count = PyLong_AsLong(threads.ptr());
+  if (PyBool_Check(threads.ptr()))
+    throw nb::type_error("threads is of bool; expected an int, or None for all");
+  int overflow = 0;
+  const long count = PyLong_AsLongAndOverflow(threads.ptr(), &overflow);
   if (count == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
   if (count < 1 || count > 1024)
-    throw std::invalid_argument("threads is " + std::to_string(count) +
+    throw std::invalid_argument("threads is " + std::string(nb::str(threads).c_str()) +
                                 "; expected 1 to 1024, or None for all");
   return static_cast<std::size_t>(count);
 }
@@ -68,6 +76,7 @@ NB_MODULE(_core, module) {
   using namespace broadside::python;
   nb::register_exception_translator(translate);
   WithoutGil::find_main_thread();
+  find_array_type();
   module.attr("__version__") = BROADSIDE_VERSION;
   add_arrow(module);
   add_pairs(module);

@@ -45,21 +45,21 @@ struct Search {
   IgnoredPairs ignored;
   bool quarantine;
 
-  Search(nb::handle first, nb::handle second, std::string spec, nb::handle most_threads, nb::handle kinds,
-         nb::handle other_kinds, nb::handle never, bool quarantines)
-      : boxes(Rows::of_boxes(first, "boxes")),
+  Search(nb::handle first, nb::handle second, std::string spec, nb::handle most_threads,
+         nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs, bool quarantines)
+      : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
         threads(threads_of(most_threads, algorithm)),
-        filters(python::filters(kinds, boxes.size(), "filters")),
+        filters(python::filters(first_filters, boxes.size(), "filters")),
         quarantine(quarantines) {
-    if (!second.is_none()) take_other(second, other_kinds);
-    if (other && !never.is_none())
+    if (!second.is_none()) take_other(first, second, second_filters);
+    if (other && !ignored_pairs.is_none())
       throw std::invalid_argument("ignored pairs are given with two sets; expected them with one set alone");
-    if (!other && !other_kinds.is_none())
+    if (!other && !second_filters.is_none())
       throw std::invalid_argument("other_filters are given without other boxes; expected both or neither");
-    if (never.is_none()) return;
+    if (ignored_pairs.is_none()) return;
     const std::uint64_t most = boxes.size() == 0 ? 0 : boxes.size() - 1;
-    const std::vector<std::uint64_t> places = pairs_of_integers(never, "ignored", most);
+    const std::vector<std::uint64_t> places = pairs_of_integers(ignored_pairs, "ignored", most);
     for (std::size_t i = 0; i + 1 < places.size(); i += 2)
       ignored.insert({static_cast<BoxId>(places[i]), static_cast<BoxId>(places[i + 1])});
   }
@@ -68,20 +68,36 @@ struct Search {
   void run(PairSink& pairs, WithoutGil& released) const {
     with_kind(boxes.dimension(), boxes.are_doubles(), [&]<int D, typename Real>() {
       const auto finder = make_finder<D, Real>(algorithm);
-      std::optional<Using<PairFinder<D, Real>>> use;
+      std::optional<ScopedWorkers<PairFinder<D, Real>>> use;
       if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(*finder, threads, released);
       if (quarantine) finder->set_bad_input(BadInput::quarantine);
       const PairFilters which{filters, other_filters, &ignored};
       if (other)
-        finder->find_between(boxes.boxes<D, Real>(), other->boxes<D, Real>(), pairs, which);
+        find_between(*finder, pairs, which);
       else
         finder->find(boxes.boxes<D, Real>(), pairs, which);
     });
   }
 
  private:
-  void take_other(nb::handle second, nb::handle other_kinds) {
-    other.emplace(Rows::of_boxes(second, "other"));
+  template <int D, typename Real>
+  void find_between(PairFinder<D, Real>& finder, PairSink& pairs, const PairFilters& which) const {
+    const BoxView<D, Real> left = boxes.boxes<D, Real>();
+    try {
+      finder.find_between(left, other->boxes<D, Real>(), pairs, which);
+    } catch (const InvalidInput& error) {
+      // The sets are looked at in their order; the library calls them left and right.
+      const bool is_left = error.index() < left.size() && is_invalid(left[error.index()]);
+      const char* const argument = is_left ? "boxes" : "other";
+      const std::string_view message = error.what();
+      throw InvalidBoxOf(argument, error.index(),
+                         std::string(argument) + ":" + std::string(message.substr(message.find(' '))));
+    }
+  }
+
+  void take_other(nb::handle first, nb::handle second, nb::handle second_filters) {
+    other.emplace(Rows::of_boxes_or_empty(second, "other", boxes.columns()));
+    if (is_empty_sequence(first)) boxes = Rows::of(first, "boxes", other->columns(), other->are_doubles());
     if (other->columns() != boxes.columns())
       throw std::invalid_argument("boxes are in " + std::to_string(boxes.dimension()) + "D and other in " +
                                   std::to_string(other->dimension()) +
@@ -89,7 +105,7 @@ struct Search {
     // Doubles hold all floats.
     if (boxes.are_doubles() && !other->are_doubles()) other = other->widened("other");
     if (!boxes.are_doubles() && other->are_doubles()) boxes = boxes.widened("boxes");
-    other_filters = python::filters(other_kinds, other->size(), "other_filters");
+    other_filters = python::filters(second_filters, other->size(), "other_filters");
   }
 };
 
@@ -114,16 +130,36 @@ std::uint64_t counted(const Search& search) {
 /// What find() gives.
 enum class Result { array, table, count };
 
-nb::object find(int result, nb::handle boxes, nb::handle other, std::string algorithm, bool sorts,
+nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
-                bool quarantine) {
-  const Search search(boxes, other, std::move(algorithm), threads, filters, other_filters, ignored,
-                      quarantine);
+                nb::handle quarantine) {
+  const Search search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters, ignored,
+                      truth(quarantine));
+  const bool sorts = truth(sort);
   if (static_cast<Result>(result) == Result::count) return nb::cast(counted(search));
   std::vector<Pair> pairs = found(search, sorts);
-  if (static_cast<Result>(result) == Result::table) return nb::cast(PairTable(pairs));
+  if (static_cast<Result>(result) == Result::table)
+    return nb::cast(without_gil([&](WithoutGil&) { return PairTable(pairs); }));
   const std::size_t count = pairs.size();
   return array_of<std::uint32_t>(std::move(pairs), {count, 2});
+}
+
+/// The places of invalid boxes.
+nb::object invalid_rows(nb::handle boxes) {
+  const Rows rows = Rows::of_boxes_or_empty(boxes, "boxes");
+  std::vector<std::int64_t> invalid =
+      with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() {
+        return without_gil([&](WithoutGil&) {
+          const BoxView<D, Real> all = rows.boxes<D, Real>();
+          std::vector<std::int64_t> found;
+          for (std::size_t i = 0; i < all.size(); ++i) {
+            if (is_invalid(all[i])) found.push_back(static_cast<std::int64_t>(i));
+          }
+          return found;
+        });
+      });
+  const std::size_t count = invalid.size();
+  return array_of(std::move(invalid), {count});
 }
 
 }  // namespace
@@ -132,9 +168,11 @@ void add_pairs(nb::module_& module) {
   module.attr("ARRAY") = static_cast<int>(Result::array);
   module.attr("TABLE") = static_cast<int>(Result::table);
   module.attr("COUNT") = static_cast<int>(Result::count);
-  module.def("find", &find, nb::arg("result"), nb::arg("boxes"), nb::arg("other").none(),
-             nb::arg("algorithm"), nb::arg("sort"), nb::arg("threads").none(), nb::arg("filters").none(),
-             nb::arg("other_filters").none(), nb::arg("ignored").none(), nb::arg("quarantine"));
+  module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
+             nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
+             nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
+             nb::arg("quarantine").none());
+  module.def("invalid_rows", &invalid_rows, nb::arg("boxes").none());
 }
 
 }  // namespace broadside::python

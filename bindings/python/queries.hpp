@@ -1,6 +1,8 @@
 // Queries in bulk, to an index or to a world's, and their answers as arrays.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -84,7 +86,6 @@ class Queries {
     const Rows rows = Rows::of(points, "points", D, are_doubles);
     std::vector<Point> memory;
     const std::span<const Point> asked = rows.array(memory);
-    if (k == 0) throw std::invalid_argument("k is 0; expected at least 1");
     if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(asked.size(), 1))
       throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(asked.size()) +
                                   " points; expected at most 2^32 answers");
@@ -110,27 +111,35 @@ class Queries {
   class Rays {
    public:
     Rays(nb::handle origins, nb::handle directions, double t_max)
-        : origins_(Rows::of(origins, "origins", D, are_doubles)),
-          directions_(Rows::of(directions, "directions", D, are_doubles)),
-          starts_(origins_.array(start_memory_)),
-          ways_(directions_.array(way_memory_)),
-          t_max_(static_cast<Real>(t_max)) {
-      if (starts_.size() != ways_.size())
-        throw std::invalid_argument("there are " + std::to_string(starts_.size()) + " origins and " +
-                                    std::to_string(ways_.size()) +
+        : origin_rows_(Rows::of(origins, "origins", D, are_doubles)),
+          direction_rows_(Rows::of(directions, "directions", D, are_doubles)),
+          origins_(origin_rows_.array(origin_memory_)),
+          directions_(direction_rows_.array(direction_memory_)),
+          t_max_(rounded_down(t_max)) {
+      if (origins_.size() != directions_.size())
+        throw std::invalid_argument("there are " + std::to_string(origins_.size()) + " origins and " +
+                                    std::to_string(directions_.size()) +
                                     " directions; expected one for each origin");
     }
 
-    std::size_t size() const noexcept { return starts_.size(); }
-    Ray<D, Real> operator[](std::size_t i) const { return {starts_[i], ways_[i], t_max_}; }
+    std::size_t size() const noexcept { return origins_.size(); }
+    Ray<D, Real> operator[](std::size_t i) const { return {origins_[i], directions_[i], t_max_}; }
 
    private:
-    Rows origins_;
-    Rows directions_;
-    std::vector<Point> start_memory_;
-    std::vector<Point> way_memory_;
-    std::span<const Point> starts_;
-    std::span<const Point> ways_;
+    /// The greatest Real up to t_max, so that a hit's t is at most what was asked for.
+    static Real rounded_down(double t_max) {
+      constexpr double most = std::numeric_limits<Real>::max();
+      if (std::isfinite(t_max)) t_max = std::clamp(t_max, -most, most);
+      const Real rounded = static_cast<Real>(t_max);
+      return rounded > t_max ? std::nextafter(rounded, -std::numeric_limits<Real>::infinity()) : rounded;
+    }
+
+    Rows origin_rows_;
+    Rows direction_rows_;
+    std::vector<Point> origin_memory_;
+    std::vector<Point> direction_memory_;
+    std::span<const Point> origins_;
+    std::span<const Point> directions_;
     Real t_max_;
   };
 

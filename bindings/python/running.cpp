@@ -34,7 +34,7 @@ void WithoutGil::find_main_thread() {
 bool WithoutGil::is_main_thread() { return PyThread_get_thread_ident() == main_thread; }
 
 void WithoutGil::take_back(PyThreadState* state) {
-  while (is_finalizing()) std::this_thread::sleep_for(std::chrono::seconds(1));
+  while (is_finalizing() && !is_main_thread()) std::this_thread::sleep_for(std::chrono::seconds(1));
   PyEval_RestoreThread(state);
 }
 

@@ -61,7 +61,8 @@ class WithoutGil {
   static bool is_main_thread();
 
   /// Takes the GIL. A daemon thread that asks for it while Python ends would be ended by an exception that
-  /// must not be caught; it sleeps instead until the process ends.
+  /// must not be caught; it sleeps instead until the process ends. The main thread, which ends Python and
+  /// runs finalizers then, goes on.
   static void take_back(PyThreadState* state);
 
   PyThreadState* state_;
@@ -72,7 +73,7 @@ class WithoutGil {
 /// A mutex for an object that threads of Python share. Taken without the GIL, so that no thread waits for one
 /// while it holds the other. A handler of a signal that calls the object in whose call it was run gets an
 /// error instead of waiting for itself.
-class Turns {
+class CallMutex {
  public:
   void lock() {
     check_is_free();
@@ -119,21 +120,21 @@ constexpr std::size_t from_spec = std::numeric_limits<std::size_t>::max();
 /// Has a finder, a tracker or a world ask for signals at its checkpoints and use so many threads (0: all
 /// there are), while this lives.
 template <typename Searching>
-class Using {
+class ScopedWorkers {
  public:
-  Using(Searching& searching, std::size_t threads, WithoutGil& released) : searching_(searching) {
+  ScopedWorkers(Searching& searching, std::size_t threads, WithoutGil& released) : searching_(searching) {
     Workers workers = searching.workers();
     if (threads != from_spec) workers.threads = threads;
     workers.checkpoint = [&released] { released.check_signals(); };
     searching.set_workers(workers);
   }
-  ~Using() {
+  ~ScopedWorkers() {
     Workers workers = searching_.workers();
     workers.checkpoint = nullptr;
     searching_.set_workers(workers);
   }
-  Using(const Using&) = delete;
-  Using& operator=(const Using&) = delete;
+  ScopedWorkers(const ScopedWorkers&) = delete;
+  ScopedWorkers& operator=(const ScopedWorkers&) = delete;
 
  private:
   Searching& searching_;

@@ -39,8 +39,8 @@ class TrackerOf final : public Tracker {
     std::vector<Pair> begun;
     std::vector<Pair> ended;
     without_gil([&](WithoutGil& released) {
-      const std::lock_guard lock(turns_);
-      const Using use(*tracker_, threads_, released);
+      const std::lock_guard lock(mutex_);
+      const ScopedWorkers use(*tracker_, threads_, released);
       std::vector<Box<D, Real>> memory;
       PairCollector begun_collector(begun);
       PairCollector ended_collector(ended);
@@ -55,7 +55,7 @@ class TrackerOf final : public Tracker {
 
   std::size_t bytes() override {
     return without_gil([&](WithoutGil&) {
-      const std::lock_guard lock(turns_);
+      const std::lock_guard lock(mutex_);
       return tracker_->bytes();
     });
   }
@@ -73,7 +73,7 @@ class TrackerOf final : public Tracker {
     return places;
   }
 
-  Turns turns_;
+  CallMutex mutex_;
   std::unique_ptr<PairTracker<D, Real>> tracker_;
   std::size_t threads_;
 };
@@ -82,7 +82,8 @@ class TrackerOf final : public Tracker {
 
 void add_tracker(nb::module_& module) {
   nb::class_<Tracker>(module, "Tracker")
-      .def("update", &Tracker::update, nb::arg("boxes"), nb::arg("changed").none(), nb::arg("filters").none())
+      .def("update", &Tracker::update, nb::arg("boxes").none(), nb::arg("changed").none(),
+           nb::arg("filters").none())
       .def("bytes", &Tracker::bytes);
   module.def(
       "make_tracker",

@@ -12,15 +12,20 @@
 namespace broadside::python {
 namespace {
 
-/// Handles of pairs as Python's numbers, two a row.
-nb::object array_of_pairs(std::span<const HandlePair> pairs) {
+/// Handles of pairs as Python's numbers, two for each.
+std::vector<std::uint64_t> numbers_of(std::span<const HandlePair> pairs) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(2 * pairs.size());
   for (const HandlePair& pair : pairs) {
     numbers.push_back(number_of(pair.first));
     numbers.push_back(number_of(pair.second));
   }
-  return array_of(std::move(numbers), {pairs.size(), 2});
+  return numbers;
+}
+
+nb::object array_of_pairs(std::vector<std::uint64_t> numbers) {
+  const std::size_t pairs = numbers.size() / 2;
+  return array_of(std::move(numbers), {pairs, 2});
 }
 
 nb::object array_of_handles(std::span<const Handle> handles) {
@@ -75,7 +80,7 @@ class WorldOf final : public AnyWorld {
     std::vector<BoxOptions> options;
     for (const Filter& filter : python::filters(filters, rows.size(), "filters")) options.push_back({filter});
     std::vector<Handle> handles(rows.size());
-    alone([&](WithoutGil&) { world_.add(rows.template boxes<Dimension, Real>(), handles, options); });
+    with_lock([&](WithoutGil&) { world_.add(rows.template boxes<Dimension, Real>(), handles, options); });
     return array_of_handles(handles);
   }
 
@@ -83,29 +88,39 @@ class WorldOf final : public AnyWorld {
     const std::vector<Handle> movers = python::handles(handles, "handles");
     const Rows rows = rows_of(boxes, "boxes");
     std::vector<Point> memory;
-    std::vector<Point> ways;
+    std::vector<Point> directions;
     if (!velocities.is_none()) {
       const Rows given = Rows::of(velocities, "velocities", Dimension, has_doubles);
       const std::span<const Point> points = given.array(memory);
-      ways.assign(points.begin(), points.end());
+      directions.assign(points.begin(), points.end());
       // None at all would be taken for velocities that were not given.
-      if (ways.size() != movers.size())
+      if (directions.size() != movers.size())
         throw std::invalid_argument("there are " + std::to_string(movers.size()) + " handles and " +
-                                    std::to_string(ways.size()) +
+                                    std::to_string(directions.size()) +
                                     " velocities; expected one for each handle");
     }
-    alone([&](WithoutGil&) { world_.move(movers, rows.template boxes<Dimension, Real>(), ways); });
+    const BoxView<Dimension, Real> all = rows.template boxes<Dimension, Real>();
+    with_lock([&](WithoutGil&) {
+      try {
+        world_.move(movers, all, directions);
+      } catch (const InvalidInput& error) {
+        if (error.index() < all.size() && is_present(all[error.index()]))
+          throw InvalidBoxOf("velocities", error);
+        throw;
+      }
+    });
   }
 
   void remove(nb::handle handles) override {
     const std::vector<Handle> gone = python::handles(handles, "handles");
-    alone([&](WithoutGil&) { world_.remove(gone); });
+    with_lock([&](WithoutGil&) { world_.remove(gone); });
   }
 
   void set_filters(nb::handle handles, nb::handle filters) override {
     const std::vector<Handle> changed = python::handles(handles, "handles");
+    if (filters.is_none()) throw nb::type_error("filters is None; expected what broadside.filters() gives");
     const std::vector<Filter> given = python::filters(filters, changed.size(), "filters");
-    alone([&](WithoutGil&) {
+    with_lock([&](WithoutGil&) {
       for (const Handle& handle : changed) static_cast<void>(world_.enlarged_box(handle));  // all or none
       for (std::size_t i = 0; i < given.size(); ++i) world_.set_filter(changed[i], given[i]);
     });
@@ -114,7 +129,7 @@ class WorldOf final : public AnyWorld {
   void ignore(nb::handle pairs, bool ignores) override {
     const std::vector<std::uint64_t> numbers =
         pairs_of_integers(pairs, "pairs", std::numeric_limits<std::uint64_t>::max());
-    alone([&](WithoutGil&) {
+    with_lock([&](WithoutGil&) {
       for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)  // all or none
         static_cast<void>(world_.is_ignored(handle_of(numbers[i]), handle_of(numbers[i + 1])));
       for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
@@ -126,31 +141,26 @@ class WorldOf final : public AnyWorld {
   }
 
   nb::object update() override {
-    std::vector<HandlePair> begun;
-    std::vector<HandlePair> ended;
-    alone([&](WithoutGil& released) {
-      const Using use(world_, threads_, released);
+    std::vector<std::uint64_t> begun;
+    std::vector<std::uint64_t> ended;
+    with_lock([&](WithoutGil& released) {
+      const ScopedWorkers use(world_, threads_, released);
       const Events events = world_.update();
-      begun.assign(events.begun.begin(), events.begun.end());
-      ended.assign(events.ended.begin(), events.ended.end());
+      begun = numbers_of(events.begun);
+      ended = numbers_of(events.ended);
     });
-    return nb::make_tuple(array_of_pairs(begun), array_of_pairs(ended));
+    return nb::make_tuple(array_of_pairs(std::move(begun)), array_of_pairs(std::move(ended)));
   }
 
   nb::object pairs() override {
-    std::vector<HandlePair> pairs;
-    alone([&](WithoutGil&) {
-      const std::span<const HandlePair> current = world_.pairs();
-      pairs.assign(current.begin(), current.end());
-    });
-    return array_of_pairs(pairs);
+    return array_of_pairs(with_lock([&](WithoutGil&) { return numbers_of(world_.pairs()); }));
   }
 
   nb::object boxes(nb::handle handles, bool enlarged) override {
     const std::vector<Handle> asked = python::handles(handles, "handles");
     std::vector<Box> boxes;
     boxes.reserve(asked.size());
-    alone([&](WithoutGil&) {
+    with_lock([&](WithoutGil&) {
       for (const Handle& handle : asked)
         boxes.push_back(enlarged ? world_.enlarged_box(handle) : world_.box(handle));
     });
@@ -159,7 +169,7 @@ class WorldOf final : public AnyWorld {
 
   nb::object handles() override {
     std::vector<Handle> handles;
-    alone([&](WithoutGil&) {
+    with_lock([&](WithoutGil&) {
       const std::size_t slots = world_.statistics().slots;
       for (std::size_t slot = 0; slot < slots; ++slot) {
         const Handle handle = world_.handle_of(static_cast<BoxId>(slot));
@@ -170,47 +180,49 @@ class WorldOf final : public AnyWorld {
   }
 
   nb::object quarantined() override {
-    return array_of_handles(alone([&](WithoutGil&) { return world_.quarantined(); }));
+    return array_of_handles(with_lock([&](WithoutGil&) { return world_.quarantined(); }));
   }
 
   bool contains(std::uint64_t handle) override {
-    return alone([&](WithoutGil&) { return world_.contains(handle_of(handle)); });
+    return with_lock([&](WithoutGil&) { return world_.contains(handle_of(handle)); });
   }
   std::size_t size() override {
-    return alone([&](WithoutGil&) { return world_.size(); });
+    return with_lock([&](WithoutGil&) { return world_.size(); });
   }
   std::size_t bytes() override {
-    return alone([&](WithoutGil&) { return world_.statistics().bytes.total(); });
+    return with_lock([&](WithoutGil&) { return world_.statistics().bytes.total(); });
   }
   std::string explanation() override {
-    return alone([&](WithoutGil&) { return world_.statistics().explanation; });
+    return with_lock([&](WithoutGil&) { return world_.statistics().explanation; });
   }
 
   nb::object join(AnyWorld& other) override {
     auto* const same = dynamic_cast<WorldOf*>(&other);
     if (same == nullptr)
       throw nb::type_error("the other world has boxes of another dimension or dtype; expected the same");
-    std::vector<HandlePair> pairs;
-    without_gil([&](WithoutGil&) {
-      std::unique_lock lock(turns_, std::defer_lock);
-      std::unique_lock other_lock(same->turns_, std::defer_lock);
+    std::vector<std::uint64_t> numbers = without_gil([&](WithoutGil& released) {
+      std::unique_lock lock(mutex_, std::defer_lock);
+      std::unique_lock other_lock(same->mutex_, std::defer_lock);
       if (same == this)
         lock.lock();
       else
         std::lock(lock, other_lock);
+      const ScopedWorkers use(world_, threads_, released);
+      std::vector<HandlePair> pairs;
       world_.join(same->world_, pairs);
+      return numbers_of(pairs);
     });
-    return array_of_pairs(pairs);
+    return array_of_pairs(std::move(numbers));
   }
 
   nb::bytes snapshot() override {
-    const std::vector<std::byte> bytes = alone([&](WithoutGil&) { return world_.snapshot(); });
+    const std::vector<std::byte> bytes = with_lock([&](WithoutGil&) { return world_.snapshot(); });
     return nb::bytes(bytes.data(), bytes.size());
   }
 
   void restore(nb::bytes snapshot) override {
     const std::span bytes(static_cast<const std::byte*>(snapshot.data()), snapshot.size());
-    alone([&](WithoutGil&) { world_.restore(bytes); });
+    with_lock([&](WithoutGil&) { world_.restore(bytes); });
   }
 
   nb::object overlapping(nb::handle queries) override { return Queries(*this).overlapping(queries); }
@@ -226,7 +238,7 @@ class WorldOf final : public AnyWorld {
   /// For Queries.
   template <typename Body>
   void ask(const Body& body) {
-    const std::lock_guard lock(turns_);
+    const std::lock_guard lock(mutex_);
     body(world_.box_index(), [&](BoxId id) { return number_of(world_.handle_of(id)); });
   }
 
@@ -239,14 +251,14 @@ class WorldOf final : public AnyWorld {
 
   /// Runs body(released) without the GIL and without other threads.
   template <typename Body>
-  auto alone(const Body& body) {
+  auto with_lock(const Body& body) {
     return without_gil([&](WithoutGil& released) {
-      const std::lock_guard lock(turns_);
+      const std::lock_guard lock(mutex_);
       return body(released);
     });
   }
 
-  Turns turns_;
+  CallMutex mutex_;
   World<Dimension, Coordinate> world_;
   std::size_t threads_;
 };
@@ -272,14 +284,15 @@ std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std:
 
 void add_world(nb::module_& module) {
   nb::class_<AnyWorld>(module, "World")
-      .def("add", &AnyWorld::add, nb::arg("boxes"), nb::arg("filters").none())
-      .def("move", &AnyWorld::move, nb::arg("handles"), nb::arg("boxes"), nb::arg("velocities").none())
-      .def("remove", &AnyWorld::remove)
-      .def("set_filters", &AnyWorld::set_filters)
-      .def("ignore", &AnyWorld::ignore)
+      .def("add", &AnyWorld::add, nb::arg("boxes").none(), nb::arg("filters").none())
+      .def("move", &AnyWorld::move, nb::arg("handles").none(), nb::arg("boxes").none(),
+           nb::arg("velocities").none())
+      .def("remove", &AnyWorld::remove, nb::arg("handles").none())
+      .def("set_filters", &AnyWorld::set_filters, nb::arg("handles").none(), nb::arg("filters").none())
+      .def("ignore", &AnyWorld::ignore, nb::arg("pairs").none(), nb::arg("ignores"))
       .def("update", &AnyWorld::update)
       .def("pairs", &AnyWorld::pairs)
-      .def("boxes", &AnyWorld::boxes)
+      .def("boxes", &AnyWorld::boxes, nb::arg("handles").none(), nb::arg("enlarged"))
       .def("handles", &AnyWorld::handles)
       .def("quarantined", &AnyWorld::quarantined)
       .def("contains", &AnyWorld::contains)
@@ -289,11 +302,12 @@ void add_world(nb::module_& module) {
       .def("join", &AnyWorld::join)
       .def("snapshot", &AnyWorld::snapshot)
       .def("restore", &AnyWorld::restore)
-      .def("overlapping", &AnyWorld::overlapping)
-      .def("containing", &AnyWorld::containing)
-      .def("hits", &AnyWorld::hits)
-      .def("first_hit", &AnyWorld::first_hit)
-      .def("nearest", &AnyWorld::nearest);
+      .def("overlapping", &AnyWorld::overlapping, nb::arg("queries").none())
+      .def("containing", &AnyWorld::containing, nb::arg("points").none())
+      .def("hits", &AnyWorld::hits, nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"))
+      .def("first_hit", &AnyWorld::first_hit, nb::arg("origins").none(), nb::arg("directions").none(),
+           nb::arg("t_max"))
+      .def("nearest", &AnyWorld::nearest, nb::arg("points").none(), nb::arg("k"));
   module.def("make_world", &make_world, nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"),
              nb::arg("threads").none(), nb::arg("margin"), nb::arg("relative_margin"),
              nb::arg("predicted_frames"), nb::arg("exact"), nb::arg("quarantine"),

@@ -16,6 +16,8 @@ from broadside import _core
 
 Rows = NDArray[Any]
 
+FILTER = np.dtype([("category", np.uint64), ("mask", np.uint64), ("group", np.int32), ("is_static", np.bool_)])
+
 # Which columns of a table are the bounds of boxes, minima first; the first names that are all there.
 _COLUMN_NAMES = (
     ("xmin", "ymin", "zmin", "xmax", "ymax", "zmax"),
@@ -24,6 +26,8 @@ _COLUMN_NAMES = (
     ("minx", "miny", "maxx", "maxy"),
     ("min_x", "min_y", "min_z", "max_x", "max_y", "max_z"),
     ("min_x", "min_y", "max_x", "max_y"),
+    # What pandas and polars call the columns of an array, which are taken by their places.
+    *(tuple(f"{prefix}{i}" for i in range(count)) for prefix in ("", "column_") for count in (6, 4)),
 )
 
 
@@ -38,7 +42,9 @@ def boxes(found: Any, name: str) -> Rows:
 
 
 def rows_of(found: Any, name: str, columns: int, are_doubles: bool) -> Rows:
-    """Rows of so many float64, or float32 if they hold the numbers exactly."""
+    """Rows of so many float64, or float32 if they hold the numbers exactly. An empty list or tuple is no rows."""
+    if is_empty_sequence(found):
+        return np.empty((0, columns), np.float64 if are_doubles else np.float32)
     array = _with_float_rows(found, name, boxes_expected=columns in (4, 6))
     if array.ndim != 2 or array.shape[1] != columns:
         raise ValueError(f"{name} has shape {array.shape}; expected (n, {columns})")
@@ -54,6 +60,11 @@ def rows_of(found: Any, name: str, columns: int, are_doubles: bool) -> Rows:
             "here, as the boxes are, or boxes of float64"
         )
     return rounded
+
+
+def is_empty_sequence(found: Any) -> bool:
+    """Whether this is an empty list or tuple, which tells no dimension."""
+    return isinstance(found, (list, tuple)) and not found
 
 
 def _with_float_rows(found: Any, name: str, boxes_expected: bool) -> Rows:
@@ -96,7 +107,7 @@ def _hint(array: Rows) -> str:
 
 
 def _as_array(found: Any, name: str, boxes_expected: bool) -> Rows:
-    bounds = _bounds(found) if boxes_expected else None
+    bounds = _bounds(found, name) if boxes_expected else None
     if bounds is not None:
         return bounds
     if isinstance(found, np.ndarray):
@@ -152,38 +163,44 @@ def _of_chunks(chunks: list[list[tuple[str, Rows]]], name: str) -> Rows:
 
 def _of_columns(columns: dict[str, Rows], name: str) -> Rows:
     for names in _COLUMN_NAMES:
-        if all(column in columns for column in names):
+        # Names that tell nothing must be all there are.
+        if all(column in columns for column in names) and (names[0][-1:] != "0" or len(columns) == len(names)):
             return np.column_stack([columns[column] for column in names])
-    if len(columns) in (4, 6):
-        return np.column_stack(list(columns.values()))
     expected = ", ".join(_COLUMN_NAMES[1])
-    raise ValueError(f"{name} has the columns {', '.join(columns) or 'none'}; expected {expected}, or 4 or 6 columns")
+    raise ValueError(
+        f"{name} has the columns {', '.join(columns) or 'none'}; expected {expected}, in 3D zmin and zmax as well"
+    )
 
 
-def _bounds(found: Any) -> Rows | None:
+def _bounds(found: Any, name: str) -> Rows | None:
     """The bounds of a GeoDataFrame, a GeoSeries, a geometry array or a pandas DataFrame of bounds."""
     pandas = sys.modules.get("pandas")
     if pandas is None:
         return None
-    geometry = getattr(found, "geometry", None) if isinstance(found, (pandas.DataFrame, pandas.Series)) else None
-    if geometry is not None:
-        return _bounds_of_geometries(np.asarray(geometry.array, dtype=object))
+    geometry = getattr(found, "geometry", None) if isinstance(found, (pandas.DataFrame, pandas.Series)) else found
+    # A DataFrame may have a column of that name that holds something else.
+    if isinstance(geometry, (pandas.Series, pandas.api.extensions.ExtensionArray)):
+        bounds = _bounds_of_geometries(np.asarray(geometry, dtype=object), str(geometry.dtype) == "geometry")
+        if bounds is not None:
+            return bounds
     if isinstance(found, pandas.DataFrame):
         columns = {str(column): found[column].to_numpy() for column in found.columns}
-        return _of_columns(columns, "the DataFrame")
-    if isinstance(found, pandas.api.extensions.ExtensionArray):
-        return _bounds_of_geometries(np.asarray(found, dtype=object))
+        return _of_columns(columns, name)
     return None
 
 
-def _bounds_of_geometries(array: Rows) -> Rows | None:
-    """The bounds of shapely's geometries; an empty one, or none, is an absent box, which overlaps nothing."""
+def _bounds_of_geometries(array: Rows, are_known: bool = False) -> Rows | None:
+    """The bounds of shapely's geometries; an empty one, or none, is an absent box, which overlaps nothing.
+
+    Unless they `are_known` to be geometries, one at least must be one.
+    """
     shapely = sys.modules.get("shapely")
     if shapely is None or array.ndim != 1 or array.dtype.kind != "O":
         return None
-    are_geometries = shapely.is_geometry(array)
-    if not are_geometries.any() or not (are_geometries | (array == None)).all():  # noqa: E711 (element by element)
-        return None
+    if not are_known:
+        are_geometries = shapely.is_geometry(array)
+        if not are_geometries.any() or not (are_geometries | (array == None)).all():  # noqa: E711 (element by element)
+            return None
     bounds: Rows = shapely.bounds(array)
     missing = shapely.is_missing(array) | shapely.is_empty(array)
     bounds[missing] = (np.inf, np.inf, -np.inf, -np.inf)
@@ -192,7 +209,7 @@ def _bounds_of_geometries(array: Rows) -> Rows | None:
 
 def integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     """A one-dimensional array of integers from 0 to `most`."""
-    array = np.asarray(found)
+    array = _as_integers(found)
     if array.ndim == 0:
         array = array.reshape(1)
     if array.ndim != 1:
@@ -202,7 +219,7 @@ def integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
 
 def pairs_of_integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     """An array of two integers a row, from 0 to `most`."""
-    array = np.asarray(found)
+    array = _as_integers(found)
     if array.size == 0 and array.ndim < 2:
         array = array.reshape(0, 2)
     if array.ndim != 2 or array.shape[1] != 2:
@@ -210,10 +227,24 @@ def pairs_of_integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     return _integers(array, name, most)
 
 
+def _as_integers(found: Any) -> Rows:
+    """An array; of Python's own integers where NumPy would take a list for floats, as some are above 2**63."""
+    array = np.asarray(found)
+    if isinstance(found, (list, tuple)) and array.dtype.kind == "f":
+        objects = np.asarray(found, dtype=object)
+        if _are_integers(objects):
+            return objects
+    return array
+
+
+def _are_integers(objects: Rows) -> bool:
+    return all(isinstance(element, (int, np.integer)) and not isinstance(element, bool) for element in objects.flat)
+
+
 def _integers(array: Rows, name: str, most: int) -> NDArray[np.uint64]:
     if array.size == 0:
         return np.ascontiguousarray(array, dtype=np.uint64)
-    if array.dtype.kind not in "iu":
+    if array.dtype.kind not in "iu" and not (array.dtype.kind == "O" and _are_integers(array)):
         raise TypeError(f"{name} has dtype {array.dtype}; expected integers")
     if int(array.min()) < 0 or int(array.max()) > most:
         wrong = array.min() if array.min() < 0 else array.max()
@@ -224,7 +255,7 @@ def _integers(array: Rows, name: str, most: int) -> NDArray[np.uint64]:
 def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     """The fields of broadside.filters() as four uint64 a row."""
     array = np.asarray(found)
-    if array.dtype.names is None or set(array.dtype.names) != {"category", "mask", "group", "is_static"}:
+    if array.dtype != FILTER:
         raise TypeError(f"{name} has dtype {array.dtype}; expected what broadside.filters() gives")
     if array.shape != (count,):
         raise ValueError(f"{name} has shape {array.shape}; expected ({count},), a filter for each box")
@@ -234,11 +265,3 @@ def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     packed[:, 2] = array["group"].astype(np.int64).view(np.uint64)
     packed[:, 3] = array["is_static"] != 0
     return packed
-
-
-def invalid_rows(array: Rows) -> NDArray[np.intp]:
-    """The rows of boxes with a NaN or a minimum greater than its maximum, but for absent boxes."""
-    half = array.shape[1] // 2
-    is_valid = (array[:, :half] <= array[:, half:]).all(axis=1)
-    is_absent = (array[:, :half] == np.inf).all(axis=1) & (array[:, half:] == -np.inf).all(axis=1)
-    return np.flatnonzero(~is_valid & ~is_absent)

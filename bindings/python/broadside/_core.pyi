@@ -62,14 +62,15 @@ def find(
     result: int,
     boxes: object,
     other: object | None,
-    algorithm: str,
-    sort: bool,
+    algorithm: object,
+    sort: object,
     threads: SupportsInt | None,
     filters: object | None,
     other_filters: object | None,
     ignored: object | None,
-    quarantine: bool,
+    quarantine: object,
 ) -> Any: ...
+def invalid_rows(boxes: object) -> NDArray[np.int64]: ...
 def make_index(boxes: object, /) -> Index: ...
 def make_world(
     dimension: int,
@@ -93,7 +94,7 @@ def advise(
     boxes: object, algorithms: str, threads: list[int], budget: float
 ) -> tuple[str, float, list[str], list[str], list[tuple[str, float]], bool, str]: ...
 def read(
-    path: str, format: str, boxes: str, columns: str, layer: str, dimension: int, frame: int, skips_invalid: bool
+    path: builtins.bytes, format: str, boxes: str, columns: str, layer: str, dimension: int, frame: int, skips_invalid: bool
 ) -> tuple[NDArray[Any], str]: ...
 def formats() -> list[tuple[str, str, list[str], str]]: ...
 def draw(boxes: object, algorithms: str, most: int, title: str) -> str: ...

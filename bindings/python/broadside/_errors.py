@@ -6,12 +6,17 @@ from __future__ import annotations
 class InvalidBoxError(ValueError):
     """A box with a NaN, or with a minimum greater than its maximum.
 
-    ``row`` is the place of the first such box in its array.
+    ``row`` is the place of the first such box in its array, and ``argument`` the name of the argument that this is:
+    "boxes" or "other", or "velocities" where one of these is not finite.
     """
 
-    def __init__(self, message: str, row: int | None = None) -> None:
+    def __init__(self, message: str, row: int | None = None, argument: str | None = None) -> None:
         super().__init__(message)
         self.row = row
+        self.argument = argument
+
+    def __reduce__(self) -> tuple[type[InvalidBoxError], tuple[str, int | None, str | None]]:
+        return type(self), (str(self), self.row, self.argument)
 
 
 class InvalidQueryError(ValueError):

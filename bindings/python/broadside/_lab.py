@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from broadside import _convert, _core
+from broadside import _arguments, _convert, _core
 from broadside._errors import InvalidBoxError
 
 
@@ -74,16 +74,30 @@ def advise(
 
     Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C between two measurements.
     """
+    budget = _arguments.number(budget, "budget")
     if not 0 < budget <= 3600:
         raise ValueError(f"budget is {budget}; expected a number of seconds above 0, at most 3600")
-    tried = [threads] if isinstance(threads, int) else list(threads)
-    if not tried or min(tried) < 1:
-        raise ValueError(f"threads is {threads}; expected numbers of at least 1")
-    return Advice(*_core.advise(boxes, algorithms, tried, budget))
+    tried = list(threads) if isinstance(threads, (list, tuple)) else [threads]
+    if not tried:
+        raise ValueError("threads is empty; expected a number at least")
+    tried = [_arguments.integer(count, "threads", 1, 1024) for count in tried]
+    return Advice(*_core.advise(_valid(boxes), _arguments.text(algorithms, "algorithms"), tried, budget))
+
+
+def _valid(boxes: Any) -> NDArray[Any]:
+    """The boxes as an array, or InvalidBoxError."""
+    array = _convert.boxes(boxes, "boxes")
+    invalid = _core.invalid_rows(array)
+    if invalid.size:
+        row = int(invalid[0])
+        raise InvalidBoxError(
+            f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row, "boxes"
+        )
+    return array
 
 
 def read(
-    path: str | os.PathLike[str],
+    path: str | bytes | os.PathLike[str] | os.PathLike[bytes],
     *,
     format: str | None = None,
     boxes: str | None = None,
@@ -103,7 +117,8 @@ def read(
         layer: The layer of a map.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
-        quarantine: Leave invalid boxes out instead of raising, with a warning.
+        quarantine: Take invalid boxes in as absent ones, rows of minima inf and maxima -inf, with a warning instead of
+            raising.
 
     Returns:
         An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it.
@@ -113,33 +128,26 @@ def read(
         FileError: It cannot be read; the text says where and why. Arrays in .npz are read by ``numpy.load``, meshes of
             other formats by the program.
     """
-    os.stat(path)
+    name = os.fsencode(path)
+    os.stat(name)
     found: NDArray[Any]
     found, warning = _core.read(
-        os.fspath(path),
-        format or "",
-        boxes or "",
-        columns or "",
-        layer or "",
-        0 if dimension is None else _dimension_of_file(dimension),
-        _frame(frame),
-        quarantine,
+        name,
+        _text_or_none(format, "format"),
+        _text_or_none(boxes, "boxes"),
+        _text_or_none(columns, "columns"),
+        _text_or_none(layer, "layer"),
+        0 if dimension is None else _arguments.integer(dimension, "dimension", 2, 3),
+        _arguments.integer(frame, "frame", 0, 2**32 - 1),
+        bool(quarantine),
     )
     if warning:
         warnings.warn(warning, stacklevel=2)
     return found
 
 
-def _dimension_of_file(dimension: int) -> int:
-    if dimension not in (2, 3):
-        raise ValueError(f"dimension is {dimension}; expected 2, 3 or None")
-    return dimension
-
-
-def _frame(frame: int) -> int:
-    if frame < 0:
-        raise ValueError(f"frame is {frame}; expected at least 0")
-    return frame
+def _text_or_none(found: str | None, name: str) -> str:
+    return "" if found is None else _arguments.text(found, name)
 
 
 class Drawing:
@@ -173,11 +181,6 @@ def draw(boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "box
 
     Raises InvalidBoxError, InvalidAlgorithmError, ValueError.
     """
-    if not 1 <= most <= 20_000:
-        raise ValueError(f"most is {most}; expected 1 to 20,000")
-    array = _convert.boxes(boxes, "boxes")
-    invalid = _convert.invalid_rows(array)
-    if invalid.size:
-        row = int(invalid[0])
-        raise InvalidBoxError(f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row)
-    return Drawing(_core.draw(array, algorithms, most, title))
+    most = _arguments.integer(most, "most", 1, 20_000)
+    laid_over = _arguments.text(algorithms, "algorithms")
+    return Drawing(_core.draw(_valid(boxes), laid_over, most, _arguments.text(title, "title")))

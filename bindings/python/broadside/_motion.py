@@ -9,8 +9,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from broadside import _core
-from broadside._queries import FirstHits, Found, Hits, Neighbours, _at_least_one, _checked_dimension, _has_doubles
+from broadside import _arguments, _core
+from broadside._queries import FirstHits, Found, Hits, Neighbours, _checked_dimension, _checked_k, _has_doubles
 
 _worlds = itertools.count(1)
 
@@ -51,8 +51,8 @@ class World:
         quarantine: Take invalid boxes in as absent ones instead of raising; `quarantined` names them.
         first_generation: The generation of the first handles; by default each world has another one.
 
-    Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C: an update
-    that was ended can be made again. Functions of many boxes do all or, if one is wrong, nothing. A world can be
+    Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not
+    while the first query after a change makes its index: an update that was ended can be made again. Functions of many boxes do all or, if one is wrong, nothing. A world can be
     pickled and copied, with its handles.
     """
 
@@ -75,23 +75,21 @@ class World:
         if events not in ("exact", "enlarged"):
             raise ValueError(f"events is {events!r}; expected 'exact' or 'enlarged'")
         first = _next_first_generation() if first_generation is None else first_generation
-        if not 0 <= first < 2**32:
-            raise ValueError(f"first_generation is {first}; expected 0 to 2**32 - 1")
         self._has_doubles = _has_doubles(dtype)
         self._options: dict[str, Any] = {
-            "algorithm": algorithm,
+            "algorithm": _arguments.text(algorithm, "algorithm"),
             "threads": threads,
-            "margin": margin,
-            "relative_margin": relative_margin,
-            "predicted_frames": predicted_frames,
+            "margin": _arguments.number(margin, "margin"),
+            "relative_margin": _arguments.number(relative_margin, "relative_margin"),
+            "predicted_frames": _arguments.number(predicted_frames, "predicted_frames"),
             "events": events,
-            "quarantine": quarantine,
-            "first_generation": first,
+            "quarantine": bool(quarantine),
+            "first_generation": _arguments.integer(first, "first_generation", 0, 2**32 - 1),
         }
         options = {**self._options, "exact": events == "exact"}
         del options["events"]
         self._options["dimension"] = _checked_dimension(dimension)
-        self._world = _core.make_world(dimension, self._has_doubles, **options)
+        self._world = _core.make_world(self._options["dimension"], self._has_doubles, **options)
 
     @property
     def dimension(self) -> int:
@@ -117,6 +115,8 @@ class World:
         `velocities`, shape (n, dimension), says how far each box is expected to go in a frame, for `predicted_frames`.
         Raises InvalidHandleError, InvalidBoxError.
         """
+        if velocities is not None and not self._options["predicted_frames"]:
+            raise ValueError("velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities")
         self._world.move(handles, boxes, velocities)
 
     def remove(self, handles: ArrayLike) -> None:
@@ -136,7 +136,7 @@ class World:
 
         That of a removed box can be read until the update after the one that told of its ended pairs.
         """
-        return self._world.boxes(self.handles() if handles is None else handles, enlarged)
+        return self._world.boxes(self.handles() if handles is None else handles, bool(enlarged))
 
     def handles(self) -> NDArray[np.uint64]:
         """The handles of all boxes, by slot."""
@@ -166,6 +166,8 @@ class World:
 
         Both are of the same dimension and dtype. A world and itself are joined like two.
         """
+        if not isinstance(other, World):
+            raise TypeError(f"other is of {type(other).__name__}; expected a World")
         return self._world.join(other._world)
 
     def overlapping(self, queries: Any) -> Found:
@@ -178,26 +180,26 @@ class World:
 
     def hits(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> Hits:
         """All boxes that each ray meets: see `Index.hits`."""
-        return Hits(*self._world.hits(origins, directions, t_max))
+        return Hits(*self._world.hits(origins, directions, _arguments.number(t_max, "t_max")))
 
     def first_hit(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> FirstHits:
         """The box that each ray meets first: see `Index.first_hit`."""
-        return FirstHits(*self._world.first_hit(origins, directions, t_max))
+        return FirstHits(*self._world.first_hit(origins, directions, _arguments.number(t_max, "t_max")))
 
     def nearest(self, points: Any, k: int = 1) -> Neighbours:
         """The k boxes nearest to each of `points`: see `Index.nearest`."""
-        return Neighbours(*self._world.nearest(points, _at_least_one(k)))
+        return Neighbours(*self._world.nearest(points, _checked_k(k, len(self))))
 
     def snapshot(self) -> bytes:
         """All that the world's future depends on, as bytes that are the same on every machine."""
         return self._world.snapshot()
 
-    def restore(self, snapshot: bytes) -> None:
+    def restore(self, snapshot: bytes | bytearray | memoryview) -> None:
         """Makes the world what it was when the snapshot was taken, of this world or of another one like it.
 
         Raises InvalidSnapshotError, and changes nothing, for other bytes.
         """
-        self._world.restore(snapshot)
+        self._world.restore(snapshot if isinstance(snapshot, bytes) else bytes(memoryview(snapshot)))
 
     @property
     def nbytes(self) -> int:
@@ -259,7 +261,9 @@ class Tracker:
         has_doubles = _has_doubles(dtype)
         self._dimension = _checked_dimension(dimension)
         self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
-        self._tracker = _core.make_tracker(dimension, has_doubles, algorithm, threads, quarantine)
+        self._tracker = _core.make_tracker(
+            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(quarantine)
+        )
 
     @property
     def dimension(self) -> int:

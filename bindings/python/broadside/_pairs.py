@@ -8,13 +8,11 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from broadside import _convert, _core
+from broadside import _arguments, _convert, _core
 from broadside._core import PairTable as PairTable
 
 _find = _core.find
 _ARRAY = _core.ARRAY
-
-_FILTER = np.dtype([("category", np.uint64), ("mask", np.uint64), ("group", np.int32), ("is_static", np.bool_)])
 
 
 @overload
@@ -81,7 +79,8 @@ def pairs(
             are converted once. So are shapely geometries, GeoSeries and GeoDataFrames (by their bounds; empty ones
             overlap nothing), pandas DataFrames and structured arrays with columns xmin, ymin, xmax, ymax, whatever
             has ``__array__`` or ``__dlpack__``, and Arrow tables and arrays (structs of columns, lists of a fixed
-            size). The array must not be changed by another thread meanwhile.
+            size). Columns of other names are refused, but for the numbers that pandas and polars name the columns of
+            an array by. An empty list is no boxes. The array must not be changed by another thread meanwhile.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
             found. If one set is float32 and the other float64, the former is widened, which is exact.
         algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
@@ -100,7 +99,7 @@ def pairs(
         first is a row of `boxes` and the second one of `other`. The array owns the memory that the search wrote.
 
     Raises:
-        InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` says which.
+        InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` and ``argument`` say which.
         InvalidAlgorithmError: `algorithm` does not exist or has no such tunable or value.
         TypeError: Something is of another type or dtype than these.
         ValueError: Something has another shape, or does not fit to the rest.
@@ -108,7 +107,7 @@ def pairs(
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends with
     the piece that it is at, of about a thousand boxes (of ``quadtree``, up to sixteen thousand or a third of a thread's
     share); it looks for signals every 50 milliseconds at most. A search by one of the paper's listings ends with its
-    next pairs. Any number of threads may call it at once.
+    next pairs; sorting pairs is not interrupted. Any number of threads may call it at once.
     """
     if output == "numpy":
         return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
@@ -121,8 +120,8 @@ def pairs(
 
 def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
     csr_array = import_module("scipy.sparse").csr_array
-    left = _convert.boxes(boxes, "boxes")
-    right = None if other is None else _convert.boxes(other, "other")
+    left = _kept(boxes, "boxes")
+    right = None if other is None else _kept(other, "other")
     algorithm, *rest = arguments
     found = _find(_ARRAY, left, right, algorithm, True, *rest)
     columns = len(left) if right is None else len(right)
@@ -130,6 +129,10 @@ def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
     np.cumsum(np.bincount(found[:, 0], minlength=len(left)), out=starts[1:])
     trues = np.ones(len(found), np.bool_)
     return csr_array((trues, found[:, 1].astype(np.int64), starts), shape=(len(left), columns))
+
+
+def _kept(boxes: Any, name: str) -> Any:
+    return boxes if _convert.is_empty_sequence(boxes) else _convert.boxes(boxes, name)
 
 
 def count(
@@ -170,7 +173,7 @@ def filters(
     Raises:
         ValueError: An argument has another shape, or is beyond uint64 (`category`, `mask`) or int32 (`group`).
     """
-    made = np.empty(n, _FILTER)
+    made = np.empty(_arguments.integer(n, "n", 0, 2**32 - 1), _convert.FILTER)
     fields = {"category": category, "mask": mask, "group": group, "is_static": is_static}
     for name, values in fields.items():
         given = np.asarray(values)
@@ -181,16 +184,16 @@ def filters(
         if given.ndim > 0 and given.shape != (n,):
             raise ValueError(f"{name} has shape {given.shape}; expected one value, or ({n},)")
         if name != "is_static" and given.size:
-            limits = np.iinfo(_FILTER[name])
+            limits = np.iinfo(_convert.FILTER[name])
             if int(given.min()) < limits.min or int(given.max()) > limits.max:
                 raise ValueError(f"{name} has {given.min()} to {given.max()}; expected {limits.min} to {limits.max}")
         made[name] = given
     return made
 
 
-def invalid_rows(boxes: Any) -> NDArray[np.intp]:
+def invalid_rows(boxes: Any) -> NDArray[np.int64]:
     """The rows of invalid boxes, ascending: those with a NaN or a minimum greater than its maximum.
 
     These are what `pairs` raises InvalidBoxError about, and leaves out with ``quarantine=True``. Absent boxes are valid.
     """
-    return _convert.invalid_rows(_convert.boxes(boxes, "boxes"))
+    return _core.invalid_rows(boxes)

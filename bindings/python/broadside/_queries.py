@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from broadside import _convert, _core
+from broadside import _arguments, _convert, _core
 
 
 class Found(NamedTuple):
@@ -62,7 +62,8 @@ class Index:
         TypeError, ValueError: As `pairs`.
 
     Cost: about that of finding all pairs; 100 to 200 bytes a box. A query takes some hundred nanoseconds, and what it
-    finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once. An index can be pickled.
+    finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once; making an index releases the
+    GIL and is not interrupted. An index can be pickled.
     """
 
     __slots__ = ("_boxes", "_index")
@@ -113,15 +114,19 @@ class Index:
 
         `origins` and `directions` have shape (m, dimension) and are finite. Raises InvalidQueryError otherwise.
         """
-        return Hits(*self._index.hits(origins, directions, t_max))
+        return Hits(*self._index.hits(origins, directions, _arguments.number(t_max, "t_max")))
 
     def first_hit(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> FirstHits:
         """The box that each ray, as in `hits`, meets first."""
-        return FirstHits(*self._index.first_hit(origins, directions, t_max))
+        return FirstHits(*self._index.first_hit(origins, directions, _arguments.number(t_max, "t_max")))
 
     def nearest(self, points: Any, k: int = 1) -> Neighbours:
-        """The k boxes nearest to each of `points`, shape (m, dimension), which are finite."""
-        return Neighbours(*self._index.nearest(points, _at_least_one(k)))
+        """The k boxes nearest to each of `points`, shape (m, dimension).
+
+        `k` is from 1 to 65,536, or to the number of boxes where these are more. Raises InvalidQueryError for a NaN; an
+        infinite point is infinitely far from every finite box.
+        """
+        return Neighbours(*self._index.nearest(points, _checked_k(k, len(self))))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Index, (self._boxes,)
@@ -130,10 +135,8 @@ class Index:
         return f"broadside.Index({len(self)} boxes, {self.dimension}D, {self.dtype})"
 
 
-def _at_least_one(k: int) -> int:
-    if k < 1:
-        raise ValueError(f"k is {k}; expected at least 1")
-    return k
+def _checked_k(k: int, boxes: int) -> int:
+    return _arguments.integer(k, "k", 1, max(boxes, 65_536))
 
 
 def _has_doubles(dtype: DTypeLike) -> bool:
@@ -144,6 +147,4 @@ def _has_doubles(dtype: DTypeLike) -> bool:
 
 
 def _checked_dimension(dimension: int) -> int:
-    if dimension not in (2, 3):
-        raise ValueError(f"dimension is {dimension}; expected 2 or 3")
-    return dimension
+    return _arguments.integer(dimension, "dimension", 2, 3)
