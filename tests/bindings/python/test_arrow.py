@@ -80,6 +80,37 @@ def test_takes_tables_and_arrays():
     assert as_set(broadside.pairs(structs.slice(50, 100))) == brute_force(BOXES[50:150])
 
 
+def test_takes_tables_of_no_rows_in_their_dimension():
+    flat = table_of(BOXES).schema.empty_table()
+    names = ["xmin", "ymin", "zmin", "xmax", "ymax", "zmax"]
+    solid = pa.schema([(name, pa.float32()) for name in names]).empty_table()
+    lists = pa.chunked_array([], pa.list_(pa.float32(), 6))
+    for found in (solid, lists):
+        assert broadside.count(found, np.zeros((2, 6))) == 0
+        with pytest.raises(ValueError, match="3D and other in 2D"):
+            broadside.pairs(found, flat)
+    assert broadside.Index(solid).dtype == np.float32
+    with pytest.raises(ValueError, match="has the columns a"):
+        broadside.pairs(pa.schema([("a", pa.float32())]).empty_table())
+
+
+class Same:
+    """Gives what it was made of at each call."""
+
+    def __init__(self, table, name):
+        self.capsules = getattr(table, name)()
+        setattr(type(self), name, lambda self, requested_schema=None: self.capsules)
+
+
+@pytest.mark.parametrize("name", ["__arrow_c_stream__", "__arrow_c_array__"])
+def test_refuses_what_was_taken_already(name):
+    table = table_of(BOXES)
+    once = type("Once", (Same,), {})(table if "stream" in name else table.to_batches()[0], name)
+    assert as_set(broadside.pairs(once)) == brute_force(BOXES)
+    with pytest.raises(ValueError, match="was already taken"):
+        broadside.pairs(once)
+
+
 def test_takes_floats_and_integers():
     whole = np.round(BOXES * 100)
     for type in (pa.int8(), pa.uint16(), pa.int32(), pa.int64(), pa.float32()):

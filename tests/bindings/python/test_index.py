@@ -148,5 +148,27 @@ def test_refuses_questions_that_have_no_answer():
             index.containing([[0, 0, 0]])
         with pytest.raises(ValueError, match="k is 0"):
             index.nearest([[0, 0]], 0)
-        with pytest.raises(TypeError):
-            index.nearest([[0, 0]], 1.5)
+        for k, error in ((1.5, TypeError), (True, TypeError), (2**70, ValueError), (65_537, ValueError)):
+            with pytest.raises(error, match="k is"):
+                index.nearest([[0, 0]], k)
+        for t_max in (None, "1"):
+            with pytest.raises(TypeError, match="t_max is of .*; expected a number"):
+                index.hits([[0, 0]], [[1, 0]], t_max=t_max)
+        with pytest.raises(TypeError, match="points is of NoneType"):
+            index.containing(None)
+
+
+def test_a_hit_is_at_most_at_t_max():
+    step = np.float32(0.1)  # greater than 0.1
+    index = broadside.Index(np.array([[step, 0, 1, 1]], np.float32))
+    assert len(index.hits([[0, 0]], [[1, 0]], t_max=0.1).t) == 0
+    assert index.hits([[0, 0]], [[1, 0]], t_max=float(step)).t.tolist() == [float(step)]
+    for t_max in (1e300, np.float64(1e39), 10**30):
+        assert len(index.hits([[0, 0]], [[1, 0]], t_max=t_max).t) == 1
+    with pytest.raises(ValueError, match="t_max"):
+        index.hits([[0, 0]], [[1, 0]], t_max=10**400)
+
+
+def test_takes_infinite_points():
+    index = broadside.Index(scattered(3))
+    assert np.isinf(index.nearest([[np.inf, 0]], 3).distance_squared).all()

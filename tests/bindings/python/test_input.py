@@ -1,6 +1,7 @@
 """What is taken for boxes: without a copy, by one, or not at all."""
 
 import array
+import pickle
 import subprocess
 import sys
 
@@ -12,6 +13,7 @@ import broadside
 
 BOXES = scattered(50, dtype=np.float64)
 PAIRS = brute_force(BOXES)
+FLOATS = np.dtype([(name, float) for name in ("category", "mask", "group", "is_static")])
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -80,7 +82,6 @@ def test_takes_integers_that_float64_holds_and_no_others():
         (np.zeros((2, 2, 4)), ValueError, r"shape \(2, 2, 4\)"),
         (np.zeros((3, 0)), ValueError, r"shape \(3, 0\)"),
         ([[0, 0, 1, 1], [0, 0]], ValueError, "rows of the same length"),
-        ([], ValueError, r"shape \(0,\)"),
         ("boxes", TypeError, "str; expected an array"),
         (b"0000", TypeError, "bytes"),
         (None, TypeError, "NoneType"),
@@ -89,6 +90,8 @@ def test_takes_integers_that_float64_holds_and_no_others():
         (array.array("d", [0, 0, 1, 1]), ValueError, r"shape \(4,\)"),
         (np.ma.masked_array(np.zeros((1, 4)), True), ValueError, "masked"),
         (np.zeros(2, [("a", "f8"), ("b", "f8")]), ValueError, "has the columns a, b; expected xmin"),
+        (np.zeros(2, [(name, "f8") for name in ("x", "y", "width", "height")]), ValueError, "has the columns x, y, width"),
+        (np.zeros(2, [(name, "f8") for name in "01234"]), ValueError, "has the columns 0, 1, 2, 3, 4; expected xmin"),
     ],
 )
 def test_refuses_what_is_no_boxes(found, error, message):
@@ -114,13 +117,18 @@ def test_refuses_arguments_that_do_not_fit():
     for arguments, error, message in [
         ({"algorithm": "gird"}, broadside.InvalidAlgorithmError, "did you mean 'grid'"),
         ({"algorithm": "grid:cell=-1"}, broadside.InvalidAlgorithmError, "cell"),
-        ({"algorithm": 7}, TypeError, "find"),
+        ({"algorithm": 7}, TypeError, "algorithm is of int; expected a str"),
+        ({"algorithm": None}, TypeError, "algorithm is of NoneType"),
+        ({"threads": 2**70}, ValueError, "threads is 1180591620717411303424; expected 1 to 1024"),
+        ({"threads": True}, TypeError, "threads is of bool"),
+        ({"threads": 1.5}, TypeError, "float|int"),
         ({"output": "pandas"}, ValueError, "expected 'numpy', 'arrow' or 'sparse'"),
         ({"threads": 0}, ValueError, "threads is 0; expected 1 to 1024"),
         ({"threads": "two"}, TypeError, "int"),
         ({"threads": 2, "algorithm": "grid:threads=2"}, ValueError, "expected one of the two"),
         ({"filters": broadside.filters(9)}, ValueError, r"shape \(9,\); expected \(10,\)"),
         ({"filters": np.zeros(10)}, TypeError, "expected what broadside.filters"),
+        ({"filters": broadside.filters(10).astype(FLOATS)}, TypeError, "expected what broadside.filters"),
         ({"other_filters": broadside.filters(10)}, ValueError, "without other boxes"),
         ({"ignored": [[0, 10]]}, ValueError, "ignored has 10; expected integers from 0 to 9"),
         ({"ignored": [[0, -1]]}, ValueError, "ignored has -1"),
@@ -138,6 +146,44 @@ def test_refuses_arguments_that_do_not_fit():
         broadside.filters(2, group=2**31)
     with pytest.raises(TypeError, match="expected booleans"):
         broadside.filters(2, is_static=[1, 0])
+
+
+def test_takes_whatever_is_true_for_a_flag():
+    boxes = scattered(100)
+    for flag in (1, np.bool_(True), "yes"):
+        np.testing.assert_array_equal(broadside.pairs(boxes, sort=flag), broadside.pairs(boxes, sort=True))
+    assert broadside.count(boxes, quarantine=None) == broadside.count(boxes)
+
+
+def test_an_empty_list_is_no_boxes():
+    flat, solid = scattered(5), scattered(5, 3)
+    for found in ([], ()):
+        assert broadside.pairs(found).shape == (0, 2)
+        assert broadside.pairs(found, output="sparse").shape == (0, 0)
+        assert broadside.count(found, solid) == broadside.count(solid, found) == broadside.count(found, flat) == 0
+        assert broadside.count(found, found) == 0 and len(broadside.invalid_rows(found)) == 0
+        world = broadside.World(3)
+        assert world.add(found).shape == (0,) and len(world.overlapping(found).box) == 0
+        world.move(found, found)
+        assert len(broadside.Tracker(3).update(found).begun) == 0
+        assert len(broadside.Index(solid).containing(found).box) == 0
+        for call in (broadside.Index, broadside.draw):
+            with pytest.raises(ValueError, match=r"shape \(0,\)"):
+                call(found)
+
+
+def test_names_the_argument_of_an_invalid_box():
+    boxes, bad = scattered(10), scattered(10)
+    bad[3, 0] = np.nan
+    for left, right, name in [(bad, boxes, "boxes"), (boxes, bad, "other"), (boxes[:2], bad, "other"), (bad, bad, "boxes")]:
+        with pytest.raises(broadside.InvalidBoxError, match=f"{name}: box 3") as caught:
+            broadside.pairs(left, right)
+        assert (caught.value.argument, caught.value.row) == (name, 3)
+        again = pickle.loads(pickle.dumps(caught.value))
+        assert (str(again), again.argument, again.row) == (str(caught.value), name, 3)
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        broadside.pairs(bad)
+    assert caught.value.argument == "boxes"
 
 
 class WithArray:
@@ -179,6 +225,10 @@ def test_takes_shapely_and_geopandas():
     frame = geopandas.GeoDataFrame({"n": range(50)}, geometry=series)
     for found in (geometries, geometries.tolist(), series, series.array, frame, frame.set_index("n")):
         assert as_set(broadside.pairs(found)) == kept
+    nothing = geopandas.GeoSeries([None, None])
+    for none in (series[:0], frame[:0], series[:0].array, nothing, geopandas.GeoDataFrame(geometry=nothing)):
+        assert broadside.pairs(none).shape == (0, 2)
+        assert broadside.count(series, none) == broadside.count(none, series) == 0
     bounds = series.bounds.drop([3, 4])
     assert len(broadside.pairs(bounds)) == len(kept)
     assert as_set(broadside.pairs(frame, BOXES)) == {p for p in brute_force(BOXES, BOXES) if p[0] not in (3, 4)}
@@ -188,8 +238,11 @@ def test_takes_data_frames_by_the_names_of_their_columns():
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame(BOXES, columns=["xmin", "ymin", "xmax", "ymax"])
     assert as_set(broadside.pairs(frame[["ymax", "xmin", "ymin", "xmax"]])) == PAIRS
-    with pytest.raises(ValueError, match="expected xmin, ymin, xmax, ymax"):
-        broadside.pairs(pandas.DataFrame({"a": [1.0], "b": [2.0]}))
+    assert as_set(broadside.pairs(frame.assign(geometry="a text"))) == PAIRS
+    assert as_set(broadside.pairs(pandas.DataFrame(BOXES))) == PAIRS
+    for names in ("a b", "x y width height", "id a b c", "0 1 2 3 id"):
+        with pytest.raises(ValueError, match=f"boxes has the columns {', '.join(names.split())}; expected xmin, ymin"):
+            broadside.pairs(pandas.DataFrame({name: [1.0, 2.0] for name in names.split()}))
 
 
 def test_the_lab_s_rows_are_what_the_program_finds(tmp_path):

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -29,6 +30,9 @@ def test_advises():
     ]:
         with pytest.raises(error):
             broadside.advise(scattered(10), **arguments)
+    with pytest.raises(broadside.InvalidBoxError, match="box 1") as caught:
+        broadside.advise([[0, 0, 1, 1], [np.nan, 0, 1, 1]], budget=0.3)
+    assert caught.value.row == 1
 
 
 def test_reads_files(tmp_path):
@@ -47,6 +51,22 @@ def test_reads_files(tmp_path):
     map = tmp_path / "points.geojson"
     map.write_text(json.dumps({"type": "FeatureCollection", "features": shapes}))
     np.testing.assert_array_equal(broadside.read(map), [[1, 2, 1, 2], [3, 2, 3, 2]])
+
+
+def test_reads_files_of_any_name(tmp_path):
+    path = os.fsencode(tmp_path) + b"/\xff.csv"
+    with open(path, "w") as file:
+        file.write("min_x,min_y,max_x,max_y\n0,0,1,1\n")
+    for name in (path, os.fsdecode(path)):
+        assert broadside.read(name).tolist() == [[0, 0, 1, 1]]
+        with pytest.raises(ValueError, match="frame is 5; expected at most 0"):
+            broadside.read(name, frame=5)
+    with open(path, "a") as file:
+        file.write("2,0,1,1\n")
+    with pytest.raises(broadside.FileError, match="\udcff.csv"):
+        broadside.read(path)
+    with pytest.warns(UserWarning):
+        assert broadside.read(path, quarantine=True).tolist() == [[0, 0, 1, 1], [np.inf, np.inf, -np.inf, -np.inf]]
 
 
 def test_says_what_is_wrong_with_a_file(tmp_path):
@@ -68,6 +88,9 @@ def test_says_what_is_wrong_with_a_file(tmp_path):
         broadside.read(path, dimension=4)
     with pytest.raises(ValueError, match="frame is -1"):
         broadside.read(path, frame=-1)
+    for arguments in ({"frame": 1.5}, {"format": 7}, {"dimension": 2.0}):
+        with pytest.raises(TypeError, match="expected"):
+            broadside.read(path, **arguments)
 
 
 def test_draws(tmp_path):
@@ -82,5 +105,7 @@ def test_draws(tmp_path):
         broadside.draw(scattered(10), "nothing")
     with pytest.raises(ValueError, match="most is 0"):
         broadside.draw(scattered(10), most=0)
+    with pytest.raises(TypeError, match="algorithms is of list; expected a str"):
+        broadside.draw(scattered(10), ["grid"])
     with pytest.raises(broadside.InvalidBoxError):
         broadside.draw([[0, 0, np.nan, 1]])

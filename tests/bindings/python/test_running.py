@@ -9,7 +9,6 @@ import subprocess
 import sys
 import textwrap
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -60,6 +59,13 @@ def test_ctrl_c_ends_queries_and_updates():
     assert len(world.update().begun) == broadside.count(FEW_PAIRS[:1000])
 
 
+def test_ctrl_c_ends_a_join():
+    worlds = [broadside.World(3, dtype=np.float32, algorithm="brute_force") for _ in range(2)]
+    for world in worlds:
+        world.add(FEW_PAIRS[:400_000])
+    interrupted_after(0.3, lambda: worlds[0].join(worlds[1]))
+
+
 def test_a_signal_handler_may_not_call_the_object_that_it_interrupts():
     world = broadside.World(3, dtype=np.float32, algorithm="brute_force")
     world.add(FEW_PAIRS[:400_000])
@@ -73,23 +79,28 @@ def test_a_signal_handler_may_not_call_the_object_that_it_interrupts():
 
 
 def test_other_threads_run_meanwhile():
-    done = threading.Event()
-    steps = 0
+    began, ran = threading.Event(), threading.Event()
 
-    def search():
-        for _ in range(20):
-            broadside.pairs(FEW_PAIRS[:200_000], threads=1)
-        done.set()
+    def interrupt():
+        began.wait()
+        ran.set()
+        os.kill(os.getpid(), signal.SIGINT)
 
-    thread = threading.Thread(target=search)
-    began = time.monotonic()
+    thread = threading.Thread(target=interrupt)
+    interval = sys.getswitchinterval()
     thread.start()
-    while not done.is_set():
-        steps += 1
-        time.sleep(0.001)
+    try:
+        # From here on Python gives the GIL to another thread only where one lets it go, as the search does, which
+        # would take minutes if the other thread could not end it.
+        sys.setswitchinterval(1000)
+        with pytest.raises(KeyboardInterrupt):
+            began.set()
+            assert not ran.is_set()
+            broadside.count(FEW_PAIRS, algorithm="brute_force")
+    finally:
+        sys.setswitchinterval(interval)
     thread.join()
-    # With the GIL kept, there would be at most some steps between two searches.
-    assert steps > 0.2 * (time.monotonic() - began) / 0.001 or steps > 100
+    assert ran.is_set()
 
 
 def test_a_hundred_threads_search_at_once():
@@ -170,6 +181,41 @@ def test_the_process_ends_while_a_thread_searches():
         """
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_a_finalizer_calls_a_world_while_python_ends():
+    done = run(
+        """
+        import broadside
+        class Keeper:
+            def __init__(self):
+                self.world = broadside.World(2)
+                self.world.add([[0, 0, 1, 1]])
+            def __del__(self):
+                print(len(self.world), flush=True)
+        keeper = Keeper()
+        """
+    )
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
+
+
+def test_first_calls_of_several_threads_wait_for_nothing():
+    done = run(
+        """
+        import builtins, sys, threading, time, numpy as np, broadside
+        plain = builtins.__import__
+        def slow(*arguments, **named):  # lets other threads run
+            time.sleep(0.01)
+            return plain(*arguments, **named)
+        builtins.__import__ = slow
+        boxes = np.array([[0, 0, 2, 2], [1, 1, 3, 3.0]])
+        threads = [threading.Thread(target=broadside.pairs, args=(boxes,)) for _ in range(4)]
+        [thread.start() for thread in threads]
+        [thread.join() for thread in threads]
+        print("done")
+        """
+    )
+    assert done.stdout == "done\n", done.stderr
 
 
 def test_nothing_is_leaked():

@@ -96,6 +96,22 @@ def test_refuses_stale_and_foreign_handles():
         world.move([b], [[0, 0, 1, 1], [0, 0, 1, 1]])
 
 
+def test_takes_handles_beyond_half_of_all_in_a_list():
+    world = broadside.World(2, first_generation=2**31)
+    a, b = world.add([[0, 0, 1, 1], [0, 0, 1, 1]]).tolist()
+    assert a >= 2**63
+    for wrong in ([a, 1], [[a, 1]]):
+        with pytest.raises(broadside.InvalidHandleError):
+            world.remove(wrong) if wrong[0] == a else world.ignore(wrong)
+    for wrong, error in (([a, 2**64], ValueError), ([a, 0.5], TypeError), (None, TypeError)):
+        with pytest.raises(error):
+            world.remove(wrong)
+    with pytest.raises(TypeError, match="filters is None"):
+        world.set_filters([a], None)
+    world.ignore([[a, b]])
+    world.remove([a, b])
+
+
 def test_keeps_float32_exact():
     world = broadside.World(2, dtype=np.float32)
     world.add(scattered(5, dtype=np.float64).astype(np.float32).astype(np.float64))
@@ -114,6 +130,10 @@ def test_refuses_options_that_do_not_exist():
         ({"dimension": 2, "events": "all"}, ValueError),
         ({"dimension": 2, "first_generation": 2**32}, ValueError),
         ({"dimension": 2, "threads": 0}, ValueError),
+        ({"dimension": 2.0}, TypeError),
+        ({"dimension": 2, "margin": None}, TypeError),
+        ({"dimension": 2, "algorithm": None}, TypeError),
+        ({"dimension": 2, "first_generation": 1.5}, TypeError),
     ]:
         with pytest.raises(error):
             broadside.World(**arguments)
@@ -146,6 +166,14 @@ def test_moves_within_a_margin_and_with_velocities():
     assert world.boxes([a], enlarged=True)[0, 2] >= 2
     with pytest.raises(ValueError, match="0 velocities"):
         world.move([a], [[0, 0, 1, 1]], velocities=np.empty((0, 2)))
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        world.move([a, b], [[0, 0, 1, 1]] * 2, velocities=[[0, 0], [np.inf, 0]])
+    assert (caught.value.argument, caught.value.row) == ("velocities", 1)
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        world.move([a], [[np.nan, 0, 1, 1]], velocities=[[0, 0]])
+    assert caught.value.argument == "boxes"
+    with pytest.raises(ValueError, match="velocities are given to a world of predicted_frames=0"):
+        broadside.World(2).move([], [], velocities=[])
 
 
 def test_joins_two_worlds():
@@ -156,6 +184,8 @@ def test_joins_two_worlds():
     assert len(a.join(a)) == len(brute_force(left, left))
     with pytest.raises(TypeError, match="another dimension"):
         a.join(broadside.World(2))
+    with pytest.raises(TypeError, match="other is of int; expected a World"):
+        a.join(3)
 
 
 def test_goes_back_in_time():
@@ -178,6 +208,8 @@ def test_goes_back_in_time():
             world.restore(bytes)
     with pytest.raises(TypeError):
         world.restore("a")
+    world.restore(bytearray(past))
+    world.restore(memoryview(past))
     np.testing.assert_array_equal(world.pairs(), before)
 
 
