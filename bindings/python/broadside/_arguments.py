@@ -15,9 +15,8 @@ def text(found: Any, name: str) -> str:
 
 def number(found: Any, name: str) -> float:
     """A number as a float."""
-    if isinstance(found, (str, bytes, bytearray)) or not hasattr(type(found), "__float__"):
-        if not hasattr(type(found), "__index__"):
-            raise TypeError(f"{name} is of {type(found).__name__}; expected a number")
+    if not hasattr(type(found), "__float__") and not hasattr(type(found), "__index__"):
+        raise TypeError(f"{name} is of {type(found).__name__}; expected a number")
     try:
         return float(found)
     except OverflowError:

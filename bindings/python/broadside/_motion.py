@@ -116,7 +116,9 @@ class World:
         Raises InvalidHandleError, InvalidBoxError.
         """
         if velocities is not None and not self._options["predicted_frames"]:
-            raise ValueError("velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities")
+            raise ValueError(
+                "velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities"
+            )
         self._world.move(handles, boxes, velocities)
 
     def remove(self, handles: ArrayLike) -> None:

@@ -90,7 +90,7 @@ def test_takes_integers_that_float64_holds_and_no_others():
         (array.array("d", [0, 0, 1, 1]), ValueError, r"shape \(4,\)"),
         (np.ma.masked_array(np.zeros((1, 4)), True), ValueError, "masked"),
         (np.zeros(2, [("a", "f8"), ("b", "f8")]), ValueError, "has the columns a, b; expected xmin"),
-        (np.zeros(2, [(name, "f8") for name in ("x", "y", "width", "height")]), ValueError, "has the columns x, y, width"),
+        (np.zeros(2, [(name, "f8") for name in ("x", "y", "width", "height")]), ValueError, "columns x, y, width, height;"),
         (np.zeros(2, [(name, "f8") for name in "01234"]), ValueError, "has the columns 0, 1, 2, 3, 4; expected xmin"),
     ],
 )
@@ -175,7 +175,8 @@ def test_an_empty_list_is_no_boxes():
 def test_names_the_argument_of_an_invalid_box():
     boxes, bad = scattered(10), scattered(10)
     bad[3, 0] = np.nan
-    for left, right, name in [(bad, boxes, "boxes"), (boxes, bad, "other"), (boxes[:2], bad, "other"), (bad, bad, "boxes")]:
+    sets = [(bad, boxes, "boxes"), (boxes, bad, "other"), (boxes[:2], bad, "other"), (bad, bad, "boxes")]
+    for left, right, name in sets:
         with pytest.raises(broadside.InvalidBoxError, match=f"{name}: box 3") as caught:
             broadside.pairs(left, right)
         assert (caught.value.argument, caught.value.row) == (name, 3)
