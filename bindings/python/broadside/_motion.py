@@ -51,9 +51,9 @@ class World:
         quarantine: Take invalid boxes in as absent ones instead of raising; `quarantined` names them.
         first_generation: The generation of the first handles; by default each world has another one.
 
-    Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not
-    while the first query after a change makes its index: an update that was ended can be made again. Functions of many boxes do all or, if one is wrong, nothing. A world can be
-    pickled and copied, with its handles.
+    Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not while
+    the first query after a change makes its index: an update that was ended can be made again. Functions of many boxes
+    do all or, if one is wrong, nothing. A world can be pickled and copied, with its handles.
     """
 
     __slots__ = ("_has_doubles", "_options", "_world")

@@ -62,8 +62,8 @@ class Index:
         TypeError, ValueError: As `pairs`.
 
     Cost: about that of finding all pairs; 100 to 200 bytes a box. A query takes some hundred nanoseconds, and what it
-    finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once; making an index releases the
-    GIL and is not interrupted. An index can be pickled.
+    finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once. Making an index releases
+    the GIL and is not interrupted. An index can be pickled.
     """
 
     __slots__ = ("_boxes", "_index")
