@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
+
+# A shell without job control has Ctrl-C ignored by what it runs in the background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples at each run.
 settings.register_profile("broadside", derandomize=True, deadline=None, max_examples=150)
