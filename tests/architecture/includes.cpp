@@ -34,6 +34,7 @@ const std::vector<Rule>& rules() {
       // An integration sees its engine.
       {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
+      {"src/core/thread_pool", core + R"(|<unistd\.h>)"},
       {"src/core/large_array", core + R"(|<sys/mman\.h>|<unistd\.h>)"},
       {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
       {"src/core/", core},
