@@ -1,5 +1,8 @@
 // The standard executor of a library built without oneTBB: threads of the standard library.
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <new>
 #include <thread>
 
 #include "broadside/executor.hpp"
@@ -10,7 +13,9 @@ namespace broadside {
 
 Executor* standard_executor() noexcept {
   // Never destroyed: its threads sleep when the process ends, and others may still search then.
-  static auto* const pool = new core::ThreadPool(std::max(std::thread::hardware_concurrency(), 1u));
+  alignas(core::ThreadPool) static std::array<std::byte, sizeof(core::ThreadPool)> storage;
+  static auto* const pool =
+      ::new (storage.data()) core::ThreadPool(std::max(std::thread::hardware_concurrency(), 1u));
   return pool;
 }
 
