@@ -29,6 +29,12 @@ struct FloatControl {
   void set() const noexcept { asm volatile("msr fpcr, %0" : : "r"(bits) : "memory"); }
   static constexpr FloatControl standard() noexcept { return {0}; }
   bool is_standard() const noexcept { return bits == 0; }
+#elif defined(__wasm__)
+  // WebAssembly has no other environment.
+  static constexpr FloatControl now() noexcept { return {0}; }
+  void set() const noexcept {}
+  static constexpr FloatControl standard() noexcept { return {0}; }
+  constexpr bool is_standard() const noexcept { return true; }
 #else
   // Where C++ has no name for flushed denormals, the rounding mode.
   static FloatControl now() noexcept { return {static_cast<std::uint64_t>(std::fegetround())}; }

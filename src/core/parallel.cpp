@@ -245,7 +245,7 @@ void Parallel::start(const Workers& workers, std::size_t boxes) {
   workers_ = 1;
   boxes_ = boxes;
   checkpoint_ = workers.checkpoint;
-  if (workers.threads == 1) return;
+  if (is_lean || workers.threads == 1) return;
   const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
   if (executor_ == nullptr) return;

@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/lean.hpp"
 #include "core/pair_blocks.hpp"
 
 namespace broadside::core {
@@ -40,20 +41,22 @@ class Parallel {
   /// Sets the number of workers for a search that takes about as long as looking at `boxes` boxes.
   void start(const Workers& workers, std::size_t boxes);
 
-  std::size_t workers() const noexcept { return workers_; }
+  std::size_t workers() const noexcept { return is_lean ? 1 : workers_; }
 
   /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Throws what
   /// a body throws, of several the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
-    if (workers_ == 1)
+    if constexpr (is_lean)
+      body(Range{0, count}, std::size_t{0});
+    else if (workers_ == 1)
       body(Range{0, count}, std::size_t{0});
     else
       share_ranges(count, [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
   }
 
   /// How many ranges for_numbered_ranges() makes.
-  std::size_t range_count() const noexcept { return workers_ == 1 ? 1 : ranges_per_worker * workers_; }
+  std::size_t range_count() const noexcept { return workers() == 1 ? 1 : ranges_per_worker * workers_; }
 
   /// The range of a number below range_count(): the same at every call between two of start().
   Range range(std::size_t number, std::size_t count) const noexcept;
@@ -61,7 +64,9 @@ class Parallel {
   /// Calls body(number, range, worker) for each range of a number.
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
-    if (workers_ == 1)
+    if constexpr (is_lean)
+      body(std::size_t{0}, Range{0, count}, std::size_t{0});
+    else if (workers_ == 1)
       body(std::size_t{0}, Range{0, count}, std::size_t{0});
     else
       share_ranges(count, std::cref(body));
@@ -76,8 +81,10 @@ class Parallel {
   /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
-    if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
-    if (checkpoint_) return search_by_pieces(parts, pairs, std::cref(search));
+    if constexpr (!is_lean) {
+      if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
+      if (checkpoint_) return search_by_pieces(parts, pairs, std::cref(search));
+    }
     return search(Range{0, parts}, std::size_t{0}, pairs);
   }
 

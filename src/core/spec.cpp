@@ -1,13 +1,13 @@
 // Specs read and written, and their values checked against tunables.
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 
 #include "core/former_names.hpp"
+#include "core/number_text.hpp"
 
 namespace broadside {
 namespace {
@@ -17,24 +17,6 @@ std::string listed(const Names& names) {
   std::string list;
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
   return list.empty() ? "none" : list;
-}
-
-/// The number that `text` is from end to end, or NaN.
-double read_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size()) return std::nan("");
-  // Out of range: too large, unless the exponent is negative.
-  if (error == std::errc::result_out_of_range)
-    return text.find("e-") == text.npos ? std::numeric_limits<double>::infinity() : 0;
-  return error == std::errc() ? value : std::nan("");
-}
-
-/// The shortest text that reads back to `value`.
-std::string text_of(double value) {
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
 }
 
 /// The largest value of a tunable; an integer is never beyond what a double holds exactly.
@@ -50,8 +32,8 @@ std::string range(const Tunable& tunable, double found) {
   if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
     return kind + " above 0";
   if (most(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
-    return kind + " of at least " + text_of(tunable.least);
-  return kind + " from " + text_of(tunable.least) + " to " + text_of(most(tunable));
+    return kind + " of at least " + core::text_of(tunable.least);
+  return kind + " from " + core::text_of(tunable.least) + " to " + core::text_of(most(tunable));
 }
 
 void check(const std::string& owner, const Tunable& tunable, const std::string& value) {
@@ -66,7 +48,7 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
       refuse("one of: " + listed(tunable.choices));
     return;
   }
-  const double number = read_number(value);
+  const double number = core::number_in(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
   if (!(number >= tunable.least && number <= most(tunable) && std::isfinite(number) && whole))
     refuse(range(tunable, number));
@@ -128,7 +110,7 @@ const std::string& Settings::text(std::string_view tunable) const {
   return found->second;
 }
 
-double Settings::number(std::string_view tunable) const { return read_number(text(tunable)); }
+double Settings::number(std::string_view tunable) const { return core::number_in(text(tunable)); }
 
 std::int64_t Settings::integer(std::string_view tunable) const { return std::llround(number(tunable)); }
 

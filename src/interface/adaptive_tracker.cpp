@@ -13,6 +13,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/lean.hpp"
 #include "core/sample.hpp"
 #include "interface/pair_difference.hpp"
 
@@ -146,6 +147,7 @@ void AdaptiveTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& b
 
 template <int D, typename Real>
 std::string AdaptiveTracker<D, Real>::explanation() const {
+  if constexpr (core::is_lean) return {};
   if (were_few_) return "brute_force, since so few boxes need no cells; " + for_few_->explanation();
   const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
   const std::string break_even = std::to_string(policy_.break_even());

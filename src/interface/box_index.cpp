@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "broadside/queries.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/number_text.hpp"
 #include "interface/input_check.hpp"
 #include "interface/squared_distance.hpp"
 
@@ -19,13 +18,10 @@ namespace {
 
 template <typename Real>
 [[noreturn]] void refuse(const char* name, const Real* values, int count, const char* expected) {
-  std::ostringstream message;
-  message.imbue(std::locale::classic());
-  message.precision(std::numeric_limits<Real>::max_digits10);
-  message << name << " is ";
-  for (int i = 0; i < count; ++i) message << (i == 0 ? "" : ", ") << values[i];
-  message << "; expected " << expected;
-  throw InvalidQuery(message.str());
+  std::string message = std::string(name) + " is ";
+  for (int i = 0; i < count; ++i)
+    message += (i == 0 ? "" : ", ") + core::text_of(values[i], std::numeric_limits<Real>::max_digits10);
+  throw InvalidQuery(message + "; expected " + expected);
 }
 
 template <int D, typename Real>

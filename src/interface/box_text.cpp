@@ -2,25 +2,20 @@
 #include "interface/box_text.hpp"
 
 #include <limits>
-#include <locale>
-#include <sstream>
+
+#include "core/number_text.hpp"
 
 namespace broadside::core {
 
 template <int D, typename Real>
 std::string text_of(const Box<D, Real>& box) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());  // the global locale may be another
-  text.precision(std::numeric_limits<Real>::max_digits10);
-  const auto print = [&text](const std::array<Real, D>& point) {
-    for (int axis = 0; axis < D; ++axis) text << (axis == 0 ? "(" : ", ") << point[axis];
-    text << ')';
+  const auto point_text = [](const std::array<Real, D>& point) {
+    std::string text;
+    for (int axis = 0; axis < D; ++axis)
+      text += (axis == 0 ? "(" : ", ") + text_of(point[axis], std::numeric_limits<Real>::max_digits10);
+    return text + ")";
   };
-  text << "min ";
-  print(box.min);
-  text << " and max ";
-  print(box.max);
-  return text.str();
+  return "min " + point_text(box.min) + " and max " + point_text(box.max);
 }
 
 template std::string text_of(const Box2&);

@@ -14,6 +14,7 @@
 #include "core/parallel.hpp"
 #include "interface/callers_sink.hpp"
 #include "interface/input_check.hpp"
+#include "kernels/observed_tests.hpp"
 
 namespace broadside {
 namespace {
@@ -161,7 +162,9 @@ void PairFinder<D, Real>::find(BoxView<D, Real> view, PairSink& pairs, const Pai
     ids_.clear();
     take_present(boxes);
     RenamingSink renamed(ids_, left_count_, pairs);
+    const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
     find_valid(present_, renamed);
+    if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
     renamed.flush();
   });
 }

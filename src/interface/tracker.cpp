@@ -92,8 +92,9 @@ void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Re
   // The pairs that are ignored from now on come first.
   const auto middle = std::partition(toggled_.begin(), toggled_.end(),
                                      [this](Pair pair) { return !ignored_.contains(pair); });
-  const std::span<const Pair> newly(toggled_.begin(), middle);
-  const std::span<const Pair> no_longer(middle, toggled_.end());
+  const auto newly_ignored = static_cast<std::size_t>(middle - toggled_.begin());
+  const std::span<const Pair> newly = std::span(toggled_).first(newly_ignored);
+  const std::span<const Pair> no_longer = std::span(toggled_).subspan(newly_ignored);
   try {
     // All memory is taken before the events are delivered, so that nothing can fail after them.
     for (const Pair pair : newly) ignored_.insert(pair);

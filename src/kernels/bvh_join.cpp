@@ -16,6 +16,7 @@
 
 #include "kernels/broadcast_box.hpp"
 #include "kernels/compress.hpp"
+#include "kernels/observed_tests.hpp"
 #include "kernels/pair_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -63,7 +64,7 @@ class Join {
     const std::uint32_t root = 0;
     if (children_of(0, tree_.level_count - 1, &root, 1, scratch)) next_leaf_ = leaves_.end;
     const std::uint64_t allowed = limit_.tests + limit_.tests_per_pair * pairs_.written();
-    return {tests_, allowed - std::min(allowed, work()), next_leaf_};
+    return {tests_ - unused_, allowed - std::min(allowed, work()), next_leaf_};
   }
 
  private:
@@ -121,11 +122,13 @@ class Join {
     for (std::size_t i = 0; i < count; ++i) {
       const BroadcastBox<D> bounds = broadcast(leaves, list[i]);
       const std::size_t other = std::size_t{list[i]} * fan_out;
+      const std::size_t before = queried;
       for (std::size_t at = 0; at < fan_out; at += lanes) {
         const Hits hits = touching(bounds, boxes, begin + at);
         hn::StoreU(compress(Numbers(), numbers_from(other + at), hits), Numbers(), queries_ + queried);
         queried += hn::CountTrue(Numbers(), hits);
       }
+      if (HWY_UNLIKELY(list[i] >= tree_.first_with_gap)) unused_ += (queried - before) * gap_of(list[i]);
       if (HWY_UNLIKELY(queried > most_queries)) {
         across(begin, queried);
         queried = 0;
@@ -146,7 +149,33 @@ class Join {
                         hn::And(touching(query, tree_.levels[0], begin + at), later));
       }
     }
-    tests_ += fan_out * (fan_out - 1) / 2;
+    if constexpr (is_observing) observe_within(begin);
+    constexpr std::size_t all_pairs = fan_out * (fan_out - 1) / 2;
+    tests_ += all_pairs;
+    const std::size_t leaf = begin / fan_out;
+    if (HWY_LIKELY(leaf < tree_.first_with_gap)) return;
+    const std::size_t boxes = fan_out - gap_of(leaf);
+    unused_ += all_pairs - boxes * (boxes - 1) / 2;
+  }
+
+  void observe_within(std::size_t begin) const {
+    const std::size_t end = begin + fan_out - gap_of(begin / fan_out);
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t j = i + 1; j < end; ++j) observe_test(tree_.id[i], tree_.id[j]);
+    }
+  }
+
+  void observe_across(std::size_t place, std::size_t leaf) const {
+    const auto boxes = static_cast<std::uint32_t>(fan_out - gap_of(leaf));
+    observe_tests(tree_.id[place], tree_.id + leaf * fan_out, (1U << boxes) - 1);
+  }
+
+  /// How many of a leaf's places hold no box: its last ones.
+  std::size_t gap_of(std::size_t leaf) const {
+    const float* const mins = tree_.levels[0].min[0] + leaf * fan_out;
+    std::size_t boxes = fan_out;
+    while (boxes > 0 && !(mins[boxes - 1] == mins[boxes - 1])) --boxes;  // NaN
+    return fan_out - boxes;
   }
 
   /// Does the first `count` of queries_: compares boxes of the leaf that begins at `begin` with other leaves.
@@ -160,6 +189,7 @@ class Join {
         pairs_.room();
         pairs_.write_of(id, ids_beside(query, at), touching(query, tree_.levels[0], at));
       }
+      if constexpr (is_observing) observe_across(place, other / fan_out);
     }
     tests_ += count * fan_out;
   }
@@ -178,7 +208,8 @@ class Join {
   NodeRange leaves_;
   JoinLimit limit_;
   PairWriter<Numbers, LastTest> pairs_;
-  std::uint64_t tests_ = 0;
+  std::uint64_t tests_ = 0;   // where a leaf counts as full, which is what the work is
+  std::uint64_t unused_ = 0;  // of these, those with a place that holds no box
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
   std::size_t next_leaf_;
   std::uint32_t

@@ -37,6 +37,9 @@ struct PackedBvh {
   /// Else 0.
   std::size_t left_size;
 
+  /// Leaves before this one are full. A later one may hold fewer than `fan_out` boxes, in its first places.
+  std::size_t first_with_gap = 0;
+
   /// As in a Run.
   const Box<D, double>* doubles = nullptr;
 };
@@ -70,7 +73,7 @@ struct JoinLimit {
 
 /// The work that a join did.
 struct JoinWork {
-  std::uint64_t tests;    ///< pairs of boxes compared, where a leaf counts as full
+  std::uint64_t tests;    ///< pairs of boxes compared
   std::uint64_t unused;   ///< how many tests more it might have made
   std::size_t next_leaf;  ///< those before it were joined; the end of the range unless it gave up
 };

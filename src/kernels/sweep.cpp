@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/broadcast_box.hpp"
+#include "kernels/observed_tests.hpp"
 #include "kernels/pair_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,6 +40,8 @@ struct Query {
       : bounds(box_of(run, i)),
         id(hn::Set(Ids(), index(run.id[i]))),
         dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {}
+
+  BoxId box_id() const { return BoxId{hn::GetLane(id)}; }
 
   BroadcastBox<D> bounds;
   IdVector id;
@@ -79,7 +82,9 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
   const Floats floats;
   std::size_t tests = 0;
   for (std::size_t at = begin; run.min[0][at] <= last; at += lanes) {
-    tests += hn::CountTrue(floats, hn::Le(hn::LoadU(floats, run.min[0] + at), query.bounds.max[0]));
+    const FloatMask tested = hn::Le(hn::LoadU(floats, run.min[0] + at), query.bounds.max[0]);
+    tests += hn::CountTrue(floats, tested);
+    if constexpr (is_observing) observe_tests(query.box_id(), run.id + at, bits_of(tested));
     const Hits hits = overlaps(query, run, at);
     // Where candidates are many, most vectors of them hold no hit.
     if (hn::AllFalse(Ids(), hits)) continue;
@@ -121,6 +126,8 @@ HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::si
         open += hn::CountTrue(floats, hn::Le(other.min[0], hn::Add(group.max[0], slack)));
         const auto candidates = hn::Le(other.min[0], group.max[0]);
         tests += hn::CountTrue(floats, candidates);
+        if constexpr (is_observing)
+          observe_tests(run.id + begin + part * lanes, run.id + at, bits_of(candidates));
         auto hits = hn::And(candidates, hn::Le(group.min[0], other.max[0]));
         for (int axis = 1; axis < D; ++axis) {
           hits = hn::And(hits, hn::Le(other.min[axis], group.max[axis]));
@@ -176,6 +183,8 @@ HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size
                              Writer<LastTest>& pairs) {
   for (std::size_t at = begin; at < run.size; at += lanes) {
     const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
+    if constexpr (is_observing)
+      observe_tests(query.box_id(), run.id + at, (1U << std::min(lanes, run.size - at)) - 1);
     if (hn::AllFalse(Ids(), hits)) continue;
     pairs.room();
     pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);

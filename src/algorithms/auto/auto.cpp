@@ -4,6 +4,7 @@
 // Their thresholds, and where these come from, are in thresholds.hpp.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,8 @@
 #include "algorithms/auto/segment_join.hpp"
 #include "algorithms/auto/thresholds.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/lean.hpp"
+#include "core/number_text.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "doubles/double_finder.hpp"
@@ -47,6 +50,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
   core::LastTest<D>* last_test() noexcept override { return this; }
 
   std::string explanation() const override {
+    if constexpr (core::is_lean) return {};
     std::string text = reason();
     if (has_handed_over_)
       text +=
@@ -57,10 +61,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
 
  private:
   std::string reason() const {
-    const auto rounded = [](double number) {
-      const std::string text = std::to_string(number);
-      return text.substr(0, text.find('.') + 2);
-    };
+    const auto rounded = [](double number) { return core::text_of(std::trunc(number * 10) / 10); };
     std::string text(chosen_algorithm[static_cast<std::size_t>(choice_)]);
     text += ", since ";
     const std::string boxes = std::to_string(count_) + " boxes";
@@ -119,6 +120,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    if constexpr (core::is_lean) return {};
     PairFinder<D>& chosen = chosen_for(boxes);
     chosen.set_workers(this->workers());
     Outline<D> outline = broadside::outline(chosen, boxes);
@@ -238,8 +240,8 @@ Algorithm automatic() {
       .finder_3d = make_auto<3>,
       .tracker_2d = make_auto_tracker<2>,
       .tracker_3d = make_auto_tracker<3>,
-      .double_tracker_2d = make_auto_double_tracker<2>,
-      .double_tracker_3d = make_auto_double_tracker<3>,
+      .double_tracker_2d = core::is_lean ? nullptr : make_auto_double_tracker<2>,
+      .double_tracker_3d = core::is_lean ? nullptr : make_auto_double_tracker<3>,
   };
 }
 

@@ -16,6 +16,7 @@
 #include "algorithms/bvh/packer.hpp"
 #include "algorithms/bvh/tracker.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
@@ -125,6 +126,7 @@ class Bvh final : public PairFinder<D>,
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    if constexpr (core::is_lean) return {};
     parallel_.start(this->workers(), boxes.size());
     packer_.pack(boxes, parallel_);
     const kernels::PackedBvh<D>& tree = packer_.tree();

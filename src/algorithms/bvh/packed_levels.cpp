@@ -1,6 +1,8 @@
 // The bounds over packed leaves.
 #include "algorithms/bvh/packed_levels.hpp"
 
+#include <algorithm>
+
 #include "core/nan_box.hpp"
 
 namespace broadside::algorithm {
@@ -31,7 +33,11 @@ void PackedLevels<D>::start(std::size_t places) {
 
 template <int D>
 void PackedLevels<D>::build(core::Parallel& parallel) {
-  for (const Gap gap : gaps_) fill(0, gap, none<D>);
+  tree_.first_with_gap = tree_.levels[0].size / fan_out;
+  for (const Gap gap : gaps_) {
+    fill(0, gap, none<D>);
+    if (gap.begin < gap.end) tree_.first_with_gap = std::min(tree_.first_with_gap, gap.begin / fan_out);
+  }
   tree_.id = ids_.data();
   tree_.level_count = 1;
   do {

@@ -25,6 +25,7 @@
 #include "algorithms/grid/sweep.hpp"
 #include "algorithms/grid/tracker.hpp"
 #include "core/large_array.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
@@ -103,6 +104,7 @@ class Grid final : public PairFinder<D>,
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    if constexpr (core::is_lean) return {};
     choose_cells(boxes);
     const std::array<int, D>& axes = layout_.axes();
     Outline<D> outline;

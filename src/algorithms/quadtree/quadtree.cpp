@@ -26,6 +26,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/quadtree/split.hpp"
 #include "algorithms/quadtree/tracker.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -105,6 +106,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
 
   /// Splits the nodes as search() does, and keeps their regions.
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    if constexpr (core::is_lean) return {};
     sample_.take(boxes);
     const std::array<int, D> axes = sample_.axes_by_overlap();
     sorted_boxes_ = sorted_.sort(boxes, axes);

@@ -22,6 +22,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/sweep_and_prune/tracker.hpp"
 #include "core/cell_lists.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -90,6 +91,7 @@ class SweepAndPrune final : public PairFinder<D>,
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes) override {
+    if constexpr (core::is_lean) return {};
     const std::array<int, D> axes = choose_axes(boxes);
     Outline<D> outline;
     outline.swept_axis = axes[0];

@@ -11,6 +11,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/number_text.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
@@ -104,7 +105,7 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(origin[axis])) continue;
     throw std::invalid_argument("coordinate " + std::to_string(axis) + " of a new origin is " +
-                                std::to_string(origin[axis]) + "; expected a finite number");
+                                core::text_of(origin[axis]) + "; expected a finite number");
   }
   state.reserve_moves(state.slots.size());
   const auto shifted = [&origin](Box<D, Real> box) {

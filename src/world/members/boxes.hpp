@@ -10,6 +10,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/number_text.hpp"
 #include "interface/input_check.hpp"
 #include "world/state.hpp"
 
@@ -198,7 +199,7 @@ void World<D, Real>::State::check_velocity(const Point<D, Real>& velocity, std::
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(velocity[axis])) continue;
     throw InvalidInput(index, "coordinate " + std::to_string(axis) + " of the velocity " + whose + " " +
-                                  std::to_string(number) + " is " + std::to_string(velocity[axis]) +
+                                  std::to_string(number) + " is " + core::text_of(velocity[axis]) +
                                   "; expected a finite number");
   }
 }

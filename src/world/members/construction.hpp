@@ -12,6 +12,8 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/lean.hpp"
+#include "core/number_text.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
@@ -23,7 +25,7 @@ Real checked_distance(const char* name, const double& number) {
   const core::DefaultEnvironment environment;
   const volatile Real rounded = static_cast<Real>(number);
   if (!(rounded >= 0) || !std::isfinite(rounded)) {
-    throw std::invalid_argument(std::string("the ") + name + " of a world is " + std::to_string(number) +
+    throw std::invalid_argument(std::string("the ") + name + " of a world is " + core::text_of(number) +
                                 "; expected a finite number of at least 0");
   }
   return rounded;
@@ -63,7 +65,7 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
               checked_distance<Real>("relative margin", its_options.relative_margin),
               checked_distance<Real>("number of predicted frames", its_options.predicted_frames)},
       is_own_tracker(is_own),
-      tracker(is_own || !its_tracker || !its_options.shadow
+      tracker(core::is_lean || is_own || !its_tracker || !its_options.shadow
                   ? std::move(its_tracker)
                   : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
       first_generation(its_options.first_generation),
@@ -78,7 +80,7 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
 
 template <int D, typename Real>
 std::unique_ptr<PairTracker<D, Real>> World<D, Real>::State::make_own_tracker(const WorldOptions& options) {
-  if (options.shadow) return std::make_unique<ShadowTracker<D, Real>>(options.algorithm);
+  if (!core::is_lean && options.shadow) return std::make_unique<ShadowTracker<D, Real>>(options.algorithm);
   return make_tracker<D, Real>(options.algorithm);
 }
 

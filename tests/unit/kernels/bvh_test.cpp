@@ -232,6 +232,23 @@ TEST(BvhJoin, FindsTheSamePairsInTheSameOrderInAnyRangesOfLeaves) {
   });
 }
 
+TEST(BvhJoin, CountsNoTestOfAPlaceWithoutABox) {
+  on_packed_trees(
+      []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {
+        if (boxes.size() > fan_out) return;
+        std::vector<std::uint32_t> scratch(join_scratch(tree));
+        JoinWork work{};
+        sorted_pairs([&](PairSink& sink) {
+          work = join(tree, {0, tree.levels[1].size}, {}, scratch.data(), sink);
+        });
+        const std::size_t right_count = boxes.size() - left_count;
+        if (left_count == 0)
+          EXPECT_EQ(work.tests, boxes.size() * (boxes.size() - 1) / 2);  // all in one leaf
+        else
+          EXPECT_LE(work.tests, left_count * right_count);
+      });
+}
+
 TEST(BvhJoin, SaysWhichLeavesItHasJoinedWhenItGivesUp) {
   on_packed_trees(
       []<int D>(const std::vector<Box<D>>& boxes, std::size_t left_count, const PackedBvh<D>& tree) {

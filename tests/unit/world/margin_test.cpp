@@ -138,7 +138,7 @@ TEST_F(WorldMarginTest, MovesEnlargedBoxesWithTheOrigin) {
 
 TEST_F(WorldMarginTest, RefusesAMarginThatIsNone) {
   EXPECT_EQ(message_of<std::invalid_argument>([] { World2(with_margin(-1)); }),
-            "the margin of a world is -1.000000; expected a finite number of at least 0");
+            "the margin of a world is -1; expected a finite number of at least 0");
   EXPECT_THROW(World2(with_margin(std::numeric_limits<double>::quiet_NaN())), std::invalid_argument);
   EXPECT_THROW(World2(with_margin(1e300)), std::invalid_argument) << "infinite as a float";
 }

@@ -1,0 +1,15 @@
+// Whether this is a lean build.
+#pragma once
+
+namespace broadside::core {
+
+/// A lean build is one that is loaded with a page: it has boxes of floats and one thread, and does not
+/// explain itself. No outlines, no explanations, no shadows. Code for those asks this, and is left out by the
+/// compiler.
+#if defined(BROADSIDE_LEAN)
+inline constexpr bool is_lean = true;
+#else
+inline constexpr bool is_lean = false;
+#endif
+
+}  // namespace broadside::core
