@@ -144,7 +144,9 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
   options.threads = threads_of(arguments.entries);
   options.budget_seconds = arguments.budget.value_or(options.budget_seconds);
   options.watch.stop = interrupted;
-  options.watch.progress = [&](std::string_view what) { progress.show(what); };
+  options.watch.progress = [&, watch = lab::Stopwatch()](std::string_view what) {
+    progress.show(what, watch.milliseconds() / 1e3 / options.budget_seconds);
+  };
   check_threads(arguments.entries, catalogue.select(options.algorithms));
   // Refused before the file is read.
   const auto is_peer = [](const lab::Entry& entry) { return lab::is_foreign(entry.algorithm->kind); };

@@ -184,8 +184,12 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
   if (!arguments.check.empty()) options.effort.definition_boxes = definition_boxes(arguments.check);
   options.watch.stop = interrupted;
-  options.watch.progress = [&](std::string_view what) { progress.show(what); };
+  std::size_t finished = 0;
+  options.watch.progress = [&](std::string_view what) {
+    progress.show(what, static_cast<double>(finished) / static_cast<double>(options.plan.size()));
+  };
   options.finished = [&, is_first = true](const lab::CaseResult& result) mutable {
+    ++finished;
     progress.clear();
     if (arguments.has_details)
       print(lab::table_of(result) + '\n');

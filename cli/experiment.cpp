@@ -12,6 +12,7 @@
 #include "cli/help.hpp"
 #include "cli/interruption.hpp"
 #include "cli/message.hpp"
+#include "cli/options.hpp"
 #include "cli/result_files.hpp"
 #include "cli/verbs.hpp"
 #include "lab/formats/format.hpp"
@@ -89,13 +90,17 @@ lab::ExperimentResults measure(const ExperimentArguments& arguments, const lab::
                                std::span<const std::string> command) {
   const std::vector<const lab::Experiment*> wanted = chosen(arguments.names);
   ProgressLine progress;
+  std::size_t finished = 0;
   const lab::Laboratory laboratory(
       catalogue, arguments.is_quick,
-      {.stop = interrupted, .progress = [&](std::string_view what) { progress.show(what); }});
+      {.stop = interrupted, .progress = [&](std::string_view what) {
+         progress.show(what, static_cast<double>(finished) / static_cast<double>(wanted.size()));
+       }});
   lab::ExperimentResults results = lab::begin_results(command, arguments.is_quick);
   on_signal(OnSignal::note_then_end);
   const lab::ProcessorShare share;
   lab::do_experiments(wanted, laboratory, results, [&](const lab::ExperimentResult& result) {
+    ++finished;
     progress.clear();
     print_result(result);
   });
@@ -153,6 +158,7 @@ Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
       "Names or numbers of experiments, as --list shows them; B1 is our own claim (default: all)");
   verb->add_flag("--list", arguments->is_list, "List the experiments");
   verb->add_flag("--quick", arguments->is_quick, "Fewer boxes and fewer samples, for a first impression");
+  add_progress_options(*verb);
   verb->add_option(
           "--from", arguments->from,
           "Measure nothing; judge the results in this file, which --json has written; - is standard input")

@@ -9,10 +9,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include "cli/message.hpp"
+#include "lab/platform/terminal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -27,8 +26,7 @@ std::size_t terminal_width() {
     const std::string_view text = columns;
     std::from_chars(text.data(), text.data() + text.size(), width);
   }
-  winsize size{};
-  if (width == 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) width = size.ws_col;
+  if (width == 0) width = lab::platform::terminal_width();
   return width == 0 ? standard_width : std::clamp(width, least_width, most_width);
 }
 

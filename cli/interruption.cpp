@@ -2,14 +2,14 @@
 #include "cli/interruption.hpp"
 
 #include <atomic>
-#include <csignal>
+#include <cstdlib>
 #include <string_view>
-
-#include <unistd.h>
 
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
-#include "lab/formats/write_file.hpp"
+#include "lab/platform/descriptor.hpp"
+#include "lab/platform/terminal.hpp"
+#include "lab/platform/unfinished_file.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -21,16 +21,16 @@ static_assert(std::atomic<OnSignal>::is_always_lock_free, "a signal's handler mu
 
 /// Nothing can be done about a message that is not taken.
 void write_message(std::string_view text) {
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  lab::platform::write(lab::platform::standard_error, text.data(), text.size());
 }
 
 /// Ends the program from a signal's handler.
 [[noreturn]] void end(Exit exit) {
-  lab::remove_unfinished_file();
-  _exit(static_cast<int>(exit));
+  lab::platform::remove_unfinished_file();
+  std::_Exit(static_cast<int>(exit));
 }
 
-void handle(int) {
+void handle() {
   const bool again = noted.exchange(true);
   const OnSignal what = reaction;
   if (what == OnSignal::end || (what == OnSignal::note_then_end && again)) {
@@ -50,16 +50,12 @@ void handle(int) {
 
 void on_signal(OnSignal what) {
   reaction = what;
-  is_on_terminal = isatty(STDERR_FILENO) != 0;
-  std::signal(SIGINT, handle);
-  std::signal(SIGTERM, handle);
-  // Under nohup it is to go on.
-  if (std::signal(SIGHUP, handle) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  is_on_terminal = lab::platform::is_terminal(lab::platform::standard_error);
+  lab::platform::on_interruption(handle);
 }
 
 void on_failing_write() {
-  std::signal(SIGPIPE, [](int) { end(Exit::closed_pipe); });
-  std::signal(SIGXFSZ, SIG_IGN);
+  lab::platform::on_failing_write([] { end(Exit::closed_pipe); });
 }
 
 bool interrupted() noexcept { return noted; }

@@ -1,18 +1,29 @@
 // What the program says on standard error.
 #include "cli/message.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include "lab/platform/descriptor.hpp"
+#include "lab/platform/terminal.hpp"
 
 namespace broadside::cli {
 
 namespace {
 
 std::string name_of_program = "broadside";
+ShowProgress progress_shown = ShowProgress::on_terminal;
+
+bool has_terminal() {
+  static const bool is = lab::platform::is_terminal(lab::platform::standard_error);
+  return is;
+}
 
 [[noreturn]] void refuse_output() {
   throw Unusable(fmt::format("standard output: cannot be written: {}",
@@ -57,19 +68,58 @@ void flush_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) refuse_output();
 }
 
+void show_progress(ShowProgress where) { progress_shown = where; }
+
 void ProgressLine::show(std::string_view what) {
-  static const bool on_terminal = isatty(STDERR_FILENO) != 0;
+  if (is_due()) write(what);
+}
+
+void ProgressLine::show(std::string_view what, double done) {
+  if (!is_due()) return;
+  const double passed = std::chrono::duration<double>(shown_ - begin_).count();
+  const double fraction = std::clamp(done, 0.0, 1.0);
+  // First, since a long line is cut.
+  std::string text = fmt::format("{:.0f} %", std::floor(100 * fraction));
+  // What little was done in less than a second does not tell how the rest will go.
+  if (fraction > 0 && passed >= 1)
+    text += fmt::format(", {} left", roughly(passed * (1 - fraction) / fraction));
+  write(fmt::format("{}: {}", text, what));
+}
+
+bool ProgressLine::is_due() {
+  using std::chrono::milliseconds;
+  if (progress_shown == ShowProgress::never ||
+      (progress_shown == ShowProgress::on_terminal && !has_terminal()))
+    return false;
   const auto now = std::chrono::steady_clock::now();
-  if (!on_terminal || now - shown_ < std::chrono::milliseconds(100)) return;
+  if (now - shown_ < milliseconds(has_terminal() ? 100 : 1000)) return false;
   shown_ = now;
+  return true;
+}
+
+void ProgressLine::write(std::string_view what) {
+  if (!has_terminal()) {
+    say(what);
+    return;
+  }
   is_shown_ = true;
   // A longer line would wrap and could not be written over.
   fmt::print(stderr, "\r\x1b[K{}", printable(what.substr(0, 78)));
 }
 
 void ProgressLine::clear() {
-  if (is_shown_) fmt::print(stderr, "\r\x1b[K");
+  if (!is_shown_) return;
+  fmt::print(stderr, "\r\x1b[K");
   is_shown_ = false;
+  shown_ = {};  // what comes next is shown at once
+}
+
+std::string roughly(double seconds) {
+  constexpr double most = 1e9;  // a guess beyond a human life is none
+  const auto whole = static_cast<std::int64_t>(std::ceil(std::min(seconds, most)));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
 }  // namespace broadside::cli

@@ -26,7 +26,18 @@ void print(std::string_view text);
 /// Throws Unusable if not all that was printed has been taken.
 void flush_output();
 
-/// One line on stderr; nothing where stderr is no terminal. It is gone when this object is.
+/// Where progress is shown.
+enum class ShowProgress {
+  on_terminal,  ///< where stderr is one
+  always,       ///< elsewhere as lines of their own
+  never,
+};
+
+/// From here on; until then it is on_terminal.
+void show_progress(ShowProgress where);
+
+/// What long work is at, on stderr: on a terminal one line, which is gone when this object is; elsewhere, if
+/// it is asked for, a line each second.
 class ProgressLine {
  public:
   ProgressLine() = default;
@@ -37,12 +48,24 @@ class ProgressLine {
   /// Shows this from now on; at most ten times a second.
   void show(std::string_view what);
 
+  /// Likewise, with the fraction that is done, from 0 to 1, in percent and, after a second, how long the rest
+  /// will take if it goes on as it did since this object was made.
+  void show(std::string_view what, double done);
+
   void clear();
 
  private:
+  /// Whether there is anything to be shown now.
+  bool is_due();
+  void write(std::string_view what);
+
   bool is_shown_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point shown_{};
 };
+
+/// How long something will take, in whole seconds: "12 s", "3 min 20 s", "2 h 5 min".
+std::string roughly(double seconds);
 
 /// An argument or a file that cannot be used; its text names the thing, the value found and what is expected.
 class Unusable : public std::runtime_error {

@@ -74,12 +74,23 @@ lab::Progress progress_of(const std::string& path) {
                            : path == "-" ? "standard input"
                                          : std::filesystem::path(path).filename().string();
   return [name, line = std::make_shared<ProgressLine>()](std::uint64_t done, std::uint64_t total) {
-    line->show(total == 0 ? fmt::format("reading {}: {}", name, lab::bytes(done))
-                          : fmt::format("reading {}: {} %", name, done * 100 / total));
+    if (total == 0)
+      line->show(fmt::format("reading {}: {}", name, lab::bytes(static_cast<double>(done))));
+    else
+      line->show("reading " + name, static_cast<double>(done) / static_cast<double>(total));
   };
 }
 
 }  // namespace
+
+void add_progress_options(CLI::App& verb) {
+  CLI::Option* const always = verb.add_flag_callback(
+      "--progress", [] { show_progress(ShowProgress::always); },
+      "Show progress and the time left on stderr, also where that is no terminal");
+  verb.add_flag_callback(
+          "--no-progress", [] { show_progress(ShowProgress::never); }, "Show none, also on a terminal")
+      ->excludes(always);
+}
 
 void add_file_options(CLI::App& verb, InputOptions& options) {
   verb.add_option(
@@ -90,9 +101,11 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "What to make boxes of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
-  verb.add_option("--layer,--array", options.layer,
-                  "The layer of a map in TopoJSON, such as counties (default: all), or the array of an .npz "
-                  "file (default: the only one), which may be called --array as well")
+  verb.add_option(
+          "--layer,--array", options.layer,
+          "The layer of a map in TopoJSON, such as counties (default: all), or of a GeoPackage and its "
+          "like (default: the only one), or the array of an .npz file (likewise), which may be called "
+          "--array as well")
       ->type_name("NAME");
   verb.add_option("--columns", options.columns,
                   "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y")
@@ -100,6 +113,7 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
   verb.add_flag("--skip-invalid", options.skips_invalid,
                 "Leave out invalid boxes, such as boxes with a NaN or min > max, and say which and why; "
                 "they keep their numbers, as absent boxes");
+  add_progress_options(verb);
 }
 
 void add_input_options(CLI::App& verb, InputOptions& options) {

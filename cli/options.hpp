@@ -63,8 +63,11 @@ struct InputOptions {
   bool skips_invalid = false;
 };
 
-/// Adds --format, --boxes, --layer, --columns and --skip-invalid, for a verb that has other uses for the
-/// rest.
+/// Adds --progress and --no-progress, for a verb that may take long.
+void add_progress_options(CLI::App& verb);
+
+/// Adds --format, --boxes, --layer, --columns, --skip-invalid and those of progress, for a verb that has
+/// other uses for the rest.
 void add_file_options(CLI::App& verb, InputOptions& options);
 
 /// Adds those, --precision and --dimension.

@@ -67,6 +67,15 @@ class Join {
 
   bool is_between() const { return sets_.size() == 2; }
 
+  /// Says how many pairs were found up to now; how many there will be is not known.
+  void show(std::uint64_t pairs) {
+    constexpr std::uint64_t pairs_a_report = std::uint64_t{1} << 20;
+    if (pairs - shown_pairs_ < pairs_a_report) return;
+    shown_pairs_ = pairs;
+    progress_.show(
+        fmt::format("joining by {}: {}", entry_.spec.text(), lab::counted(pairs, "pair", "pairs")));
+  }
+
   /// The ids to write instead of numbers, if that is asked for.
   lab::PairIds ids() const {
     if (arguments_.ids.empty()) return {};
@@ -84,6 +93,7 @@ class Join {
       pairs.flush();
     }
     join_ms_ = watch.milliseconds();
+    progress_.clear();
   }
 
   /// What was joined and how, and how long it took.
@@ -160,9 +170,20 @@ class Join {
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, where pairs with a shared vertex are left out
   lab::Rounding rounding_;
+  ProgressLine progress_;
+  std::uint64_t shown_pairs_ = 0;
   double read_ms_ = 0;
   double join_ms_ = 0;
 };
+
+void write_all(std::span<const Pair> pairs, lab::PairFile& file) {
+  constexpr std::size_t pairs_a_report = std::size_t{1} << 16;
+  ProgressLine progress;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_a_report) {
+    progress.show("writing pairs", static_cast<double>(begin) / static_cast<double>(pairs.size()));
+    file.write(pairs.subspan(begin, std::min(pairs_a_report, pairs.size() - begin)));
+  }
+}
 
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
@@ -179,7 +200,10 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
   const bool streams = arguments.order == "found";
   std::vector<Pair> sorted;
   if (!streams) {
-    PairCollector collector(sorted);
+    PairFunction collector([&](std::span<const Pair> pairs) {
+      sorted.insert(sorted.end(), pairs.begin(), pairs.end());
+      join.show(sorted.size());
+    });
     join.find(collector);
     std::sort(sorted.begin(), sorted.end());
   }
@@ -191,10 +215,11 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
       PairFunction found([&](std::span<const Pair> pairs) {
         count += pairs.size();
         file.write(pairs);
+        join.show(count);
       });
       join.find(found);
     } else {
-      file.write(sorted);
+      write_all(sorted, file);
     }
     file.finish();
   });

@@ -24,6 +24,7 @@
 #include "cli/message.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/platform/terminal.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -187,8 +188,9 @@ namespace broadside {
 
 int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms) {
   using cli::Exit;
-  const std::vector<std::string> arguments(values, values + count);
-  if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename());
+  lab::platform::prepare_standard_streams();
+  const std::vector<std::string> arguments = lab::platform::arguments(count, values);
+  if (!arguments.empty()) cli::set_program_name(std::filesystem::path(arguments[0]).filename().string());
   cli::on_failing_write();
   cli::on_signal(cli::OnSignal::end);
   try {

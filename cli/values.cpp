@@ -8,13 +8,13 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "broadside/executor.hpp"
 
 #include "cli/message.hpp"
 #include "lab/formats/input.hpp"
 #include "lab/formats/write_file.hpp"
+#include "lab/platform/descriptor.hpp"
 
 namespace broadside::cli {
 
@@ -102,7 +102,7 @@ void check_writable(const std::string& option, const std::string& path) {
         fmt::format("{} is '{}', which is read-only; expected a file that may be written, or another name",
                     option, path));
   // An old file is replaced by a new one, which needs the folder as well.
-  if (!lab::is_written_directly(path) && access(folder.c_str(), W_OK) != 0)
+  if (!lab::is_written_directly(path) && !lab::platform::may_write(folder))
     throw Unusable(fmt::format(
         "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,
         path, folder.string()));

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "lab/formats/format.hpp"
+#include "lab/platform/descriptor.hpp"
 
 namespace broadside::lab {
 
@@ -25,7 +25,7 @@ std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, cons
 ByteSource::ByteSource(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
 ByteSource::~ByteSource() {
-  if (descriptor_ != STDIN_FILENO) ::close(descriptor_);
+  if (descriptor_ != platform::standard_input) platform::close(descriptor_);
 }
 
 bool ByteSource::is_compressed() {
@@ -70,10 +70,7 @@ void ByteSource::fill() {
 }
 
 std::size_t ByteSource::read_some(char* to, std::size_t most) {
-  ssize_t got = 0;
-  do {
-    got = ::read(descriptor_, to, most);
-  } while (got < 0 && errno == EINTR);
+  const std::int64_t got = platform::read(descriptor_, to, most);
   if (got < 0) throw FileError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
   return static_cast<std::size_t>(got);
 }

@@ -95,6 +95,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
                                : wanted == formats().end() ? nullptr
                                                            : &*wanted;
   if (format != nullptr && format->missing.empty()) return *format;
+  if (format != nullptr && name.empty()) refuse_unread(input, input.extension());
   if (format != nullptr) throw FileError(fmt::format("{}: {}", input.name(), format->missing));
   if (!name.empty())
     throw FileError(fmt::format("{}: unknown format '{}'{}; expected one of: {}", input.name(), name,
@@ -160,7 +161,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 std::span<const Format> formats() {
   static const std::array list = {
       readers::trace(),     readers::csv(), readers::npy(),  readers::npz(),
-      readers::broadmark(), readers::map(), readers::mesh(),
+      readers::broadmark(), readers::map(), readers::mesh(), readers::vector(),
   };
   return list;
 }

@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <new>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "lab/formats/byte_source.hpp"
 #include "lab/formats/format.hpp"
+#include "lab/platform/descriptor.hpp"
+#include "lab/platform/machine.hpp"
+#include "lab/platform/terminal.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -28,10 +28,8 @@ constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
 std::uint64_t most_copied_bytes(bool is_device) {
   constexpr std::uint64_t of_a_device = std::uint64_t{1} << 20;
   if (is_device) return of_a_device;
-  const auto pages = ::sysconf(_SC_PHYS_PAGES);
-  const auto page_bytes = ::sysconf(_SC_PAGE_SIZE);
-  if (pages <= 0 || page_bytes <= 0) return std::uint64_t{1} << 32;
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 4;
+  const std::uint64_t memory = platform::memory_bytes();
+  return memory == 0 ? std::uint64_t{1} << 32 : memory / 4;
 }
 
 std::string lower(std::string text) {
@@ -95,22 +93,22 @@ class Input::Buffer final : public std::streambuf {
 
 Input::Input(const std::filesystem::path& path, Progress progress)
     : name_(path == "-" ? "standard input" : path.string()), progress_(std::move(progress)) {
-  const int descriptor = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = path == "-" ? platform::standard_input : platform::open_for_reading(path);
   if (descriptor < 0) refuse();
   source_ = std::make_unique<ByteSource>(descriptor, name_);
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) refuse();
-  if (S_ISDIR(status.st_mode)) {
+  const platform::OpenFile file = platform::open_file(descriptor);
+  if (!file.is_known) refuse();
+  if (file.is_folder) {
     errno = EISDIR;
     refuse();
   }
-  is_device_ = S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0;
+  is_device_ = file.is_device && !platform::is_terminal(descriptor);
   // Standard input may begin in the middle of a file.
-  is_regular_ = S_ISREG(status.st_mode) && (path != "-" || ::lseek(descriptor, 0, SEEK_CUR) == 0);
+  is_regular_ = file.is_regular && (path != "-" || platform::seek(descriptor, 0, SEEK_CUR) == 0);
   is_regular_ = is_regular_ && !source_->is_compressed();
   if (is_regular_) {
     if (path != "-") path_ = path;
-    size_ = static_cast<std::uint64_t>(status.st_size);
+    size_ = file.bytes;
   }
   if (progress_) next_report_ = bytes_a_report;
   buffer_ = std::make_unique<Buffer>(*source_);
@@ -133,7 +131,7 @@ std::unique_ptr<Input> Input::keeping(std::string name, std::string bytes) {
 }
 
 Input::~Input() {
-  if (mapped_ != nullptr) ::munmap(mapped_, size_);
+  if (mapped_ != nullptr) platform::unmap(mapped_, size_);
 }
 
 std::string_view Input::beginning() { return buffer_->peek(beginning_bytes).substr(0, beginning_bytes); }
@@ -141,10 +139,8 @@ std::string_view Input::beginning() { return buffer_->peek(beginning_bytes).subs
 std::string_view Input::bytes() {
   if (std::exchange(has_all_, true)) return all_;
   if (is_regular_ && size_ > 0) {
-    void* const mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, source_->descriptor(), 0);
-    if (mapped == MAP_FAILED) refuse();
-    mapped_ = mapped;
-    ::madvise(mapped_, size_, MADV_SEQUENTIAL);
+    mapped_ = platform::map(source_->descriptor(), size_);
+    if (mapped_ == nullptr) refuse();
     return all_ = {static_cast<const char*>(mapped_), size_};
   }
   copy();

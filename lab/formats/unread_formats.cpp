@@ -1,4 +1,4 @@
-// The one table of formats that are not read here, and of their converters.
+// The one table of formats that are not read here, or only through GDAL, and of their converters.
 #include "lab/formats/unread_formats.hpp"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/formats/descriptions.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab {
@@ -27,7 +28,8 @@ constexpr std::string_view pdal = "pdal translate IN out.ply (then --boxes verti
 constexpr std::string_view office = "libreoffice --headless --convert-to csv IN";
 
 constexpr auto unread_formats = std::to_array<UnreadFormat>({
-    {"a shapefile", ".shp .shx .dbf ", "\x00\x00\x27\x0a"sv, ogr},
+    {"a shapefile", ".shp ", "\x00\x00\x27\x0a"sv, ogr},
+    {"a part of a shapefile", ".shx .dbf ", "", ogr},
     {"a GeoPackage or another database of SQLite", ".gpkg .sqlite ", "SQLite format 3\0"sv, ogr},
     {"FlatGeobuf", ".fgb ", "fgb\x03", ogr},
     {"KML", ".kml .kmz ", "<kml", ogr},
@@ -57,12 +59,21 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"a zip archive", ".zip ", "", "unzip IN"},
 });
 
+/// Whether GDAL reads a format: what its own converter is named for, but for parts of files.
+bool is_read_by_gdal(const UnreadFormat& format) {
+  return format.command.starts_with("ogr2ogr") && format.name != "a part of a shapefile";
+}
+
 bool begins_with(std::string_view beginning, std::string_view magic) {
   if (magic.empty()) return false;
   if (!magic.starts_with('<')) return beginning.starts_with(magic);
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (beginning.starts_with(byte_order_mark)) beginning.remove_prefix(byte_order_mark.size());
   return beginning.starts_with('<') && beginning.find(magic) != std::string_view::npos;
+}
+
+bool has_extension(const UnreadFormat& format, std::string_view extension) {
+  return !extension.empty() && format.extensions.find(std::string(extension) + ' ') != std::string_view::npos;
 }
 
 std::string command_for(const UnreadFormat& format, std::string_view file) {
@@ -74,14 +85,22 @@ std::string command_for(const UnreadFormat& format, std::string_view file) {
 }  // namespace
 
 std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file) {
-  const std::string wanted = std::string(extension) + ' ';
+  static const bool has_gdal = readers::vector().missing.empty();
   const auto found = std::ranges::find_if(unread_formats, [&](const UnreadFormat& format) {
-    return extension.empty() ? begins_with(beginning, format.magic)
-                             : format.extensions.find(wanted) != std::string_view::npos;
+    if (has_gdal && is_read_by_gdal(format)) return false;
+    return extension.empty() ? begins_with(beginning, format.magic) : has_extension(format, extension);
   });
   if (found == unread_formats.end()) return {};
-  return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}", found->name,
-                     command_for(*found, file));
+  return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}{}",
+                     found->name, command_for(*found, file),
+                     is_read_by_gdal(*found) ? ", or a program that was built with GDAL" : "");
+}
+
+bool is_vector_data(std::string_view beginning, std::string_view extension) {
+  return std::ranges::any_of(unread_formats, [&](const UnreadFormat& format) {
+    return is_read_by_gdal(format) &&
+           (begins_with(beginning, format.magic) || has_extension(format, extension));
+  });
 }
 
 }  // namespace broadside::lab

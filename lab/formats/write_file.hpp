@@ -14,16 +14,12 @@ namespace broadside::lab {
 /// time.
 ///
 /// Where the file system has files without names (O_TMPFILE), nothing is left of a process that is killed
-/// either. Where it has none, as on NFS, a file named .broadside-XXXXXXXXXXXXXXXX.part may be.
+/// either. Where it has none, as on NFS and on Windows, a file named .broadside-XXXXXXXXXXXXXXXX.part may be.
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
 /// Whether a regular file is at a path that this process may not write, or that has no write permission at
 /// all.
 bool is_read_only(const std::filesystem::path& path);
-
-/// Removes the file that write_file() is writing beside its place, if it is: for a signal's handler that ends
-/// the process. Async-signal-safe.
-void remove_unfinished_file() noexcept;
 
 /// Whether a path is no file that can be replaced: standard output ("-"), a descriptor of this process such
 /// as /dev/stdout or /dev/fd/3, whose file may be somebody else's as well, a device or a pipe.

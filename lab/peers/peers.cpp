@@ -84,8 +84,10 @@ constexpr std::array<BuildNote, 3> build_notes = {{
     {"box2d_",
      "Debian's build has assertions, which cost no more than the noise of the measurement: "
      "docs/peers.md"},
-    {"embree_", "Debian's build has assertions, whose cost is not measured yet: docs/peers.md"},
-    {"fcl_", "Debian's build has assertions, whose cost is not measured well enough yet: docs/peers.md"},
+    {"embree_", "Debian's build has assertions, whose cost there is not known: docs/peers.md"},
+    {"fcl_",
+     "Debian's build has assertions, which cost no more than the noise of the measurement: "
+     "docs/peers.md"},
 }};
 
 const PeerList& peer_list() {

@@ -3,31 +3,17 @@
 
 #include <chrono>
 #include <ctime>
-#include <fstream>
 #include <thread>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include "broadside/version.hpp"
 
+#include "lab/platform/machine.hpp"
+
 namespace broadside::lab {
 namespace {
-
-/// What stands after the first `separator` in the file's first line that begins with `name`.
-std::string field(const char* file, const std::string& name, char separator) {
-  std::ifstream lines(file);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t at = line.find(separator);
-    if (!line.starts_with(name) || at == std::string::npos) continue;
-    const std::size_t begin = line.find_first_not_of(" \t\"", at + 1);
-    const std::size_t end = line.find_last_not_of(" \t\"");
-    return begin == std::string::npos ? "" : line.substr(begin, end + 1 - begin);
-  }
-  return {};
-}
 
 using Json = nlohmann::ordered_json;
 
@@ -42,17 +28,10 @@ void read(const Json& json, const char* key, Value& value) {
 
 Machine this_machine() {
   Machine machine;
-  machine.cpu = field("/proc/cpuinfo", "model name", ':');
+  machine.cpu = platform::processor_name();
   machine.cores = std::thread::hardware_concurrency();
-  const long pages = sysconf(_SC_PHYS_PAGES);
-  const long page = sysconf(_SC_PAGE_SIZE);
-  if (pages > 0 && page > 0)
-    machine.memory_bytes = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
-  utsname system{};
-  if (uname(&system) == 0)
-    machine.os = std::string(system.sysname) + " " + system.release + " " + system.machine;
-  const std::string distribution = field("/etc/os-release", "PRETTY_NAME", '=');
-  if (!distribution.empty()) machine.os = distribution + ", " + machine.os;
+  machine.memory_bytes = platform::memory_bytes();
+  machine.os = platform::system_name();
   return machine;
 }
 

@@ -1,4 +1,4 @@
-// Links in the pages lead to files.
+// Links in the pages lead to files, but for those to what make builds.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,8 +19,11 @@ TEST(Pages, LinkToFilesThatExist) {
       if (entry.path().extension() != ".md") continue;
       std::ifstream file(entry.path());
       const std::string text{std::istreambuf_iterator<char>(file), {}};
-      for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match, ++links)
-        EXPECT_TRUE(std::filesystem::exists(in / (*match)[1].str())) << entry.path() << ": " << (*match)[1];
+      for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match, ++links) {
+        const std::string to = (*match)[1].str();
+        if (to.starts_with("../build/")) continue;
+        EXPECT_TRUE(std::filesystem::exists(in / to)) << entry.path() << ": " << to;
+      }
     }
   }
   EXPECT_GT(links, 50U);

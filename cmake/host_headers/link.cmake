@@ -1,0 +1,19 @@
+# Libraries of headers that were installed for this machine, for a compiler for another one: each by a link in a folder of
+# its own, as /usr/include holds headers of another processor and system.
+function(broadside_host_headers target name)
+  find_path(BROADSIDE_HOST_HEADERS_${name} ${name} PATHS /usr/include NO_CMAKE_FIND_ROOT_PATH NO_DEFAULT_PATH
+            DOC "The folder on this machine that has ${name}/")
+  if(NOT BROADSIDE_HOST_HEADERS_${name})
+    set(${CMAKE_FIND_PACKAGE_NAME}_FOUND FALSE PARENT_SCOPE)
+    set(${CMAKE_FIND_PACKAGE_NAME}_NOT_FOUND_MESSAGE "${name}/ not found in /usr/include; expected it as "
+        "scripts/setup --systems installs it, or -DBROADSIDE_HOST_HEADERS_${name}=FOLDER" PARENT_SCOPE)
+    return()
+  endif()
+  set(folder ${CMAKE_BINARY_DIR}/host_headers/${name})
+  file(MAKE_DIRECTORY ${folder})
+  file(CREATE_LINK ${BROADSIDE_HOST_HEADERS_${name}}/${name} ${folder}/${name} SYMBOLIC)
+  if(NOT TARGET ${target})
+    add_library(${target} INTERFACE IMPORTED)
+    set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${folder})
+  endif()
+endfunction()
