@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from broadside import _arguments, _convert, _core
+from broadside import _arguments, _convert, _core, _parquet
 from broadside._errors import InvalidBoxError
 
 
@@ -107,11 +107,12 @@ def read(
     frame: int = 0,
     quarantine: bool = False,
 ) -> NDArray[Any]:
-    """The boxes in a file: CSV, GeoJSON, TopoJSON, .npy, PLY, OBJ, traces ..., also compressed by gzip or zstd.
+    """The boxes in a file: CSV, GeoJSON, TopoJSON, .npy, PLY, OBJ, traces ..., also compressed by gzip or zstd; Parquet
+    and GeoParquet, if pyarrow is installed.
 
     Args:
         path: The file.
-        format: The format's name; by default it is told by the file's content and name.
+        format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
         columns: The names of a table's columns, with commas between.
         layer: The layer of a map.
@@ -121,16 +122,31 @@ def read(
             raising.
 
     Returns:
-        An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it.
+        An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it. Of GeoParquet these are the
+        bounds in its covering column or, where it has none, of its geometries, which takes shapely; of other Parquet the
+        columns min_x, min_y, max_x, max_y and, in 3D, min_z and max_z, or their like.
 
     Raises:
         FileNotFoundError: There is no such file.
         FileError: It cannot be read; the text says where and why. Arrays in .npz are read by ``numpy.load``, meshes of
             other formats by the program.
+        ImportError: It takes pyarrow or shapely, which is not installed.
     """
     name = os.fsencode(path)
     os.stat(name)
     found: NDArray[Any]
+    if not os.path.isdir(name) and _parquet.recognises(name, _text_or_none(format, "format")):
+        shown = os.fsdecode(name)
+        for argument, given in (("boxes", boxes), ("columns", columns), ("layer", layer)):
+            if given is not None:
+                raise ValueError(f"{argument} is {given!r}, and '{shown}' is Parquet; expected None")
+        if _arguments.integer(frame, "frame", 0, 2**32 - 1) != 0:
+            raise ValueError(f"frame is {frame}; expected at most 0, the last one of '{shown}'")
+        axes = 0 if dimension is None else _arguments.integer(dimension, "dimension", 2, 3)
+        found, warning = _parquet.read(name, shown, axes, bool(quarantine))
+        if warning:
+            warnings.warn(warning, stacklevel=2)
+        return found
     found, warning = _core.read(
         name,
         _text_or_none(format, "format"),
