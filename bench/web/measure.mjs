@@ -1,0 +1,180 @@
+// Measures all libraries in the same rounds, in Node and in browsers, and checks what they find.
+
+/** Numbers from 0 to 1 that a seed fixes: mulberry32. */
+function random(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let bits = Math.imul(seed ^ (seed >>> 15), seed | 1);
+    bits ^= bits + Math.imul(bits ^ (bits >>> 7), bits | 61);
+    return ((bits ^ (bits >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+/** Boxes spread evenly; a box overlaps about one other, however many there are. */
+export function uniform(count, dimension, seed = 1) {
+  const rng = random(seed);
+  const side = count ** (1 / dimension);
+  const boxes = new Float32Array(2 * dimension * count);
+  for (let i = 0; i < count; ++i) {
+    for (let axis = 0; axis < dimension; ++axis) {
+      const begin = side * rng();
+      boxes[2 * dimension * i + axis] = begin;
+      boxes[2 * dimension * i + dimension + axis] = begin + rng();
+    }
+  }
+  return boxes;
+}
+
+/** Moves a tenth of the boxes; returns their places. */
+function move(boxes, dimension, rng) {
+  const list = [];
+  for (let i = 0; i < boxes.length / (2 * dimension); ++i) {
+    if (rng() >= 0.1) continue;
+    list.push(i);
+    for (let axis = 0; axis < dimension; ++axis) {
+      const distance = (rng() - 0.5) / 2;
+      boxes[2 * dimension * i + axis] += distance;
+      boxes[2 * dimension * i + dimension + axis] += distance;
+    }
+  }
+  return list;
+}
+
+/** A set of pairs as a text: how many, and a sum that their order does not change. */
+export function digest(pairs) {
+  let sum = 0;
+  for (let k = 0; k < pairs.length; k += 2) {
+    const a = Math.min(pairs[k], pairs[k + 1]), b = Math.max(pairs[k], pairs[k + 1]);
+    let bits = Math.imul(a + 1, 0x9e3779b1) ^ Math.imul(b + 0x7f4a7c15, 0x85ebca6b);
+    bits = Math.imul(bits ^ (bits >>> 15), 0x2c1b3c6d);
+    sum = (sum + ((bits ^ (bits >>> 12)) >>> 0)) % 2 ** 48;
+  }
+  return `${pairs.length / 2}:${sum}`;
+}
+
+/** Calls that take `milliseconds` together: how many that are. */
+function repeats(clock, call, milliseconds) {
+  call();
+  let count = 1;
+  for (;;) {
+    const begin = clock();
+    for (let k = 0; k < count; ++k) call();
+    const took = clock() - begin;
+    if (took >= milliseconds / 4 || count >= 1e7)
+      return Math.max(1, Math.round(count * Math.min(100, milliseconds / Math.max(took, 1e-3))));
+    count *= 4;
+  }
+}
+
+/** Times calls in alternating rounds: the median of each, in milliseconds a call. */
+function inRounds(clock, calls, rounds, milliseconds) {
+  const counts = calls.map((call) => repeats(clock, call, milliseconds));
+  const times = calls.map(() => []);
+  for (let round = 0; round < rounds; ++round) {
+    calls.forEach((call, i) => {
+      const begin = clock();
+      for (let k = 0; k < counts[i]; ++k) call();
+      times[i].push((clock() - begin) / counts[i]);
+    });
+  }
+  return times.map((of) => of.sort((a, b) => a - b)[Math.floor(of.length / 2)]);
+}
+
+/** All pairs of boxes that rest. `fills` has the libraries whose filling is timed apart. */
+export function compareStill({ clock, libraries, dimension, count, rounds = 5, milliseconds = 20 }) {
+  const boxes = uniform(count, dimension);
+  const rows = [];
+  let expected;
+  for (const library of libraries) {
+    if (library.dimension !== dimension || library.pairs === undefined || count > (library.most ?? Infinity)) continue;
+    const found = digest(library.pairs(boxes));
+    expected ??= found;
+    rows.push({ name: library.name, library, agrees: found === expected });
+  }
+  const calls = rows.map(({ library }) => () => library.pairs(boxes));
+  inRounds(clock, calls, rounds, milliseconds).forEach((time, i) => (rows[i].whole = time));
+  const filled = rows.filter(({ library }) => library.fill !== undefined);
+  const things = filled.map(({ library }) => library.fill(boxes));
+  const searches = filled.map(({ library }, i) => library.pairsOfFilled === undefined ?
+    () => library.pairs(boxes, things[i]) : () => library.pairsOfFilled(things[i]));
+  inRounds(clock, searches, rounds, milliseconds).forEach((time, i) => (filled[i].search = time));
+  filled.forEach(({ library }, i) => library.free?.(things[i]));
+  return rows.map(({ library: _, ...row }) => ({ dimension, count, ...row }));
+}
+
+/** Begun and ended pairs where a tenth of the boxes moves in each frame. Frames are the same for all. */
+export function compareMoving({ clock, libraries, count, frames = 12, dimension = 2 }) {
+  const first = uniform(count, dimension);
+  const rng = random(99);
+  const boxes = first.slice();
+  const steps = Array.from({ length: frames }, () => {
+    const list = move(boxes, dimension, rng);
+    return { list, boxes: boxes.slice() };
+  });
+  const rows = [];
+  let expected;
+  for (const library of libraries) {
+    if (library.dimension !== dimension || library.motion === undefined || count > (library.most ?? Infinity)) continue;
+    rows.push({ name: library.name, update: library.motion(first.slice()), times: [], agrees: true });
+  }
+  for (const { list, boxes: now } of steps) {
+    expected = undefined;
+    for (const row of rows) {
+      const begin = clock();
+      const events = row.update(now, list);
+      row.times.push(clock() - begin);
+      const found = `${digest(events.begun)} ${digest(events.ended)}`;
+      expected ??= found;
+      row.agrees &&= found === expected;
+    }
+  }
+  return rows.map(({ name, times, agrees, update }) => {
+    update.free?.();
+    // The first frames are the compiler's.
+    const rest = times.slice(Math.floor(frames / 3)).sort((a, b) => a - b);
+    return { dimension, count, name, agrees, whole: rest[Math.floor(rest.length / 2)] };
+  });
+}
+
+/** The table of some rows: a line for each number of boxes, a column for each library. */
+export function table(title, rows, key = "whole") {
+  const names = [...new Set(rows.map((row) => row.name))];
+  const counts = [...new Set(rows.map((row) => row.count))];
+  const cell = (count, name) => {
+    const row = rows.find((one) => one.count === count && one.name === name);
+    if (row?.[key] === undefined) return "";
+    const time = row[key] < 0.001 ? `${(row[key] * 1e6).toFixed(0)} ns` : row[key] < 1 ?
+      `${(row[key] * 1000).toPrecision(3)} µs` : `${row[key].toPrecision(3)} ms`;
+    return time + (row.agrees ? "" : " (other pairs)");
+  };
+  const lead = (count) => {
+    const of = (row) => row?.[key];
+    const ours = of(rows.find((row) => row.count === count && row.name === "broadside"));
+    const rest = rows.filter((row) => row.count === count && !row.name.startsWith("broadside") && row[key] !== undefined);
+    return ours === undefined || rest.length === 0 ? "" : `${(Math.min(...rest.map(of)) / ours).toPrecision(3)}x`;
+  };
+  return [
+    `| ${title} | ${names.join(" | ")} | lead |`,
+    `| ---: |${" ---: |".repeat(names.length + 1)}`,
+    ...counts.map((count) => `| ${count} | ${names.map((name) => cell(count, name)).join(" | ")} | ${lead(count)} |`),
+  ].join("\n");
+}
+
+/** Everything that is compared. `least` and `most` say of how many boxes. */
+export function compareAll({ clock, libraries, say, least = 1, most = Infinity }) {
+  const some = (all) => all.filter((count) => count >= least && count <= most);
+  const still = [1, 2, 3, 4, 6, 8, 10, 12, 13, 15, 20, 30, 50, 100, 1000, 10_000, 100_000, 1_000_000];
+  for (const dimension of [2, 3]) {
+    const rows = some(still).flatMap((count) => compareStill({
+      clock, libraries, dimension, count, rounds: count > 50_000 ? 3 : 7, milliseconds: count > 5000 ? 30 : 10,
+    }));
+    say(table(`${dimension}D boxes, all pairs`, rows));
+    say(table(`${dimension}D boxes, filled before`, rows.filter((row) => row.search !== undefined && row.count >= 100),
+      "search"));
+  }
+  for (const dimension of [2]) {
+    const rows = some([15, 100, 1000, 10_000, 100_000])
+      .flatMap((count) => compareMoving({ clock, libraries, count, dimension, frames: count < 5000 ? 60 : 12 }));
+    say(table(`${dimension}D boxes, a tenth moves`, rows));
+  }
+}

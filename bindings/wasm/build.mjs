@@ -1,0 +1,139 @@
+// Makes the npm package of the modules that CMake has built.
+//
+//   node build.mjs MODULES PACKAGE           MODULES/simd and MODULES/scalar are CMake's build folders; to PACKAGE
+//   node build.mjs --tests FOLDER PACKAGE    the tests of a PACKAGE, to FOLDER/*.test.mjs
+import {
+  cpSync, mkdirSync, readFileSync, readdirSync, rmSync, symlinkSync, writeFileSync,
+} from "node:fs";
+import { createRequire } from "node:module";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { deflateSync, gzipSync } from "node:zlib";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const root = join(here, "../..");
+const { build } = createRequire(join(root, "web/package.json"))("esbuild");
+
+/** The library's version, which stands in one place. */
+function version() {
+  const header = readFileSync(join(root, "include/broadside/version.hpp"), "utf8");
+  return /define BROADSIDE_VERSION "([^"]+)"/.exec(header)[1];
+}
+
+/** The modules by the names of their files in the package. */
+function readModules(folder) {
+  const module = (flavour, target) => readFileSync(join(folder, flavour, "bindings/wasm", `${target}.wasm`));
+  return new Map([
+    ["broadside", module("simd", "broadside_wasm")],
+    ["broadside-scalar", module("scalar", "broadside_wasm")],
+    ["broadside-pairs", module("simd", "broadside_wasm_pairs")],
+    ["broadside-pairs-scalar", module("scalar", "broadside_wasm_pairs")],
+  ]);
+}
+
+/** Resolves `wasm:NAME` to a module's bytes as src/inline.ts reads them. */
+const inlineBytes = (modules) => ({
+  name: "wasm",
+  setup({ onResolve, onLoad }) {
+    onResolve({ filter: /^wasm:/ }, ({ path }) => ({ path: path.slice("wasm:".length), namespace: "wasm" }));
+    onLoad({ filter: /.*/, namespace: "wasm" }, ({ path }) => ({
+      contents: `export const bytes = "${deflateSync(modules.get(path), { level: 9 }).toString("base64")}";`,
+    }));
+  },
+});
+
+/** A file of the package for each entry, and one for each module without SIMD. */
+async function bundle(modules, folder) {
+  await build({
+    entryPoints: {
+      index: join(here, "src/index.ts"),
+      pairs: join(here, "src/pairs_entry.ts"),
+      external: join(here, "src/external.ts"),
+      scalar: join(here, "src/scalar.ts"),
+      "pairs-scalar": join(here, "src/pairs_scalar.ts"),
+    },
+    outdir: folder,
+    bundle: true,
+    minify: true,
+    format: "esm",
+    target: "es2022",
+    charset: "utf8",
+    logLevel: "warning",
+    plugins: [inlineBytes(modules), {
+      name: "apart",
+      setup({ onResolve }) {
+        // Imported when they are needed, and not bundled.
+        onResolve({ filter: /scalar\.ts$/ }, ({ path, kind }) => kind === "dynamic-import" ?
+          { path: path.replace("pairs_scalar.ts", "pairs-scalar.js").replace("scalar.ts", "scalar.js"), external: true } :
+          undefined);
+      },
+    }],
+  });
+}
+
+const entry = (name) => ({ types: `./${name}.d.ts`, default: `./${name}.js` });
+
+function manifest(modules) {
+  return {
+    name: "broadside",
+    version: version(),
+    description: "Every pair of overlapping boxes, in 2D and 3D, in one call or frame after frame: WebAssembly",
+    keywords: ["collision", "broad-phase", "aabb", "bounding-box", "overlap", "spatial-index", "wasm", "simd"],
+    license: "MIT",
+    type: "module",
+    sideEffects: false,
+    engines: { node: ">=18" },
+    main: "./index.js",
+    types: "./index.d.ts",
+    exports: {
+      ".": entry("index"),
+      "./pairs": entry("pairs"),
+      "./external": entry("external"),
+      ...Object.fromEntries([...modules.keys()].map((name) => [`./${name}.wasm`, `./${name}.wasm`])),
+      "./package.json": "./package.json",
+    },
+  };
+}
+
+async function makePackage(modulesFolder, packageFolder) {
+  const modules = readModules(modulesFolder);
+  rmSync(packageFolder, { recursive: true, force: true });
+  mkdirSync(packageFolder, { recursive: true });
+  await bundle(modules, packageFolder);
+  for (const [name, bytes] of modules) writeFileSync(join(packageFolder, `${name}.wasm`), bytes);
+  cpSync(join(here, "types"), packageFolder, { recursive: true });
+  cpSync(join(here, "README.md"), join(packageFolder, "README.md"));
+  cpSync(join(root, "LICENSE"), join(packageFolder, "LICENSE"));
+  writeFileSync(join(packageFolder, "package.json"), `${JSON.stringify(manifest(modules), null, 2)}\n`);
+  for (const file of readdirSync(packageFolder).filter((name) => /\.(js|wasm)$/.test(name)).sort()) {
+    const bytes = readFileSync(join(packageFolder, file));
+    console.log(`${file}: ${bytes.length} bytes, ${gzipSync(bytes, { level: 9 }).length} gzipped`);
+  }
+}
+
+/** Bundles the tests, and puts the package beside them, where Node looks for it. */
+async function makeTests(folder, packageFolder) {
+  const sources = join(root, "tests/bindings/wasm");
+  rmSync(folder, { recursive: true, force: true });
+  await build({
+    entryPoints: readdirSync(sources).filter((name) => name.endsWith(".test.ts")).map((name) => join(sources, name)),
+    outdir: folder,
+    outExtension: { ".js": ".mjs" },
+    bundle: true,
+    platform: "node",
+    format: "esm",
+    target: "node18",
+    external: ["broadside", "broadside/*"],
+    logLevel: "warning",
+  });
+  mkdirSync(join(folder, "node_modules"));
+  symlinkSync(resolve(packageFolder), join(folder, "node_modules/broadside"));
+}
+
+const paths = process.argv.slice(2);
+if (paths.length === 3 && paths[0] === "--tests") await makeTests(paths[1], paths[2]);
+else if (paths.length === 2) await makePackage(...paths);
+else {
+  console.error(`build.mjs: '${paths.join(" ")}'; expected MODULES PACKAGE, or --tests FOLDER PACKAGE`);
+  process.exitCode = 2;
+}

@@ -1,0 +1,199 @@
+// The parts of C++20 that the library uses and that libc++ 13, the standard library of Debian's Emscripten,
+// does not have: algorithms over ranges, std::bit_cast and std::make_unique_for_overwrite. Included before
+// every source by CMakeLists.txt.
+//
+// Only the forms that the library calls are here: whole ranges, and iterators where it has them. A newer
+// libc++ has its own, and then this file is empty.
+#pragma once
+
+#include <version>
+
+#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 15000
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <ranges>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+// The language lets nobody add to namespace std. This library of one known version is the exception: what it
+// lacks can only be found there.
+namespace std {
+
+template <typename To, typename From>
+requires(sizeof(To) == sizeof(From) && is_trivially_copyable_v<To> &&
+         is_trivially_copyable_v<From>) constexpr To bit_cast(const From& from) noexcept {
+  return __builtin_bit_cast(To, from);
+}
+
+template <typename T>
+unique_ptr<T> make_unique_for_overwrite() {
+  return unique_ptr<T>(new T);
+}
+
+/// As the captions of the paper's grid call it.
+inline to_chars_result to_chars(char* first, char* last, double value, chars_format, int precision) {
+  return {first + snprintf(first, static_cast<size_t>(last - first), "%.*g", precision, value), errc()};
+}
+
+namespace ranges {
+
+template <typename Before, typename Projection>
+constexpr auto projected_order(Before& before, Projection& projection) {
+  return [&](const auto& a, const auto& b) {
+    return invoke(before, invoke(projection, a), invoke(projection, b));
+  };
+}
+
+template <typename Range, typename Predicate>
+constexpr bool any_of(Range&& range, Predicate predicate) {
+  return std::any_of(begin(range), end(range), ref(predicate));
+}
+
+template <typename Range, typename Predicate>
+constexpr bool all_of(Range&& range, Predicate predicate) {
+  return std::all_of(begin(range), end(range), ref(predicate));
+}
+
+template <typename Range, typename Predicate>
+constexpr auto count_if(Range&& range, Predicate predicate) {
+  return std::count_if(begin(range), end(range), ref(predicate));
+}
+
+template <typename Range, typename Value, typename Projection = identity>
+constexpr auto count(Range&& range, const Value& value, Projection projection = {}) {
+  return std::count_if(begin(range), end(range),
+                       [&](const auto& element) { return invoke(projection, element) == value; });
+}
+
+template <typename Range, typename Value, typename Projection = identity>
+constexpr auto find(Range&& range, const Value& value, Projection projection = {}) {
+  return std::find_if(begin(range), end(range),
+                      [&](const auto& element) { return invoke(projection, element) == value; });
+}
+
+template <typename Range, typename Before = less, typename Projection = identity>
+constexpr void sort(Range&& range, Before before = {}, Projection projection = {}) {
+  std::sort(begin(range), end(range), projected_order(before, projection));
+}
+
+template <typename Range, typename Before = less>
+constexpr void nth_element(Range&& range, iterator_t<Range> nth, Before before = {}) {
+  std::nth_element(begin(range), nth, end(range), ref(before));
+}
+
+template <typename Range, typename Before = less>
+constexpr void push_heap(Range&& range, Before before = {}) {
+  std::push_heap(begin(range), end(range), ref(before));
+}
+
+template <typename Range, typename Before = less>
+constexpr void pop_heap(Range&& range, Before before = {}) {
+  std::pop_heap(begin(range), end(range), ref(before));
+}
+
+template <typename Range, typename Before = less>
+constexpr void sort_heap(Range&& range, Before before = {}) {
+  std::sort_heap(begin(range), end(range), ref(before));
+}
+
+template <typename Range, typename Before = less>
+constexpr bool is_sorted(Range&& range, Before before = {}) {
+  return std::is_sorted(begin(range), end(range), ref(before));
+}
+
+template <typename Range, typename Value>
+constexpr bool binary_search(Range&& range, const Value& value) {
+  return std::binary_search(begin(range), end(range), value);
+}
+
+template <typename Range, typename Value>
+constexpr auto lower_bound(Range&& range, const Value& value) {
+  return std::lower_bound(begin(range), end(range), value);
+}
+
+template <typename Range, typename Value>
+constexpr auto upper_bound(Range&& range, const Value& value) {
+  return std::upper_bound(begin(range), end(range), value);
+}
+
+template <typename Range>
+constexpr auto max_element(Range&& range) {
+  return std::max_element(begin(range), end(range));
+}
+
+template <typename Range>
+constexpr auto min_element(Range&& range) {
+  return std::min_element(begin(range), end(range));
+}
+
+template <typename Range, typename Predicate>
+constexpr auto adjacent_find(Range&& range, Predicate predicate) {
+  return std::adjacent_find(begin(range), end(range), ref(predicate));
+}
+
+template <typename Left, typename Right>
+constexpr auto mismatch(Left&& left, Right&& right) {
+  struct Result {
+    iterator_t<Left> in1;
+    iterator_t<Right> in2;
+  };
+  const auto [in1, in2] = std::mismatch(begin(left), end(left), begin(right), end(right));
+  return Result{in1, in2};
+}
+
+template <typename Range, typename To>
+constexpr void copy(Range&& range, To to) {
+  std::copy(begin(range), end(range), to);
+}
+
+template <typename Range, typename To, typename Predicate>
+constexpr void copy_if(Range&& range, To to, Predicate predicate) {
+  std::copy_if(begin(range), end(range), to, ref(predicate));
+}
+
+template <typename Range, typename To, typename Function>
+constexpr void transform(Range&& range, To to, Function function) {
+  std::transform(begin(range), end(range), to, ref(function));
+}
+
+template <typename Range, typename Value>
+constexpr void replace(Range&& range, const Value& from, const Value& to) {
+  std::replace(begin(range), end(range), from, to);
+}
+
+template <typename Range>
+constexpr void reverse(Range&& range) {
+  std::reverse(begin(range), end(range));
+}
+
+template <typename Left, typename Right, typename To>
+constexpr void merge(Left&& left, Right&& right, To to) {
+  std::merge(begin(left), end(left), begin(right), end(right), to);
+}
+
+template <typename Left, typename Right, typename To>
+constexpr void set_union(Left&& left, Right&& right, To to) {
+  std::set_union(begin(left), end(left), begin(right), end(right), to);
+}
+
+template <typename Left, typename Right, typename To>
+constexpr void set_difference(Left&& left, Right&& right, To to) {
+  std::set_difference(begin(left), end(left), begin(right), end(right), to);
+}
+
+template <typename Left, typename Right, typename To>
+constexpr void set_symmetric_difference(Left&& left, Right&& right, To to) {
+  std::set_symmetric_difference(begin(left), end(left), begin(right), end(right), to);
+}
+
+}  // namespace ranges
+}  // namespace std
+
+#endif

@@ -1,0 +1,7 @@
+// The algorithms of the smaller module, in place of those that CMake lists for the library: one for few
+// boxes, one for many.
+#include "algorithms/descriptions.hpp"
+
+std::vector<broadside::Algorithm> broadside::algorithm::linked_algorithms() {
+  return {brute_force(), grid()};
+}

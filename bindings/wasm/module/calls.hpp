@@ -1,0 +1,88 @@
+// What every function that JavaScript calls has: the block of memory that both sides read and write,
+// exceptions as numbers, and the kind of a box chosen by its dimension.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/error.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+
+/// Marks a function that the module exports under its own name.
+#define BROADSIDE_EXPORT(name) extern "C" __attribute__((export_name(#name), used))
+
+namespace broadside::wasm {
+
+/// What became of a call. src/error.ts has the same numbers.
+enum Status : std::int32_t {
+  ok = 0,
+  invalid_input,
+  invalid_frame,
+  invalid_query,
+  invalid_spec,
+  invalid_handle,
+  invalid_argument,
+  out_of_memory,
+  failed
+};
+
+/// Answers of a call, as JavaScript reads them: addresses, numbers of things; or, if the call failed, the
+/// place of the box at fault, and where its message is and how long.
+inline std::array<std::uint32_t, 8> reply;
+
+/// A question, as JavaScript writes it: the coordinates of a box, of points and directions, one after the
+/// other.
+inline std::array<float, 16> question;
+
+/// Puts the exception that is being handled into `reply`, and returns its status.
+Status status_of_exception() noexcept;
+
+/// Runs `body`, and turns what it throws into a status.
+template <typename Body>
+Status guarded(const Body& body) noexcept {
+  try {
+    body();
+    return ok;
+  } catch (...) {
+    return status_of_exception();
+  }
+}
+
+/// Says in `reply` where an array is, and how many elements it has: the `number`-th array of an answer.
+template <typename T>
+void answer(std::span<const T> values, std::size_t number = 0) noexcept {
+  reply[2 * number] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(values.data()));
+  reply[2 * number + 1] = static_cast<std::uint32_t>(values.size());
+}
+
+/// Boxes where JavaScript put them: minima and then maxima of each.
+template <int D>
+std::span<const Box<D>> boxes_at(const float* first, std::size_t count) noexcept {
+  static_assert(sizeof(Box<D>) == 2 * D * sizeof(float));
+  return {reinterpret_cast<const Box<D>*>(first), count};
+}
+
+/// Filters as JavaScript writes them, six words each; none where the address is null.
+inline std::span<const Filter> filters_at(const Filter* first, std::size_t count) noexcept {
+  static_assert(sizeof(Filter) == 24 && offsetof(Filter, group) == 16 && offsetof(Filter, is_static) == 20);
+  return {first, first == nullptr ? 0 : count};
+}
+
+/// Makes an object that JavaScript keeps by its address: `Kept<2>` or `Kept<3>`, as a `Base`. The address is
+/// in `reply`.
+template <template <int> typename Kept, typename Base, typename... Arguments>
+Status make_kept(int dimension, const Arguments&... arguments) noexcept {
+  return guarded([&] {
+    Base* const made =
+        dimension == 2 ? static_cast<Base*>(new Kept<2>(arguments...)) : new Kept<3>(arguments...);
+    reply[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(made));
+  });
+}
+
+}  // namespace broadside::wasm

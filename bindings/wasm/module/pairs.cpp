@@ -1,0 +1,163 @@
+// All pairs, by finders that JavaScript keeps, and trackers.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <string_view>
+
+#include "broadside/finder.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
+
+#include "core/sort_pairs.hpp"
+#include "module/calls.hpp"
+
+namespace broadside::wasm {
+namespace {
+
+/// What a search is to give.
+enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4 };
+
+/// The boxes of a search and which pairs of them count.
+struct Search {
+  const float* boxes;
+  std::size_t count;
+  const float* right;
+  std::size_t right_count;
+  const Filter* filters;
+  const Filter* right_filters;
+  std::uint32_t mode;
+};
+
+class Finder {
+ public:
+  virtual ~Finder() = default;
+  virtual void find(const Search& search) = 0;
+};
+
+template <int D>
+class KeptFinder final : public Finder {
+ public:
+  explicit KeptFinder(std::string_view spec) : finder_(make_finder<D>(spec)) {}
+
+  void find(const Search& search) override {
+    if ((search.mode & counts) != 0) {
+      PairCounter counter;
+      find(search, counter);
+      reply[0] = static_cast<std::uint32_t>(counter.count());
+      reply[1] = static_cast<std::uint32_t>(counter.count() >> 32);
+      return;
+    }
+    pairs_.clear();
+    PairCollector collector(pairs_);
+    find(search, collector);
+    if ((search.mode & sorts) != 0) core::sort(pairs_, scratch_);
+    answer(std::span<const Pair>(pairs_));
+  }
+
+ private:
+  void find(const Search& search, PairSink& pairs) {
+    const auto boxes = boxes_at<D>(search.boxes, search.count);
+    const PairFilters filters{filters_at(search.filters, search.count),
+                              filters_at(search.right_filters, search.right_count)};
+    if ((search.mode & joins) == 0)
+      finder_->find(boxes, pairs, filters);
+    else
+      finder_->find_between(boxes, boxes_at<D>(search.right, search.right_count), pairs, filters);
+  }
+
+  std::unique_ptr<PairFinder<D>> finder_;
+  std::vector<Pair> pairs_;
+  std::vector<Pair> scratch_;
+};
+
+class Tracker {
+ public:
+  virtual ~Tracker() = default;
+
+  /// Takes the next frame. `changed` lists places whose boxes or filters may differ from the frame before;
+  /// null where the tracker is to see for itself.
+  virtual void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
+                      const Filter* filters) = 0;
+};
+
+template <int D>
+class KeptTracker final : public Tracker {
+ public:
+  explicit KeptTracker(std::string_view spec) : tracker_(make_tracker<D>(spec)) {}
+
+  void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
+              const Filter* filters) override {
+    Frame<D> frame{.boxes = boxes_at<D>(boxes, count),
+                   .changed = {changed, changed_count},
+                   .filters = filters_at(filters, count)};
+    if (changed == nullptr) {
+      list_changed(frame);
+      frame.changed = changed_;
+    }
+    begun_.clear();
+    ended_.clear();
+    PairCollector begun(begun_);
+    PairCollector ended(ended_);
+    tracker_->update(frame, begun, ended);
+    answer(std::span<const Pair>(begun_));
+    answer(std::span<const Pair>(ended_), 1);
+  }
+
+ private:
+  /// Sets `changed_` to the places where a frame differs from the one before.
+  void list_changed(const Frame<D>& frame) {
+    const Frame<D> last = tracker_->last_frame();
+    const std::size_t both = std::min(last.boxes.size(), frame.boxes.size());
+    const bool has_filters = !last.filters.empty() && !frame.filters.empty();
+    changed_.clear();
+    for (std::size_t i = 0; i < both; ++i) {
+      if (!equal(last.boxes[i], frame.boxes[i]) || (has_filters && last.filters[i] != frame.filters[i]))
+        changed_.push_back(BoxId(i));
+    }
+  }
+
+  /// Whether two boxes have the same bits: most have, and this takes no branch for each coordinate.
+  static bool equal(const Box<D>& a, const Box<D>& b) noexcept {
+    using Bits = std::array<std::uint64_t, D>;
+    const Bits a_bits = std::bit_cast<Bits>(a);
+    const Bits b_bits = std::bit_cast<Bits>(b);
+    std::uint64_t differ = 0;
+    for (int i = 0; i < D; ++i) differ |= a_bits[i] ^ b_bits[i];
+    return differ == 0;
+  }
+
+  std::unique_ptr<PairTracker<D>> tracker_;
+  std::vector<BoxId> changed_;
+  std::vector<Pair> begun_;
+  std::vector<Pair> ended_;
+};
+
+}  // namespace
+
+BROADSIDE_EXPORT(finder_make) Status finder_make(int dimension, const char* spec, std::size_t size) {
+  return make_kept<KeptFinder, Finder>(dimension, std::string_view(spec, size));
+}
+
+BROADSIDE_EXPORT(finder_free) void finder_free(Finder* finder) { delete finder; }
+
+BROADSIDE_EXPORT(finder_find)
+Status finder_find(Finder* finder, const float* boxes, std::size_t count, const float* right,
+                   std::size_t right_count, const Filter* filters, const Filter* right_filters,
+                   std::uint32_t mode) {
+  return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
+}
+
+BROADSIDE_EXPORT(tracker_make) Status tracker_make(int dimension, const char* spec, std::size_t size) {
+  return make_kept<KeptTracker, Tracker>(dimension, std::string_view(spec, size));
+}
+
+BROADSIDE_EXPORT(tracker_free) void tracker_free(Tracker* tracker) { delete tracker; }
+
+BROADSIDE_EXPORT(tracker_update)
+Status tracker_update(Tracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
+                      std::size_t changed_count, const Filter* filters) {
+  return guarded([&] { tracker->update(boxes, count, changed, changed_count, filters); });
+}
+
+}  // namespace broadside::wasm

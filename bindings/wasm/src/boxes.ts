@@ -1,0 +1,133 @@
+// Boxes in the module's memory, and boxes and filters as a call takes them.
+import type { Boxes, Dimension, Filter, Filters } from "../types/types.d.ts";
+import type { Core } from "./core.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { Kept } from "./kept.ts";
+
+export function checkDimension(dimension: unknown): asserts dimension is Dimension {
+  if (dimension !== 2 && dimension !== 3) refuse("dimension", dimension, "2 or 3");
+}
+
+export class KeptBoxes extends Kept implements Boxes {
+  readonly #core: Core;
+  readonly count: number;
+  readonly dimension: Dimension;
+  #data: Float32Array;
+
+  constructor(core: Core, count: number, dimension: Dimension) {
+    checkDimension(dimension);
+    if (!Number.isInteger(count) || count < 0 || count >= 2 ** 32)
+      refuse("the number of boxes", count, "a whole number of at least 0");
+    const { exports } = core;
+    super(core.reserve(Math.max(8 * dimension * count, 1)), (address) => exports.release(address));
+    this.#core = core;
+    this.count = count;
+    this.dimension = dimension;
+    this.#data = this.#view();
+    for (let box = 0; box < count; ++box) {
+      this.#data.fill(Infinity, 2 * dimension * box, dimension * (2 * box + 1));
+      this.#data.fill(-Infinity, dimension * (2 * box + 1), 2 * dimension * (box + 1));
+    }
+  }
+
+  #view(): Float32Array {
+    return new Float32Array(this.#core.exports.memory.buffer, this.address, 2 * this.dimension * this.count);
+  }
+
+  get data(): Float32Array {
+    // Memory that has grown has taken the view's.
+    if (this.#data.length === 0 || this.address === 0) this.#data = this.#view();
+    return this.#data;
+  }
+
+  isOf(core: Core): boolean {
+    return this.#core === core;
+  }
+}
+
+/** Boxes that a call is given, before they are where the module finds them. */
+export type Given = KeptBoxes | ArrayLike<number>;
+
+/** How many boxes these are. Throws if they are none. */
+export function countOf(core: Core, boxes: unknown, dimension: Dimension, name = "boxes"): number {
+  if (boxes instanceof KeptBoxes) {
+    if (!boxes.isOf(core)) refuse(name, boxes, "boxes of this module; these are another one's");
+    if (boxes.dimension !== dimension) refuse(`the dimension of ${name}`, boxes.dimension, String(dimension));
+    return boxes.count;
+  }
+  return countIn(boxes, 2 * dimension, name);
+}
+
+/** How many groups of `each` numbers an array has. */
+export function countIn(numbers: unknown, each: number, name: string): number {
+  if (typeof numbers !== "object" || numbers === null) refuse(name, numbers, "an array of numbers");
+  const { length } = numbers as ArrayLike<number>;
+  if (typeof length !== "number" || numbers instanceof DataView) refuse(name, numbers, "an array of numbers");
+  if (length % each !== 0) refuse(`the length of ${name}`, length, `a multiple of ${each}`);
+  return length / each;
+}
+
+/** Bytes that the boxes take of a call's room. */
+export function bytesOf(boxes: Given): number {
+  return boxes instanceof KeptBoxes ? 0 : 4 * boxes.length;
+}
+
+/** Where the module finds the boxes. */
+export function put(core: Core, boxes: Given): number {
+  return boxes instanceof KeptBoxes ? boxes.address : putFloats(core, boxes);
+}
+
+export function putFloats(core: Core, numbers: ArrayLike<number>): number {
+  const address = core.take(4 * numbers.length);
+  core.f32.set(numbers, address / 4);
+  return address;
+}
+
+export function putWords(core: Core, numbers: ArrayLike<number>): number {
+  const address = core.take(4 * numbers.length);
+  core.u32.set(numbers, address / 4);
+  return address;
+}
+
+// ---- Filters: six words each, as the module has them ----
+
+export const bytesOfFilter = 24;
+const allBits = 0xffffffff;
+const properties = ["category", "mask", "group", "isStatic"] as const;
+
+export function checkFilters(filters: Filters, count: number, name = "filters"): void {
+  if (typeof filters !== "object" || filters === null) refuse(name, filters, "an object of arrays");
+  checkOptions(filters, properties);
+  for (const property of properties) {
+    const values = filters[property];
+    if (values === undefined) continue;
+    if (countIn(values, 1, `${name}.${property}`) !== count)
+      refuse(`the length of ${name}.${property}`, values.length, `${count}, one for each box`);
+  }
+}
+
+function writeFilter(words: Uint32Array, at: number, category: number, mask: number | undefined, group: number,
+  isStatic: number | boolean): void {
+  words[at] = category;
+  words[at + 1] = 0;
+  words[at + 2] = mask ?? allBits;
+  words[at + 3] = mask === undefined ? allBits : 0;
+  words[at + 4] = group;
+  words[at + 5] = isStatic ? 1 : 0;
+}
+
+export function putFilters(core: Core, filters: Filters | undefined, count: number): number {
+  if (filters === undefined) return 0;
+  const address = core.take(bytesOfFilter * Math.max(count, 1));
+  const { category, mask, group, isStatic } = filters;
+  for (let i = 0, at = address / 4; i < count; ++i, at += bytesOfFilter / 4)
+    writeFilter(core.u32, at, category?.[i] ?? 1, mask?.[i], group?.[i] ?? 0, isStatic?.[i] ?? false);
+  return address;
+}
+
+export function putFilter(core: Core, filter: Filter): number {
+  checkOptions(filter, properties);
+  const address = core.take(bytesOfFilter);
+  writeFilter(core.u32, address / 4, filter.category ?? 1, filter.mask, filter.group ?? 0, filter.isStatic ?? false);
+  return address;
+}

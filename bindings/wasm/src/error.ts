@@ -1,0 +1,50 @@
+// BroadsideError, and the module's numbers for what went wrong.
+import type { BroadsideErrorCode } from "../types/types.d.ts";
+
+/** By the module's `Status`, less one. */
+const codes = [
+  "INVALID_INPUT", "INVALID_FRAME", "INVALID_QUERY", "INVALID_SPEC", "INVALID_HANDLE", "INVALID_ARGUMENT",
+  "OUT_OF_MEMORY", "FAILED",
+] as const satisfies readonly BroadsideErrorCode[];
+
+export class BroadsideError extends Error {
+  override readonly name = "BroadsideError";
+  readonly code: BroadsideErrorCode;
+  readonly index: number | undefined;
+
+  constructor(code: BroadsideErrorCode, message: string, index?: number) {
+    super(message);
+    this.code = code;
+    this.index = index;
+  }
+}
+
+export function errorOf(status: number, message: string, index: number): BroadsideError {
+  const code = codes[status - 1] ?? "FAILED";
+  return new BroadsideError(code, message, code === "INVALID_INPUT" ? index : undefined);
+}
+
+/** What a value is, for messages. */
+function described(value: unknown): string {
+  if (value === null || value === undefined) return String(value);
+  if (typeof value === "string") return `'${value}'`;
+  if (typeof value === "object") return Object.prototype.toString.call(value).slice(8, -1);
+  if (typeof value === "function") return "a function";
+  return String(value);
+}
+
+/** Refuses an argument. */
+export function refuse(name: string, value: unknown, expected: string): never {
+  throw new BroadsideError("INVALID_ARGUMENT", `${name} is ${described(value)}; expected ${expected}`);
+}
+
+/** Refuses options other than these. */
+export function checkOptions(options: object, known: readonly string[]): void {
+  if (typeof options !== "object" || options === null) refuse("options", options, "an object");
+  for (const name in options) {
+    if (!known.includes(name)) {
+      throw new BroadsideError("INVALID_ARGUMENT",
+        `unknown option '${name}'; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
+    }
+  }
+}

@@ -1,0 +1,24 @@
+// The entry "broadside/external": everything, over a module that the caller brings.
+import type { Broadside } from "../types/types.d.ts";
+import type { ExternalOptions } from "../types/external.d.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { broadsideOf } from "./face.ts";
+
+export { BroadsideError } from "./error.ts";
+export { supportsSimd } from "./simd.ts";
+
+async function compiled(wasm: Awaited<ExternalOptions["wasm"]>): Promise<WebAssembly.Module> {
+  if (wasm instanceof WebAssembly.Module) return wasm;
+  if (typeof wasm === "string" || wasm instanceof URL) return compiled(await fetch(wasm));
+  if (typeof Response !== "undefined" && wasm instanceof Response) {
+    if (!wasm.ok) refuse("the response's status", wasm.status, "200");
+    return WebAssembly.compile(await wasm.arrayBuffer());
+  }
+  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm);
+  return refuse("wasm", wasm, "a WebAssembly.Module, its bytes, a Response, or its address");
+}
+
+export async function load(options: ExternalOptions): Promise<Broadside> {
+  checkOptions(options, ["wasm"]);
+  return broadsideOf(await compiled(await options.wasm));
+}

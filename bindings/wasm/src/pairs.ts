@@ -1,0 +1,140 @@
+// All pairs: by finders that stay in the module, one for each dimension and algorithm, so that calls ask for no memory.
+import type {
+  CountJoinOptions, CountOptions, Dimension, Filters, JoinOptions, PairsOptions,
+} from "../types/types.d.ts";
+import { type Given, bytesOf, bytesOfFilter, checkDimension, checkFilters, countOf, put, putFilters } from "./boxes.ts";
+import type { Core } from "./core.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { few2, few3, fewPairs2, fewPairs3 } from "./few.ts";
+
+/** As in module/pairs.cpp. */
+const enum Mode { counts = 1, sorts = 2, joins = 4 }
+
+const countOptions = ["dimension", "algorithm", "filters"];
+const pairsOptions = [...countOptions, "sorted"];
+const countJoinOptions = [...countOptions, "rightFilters"];
+const joinOptions = [...pairsOptions, "rightFilters"];
+
+/** Finders of so many kinds are kept; those of a program that makes up more go. */
+const mostFinders = 16;
+
+export class Pairs {
+  readonly #core: Core;
+  readonly #finders = new Map<string, number>();
+  #lastKey = "";
+  #lastFinder = 0;
+  #lastChecked: object | undefined;  // options that were looked through for unknown ones
+  #lastView: Uint32Array = new Uint32Array(0);
+
+  readonly #forFew: string;  // the algorithm that few boxes get where none is named
+
+  constructor(core: Core) {
+    this.#core = core;
+    this.#forFew = core.algorithmFor(0);
+  }
+
+  pairs(boxes: Given, options?: PairsOptions): Uint32Array {
+    if (options === undefined) {
+      if (boxes instanceof Float32Array && boxes.length <= 4 * few2 && boxes.length % 4 === 0) {
+        const few = fewPairs2(boxes);
+        if (few !== undefined) return few;
+      }
+      return this.#find(boxes, undefined, {}, 0);
+    }
+    if (options !== this.#lastChecked) this.#check(options, pairsOptions);
+    if (boxes instanceof Float32Array && options.filters === undefined &&
+        (options.algorithm === undefined || options.algorithm === "brute_force" || options.algorithm === this.#forFew)) {
+      if (options.dimension === 3) {
+        if (boxes.length <= 6 * few3 && boxes.length % 6 === 0) {
+          const few = fewPairs3(boxes);
+          if (few !== undefined) return few;
+        }
+      } else if (boxes.length <= 4 * few2 && boxes.length % 4 === 0 &&
+          (options.dimension === 2 || options.dimension === undefined)) {
+        const few = fewPairs2(boxes);
+        if (few !== undefined) return few;
+      }
+    }
+    return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
+  }
+
+  join(left: Given, right: Given, options: JoinOptions = {}): Uint32Array {
+    this.#check(options, joinOptions);
+    return this.#find(left, right, options, Mode.joins | (options.sorted === true ? Mode.sorts : 0));
+  }
+
+  count(boxes: Given, options: CountOptions = {}): number {
+    this.#check(options, countOptions);
+    this.#search(boxes, undefined, options, Mode.counts);
+    return this.#counted();
+  }
+
+  countJoin(left: Given, right: Given, options: CountJoinOptions = {}): number {
+    this.#check(options, countJoinOptions);
+    this.#search(left, right, options, Mode.counts | Mode.joins);
+    return this.#counted();
+  }
+
+  #check(options: JoinOptions, known: readonly string[]): void {
+    checkOptions(options, known);
+    if (options.sorted !== undefined && typeof options.sorted !== "boolean")
+      refuse("sorted", options.sorted, "true or false");
+    this.#lastChecked = known === pairsOptions ? options : undefined;
+  }
+
+  #find(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): Uint32Array {
+    this.#search(boxes, right, options, mode);
+    const { u32, reply } = this.#core;
+    const address = u32[reply] as number;
+    const length = 2 * (u32[reply + 1] as number);
+    const last = this.#lastView;
+    // The same view again where it would be no other: making one is not cheap.
+    if (last.length === length && last.byteOffset === address && last.buffer === u32.buffer) return last;
+    return (this.#lastView = length === 0 ? new Uint32Array(0) : new Uint32Array(u32.buffer, address, length));
+  }
+
+  #counted(): number {
+    const { u32, reply } = this.#core;
+    return (u32[reply] as number) + 2 ** 32 * (u32[reply + 1] as number);
+  }
+
+  #search(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): void {
+    const core = this.#core;
+    const { dimension = 2, filters, rightFilters } = options;
+    checkDimension(dimension);
+    const count = countOf(core, boxes, dimension, right === undefined ? "boxes" : "left");
+    const rightCount = right === undefined ? 0 : countOf(core, right, dimension, "right");
+    if (filters !== undefined) checkFilters(filters, count);
+    if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
+    const finder = this.#finder(dimension, options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
+    core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
+      (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)));
+    const at = put(core, boxes);
+    const rightAt = right === undefined ? 0 : put(core, right);
+    core.check(core.exports.finder_find(finder, at, count, rightAt, rightCount,
+      putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount), mode));
+  }
+
+  #finder(dimension: Dimension, algorithm: string): number {
+    const key = dimension === 2 ? algorithm : `3${algorithm}`;
+    if (key === this.#lastKey) return this.#lastFinder;
+    if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
+    const { exports } = this.#core;
+    let finder = this.#finders.get(key);
+    if (finder === undefined) {
+      finder = this.#core.make(algorithm, (spec, size) => exports.finder_make(dimension, spec, size));
+      if (this.#finders.size >= mostFinders) {
+        this.#finders.forEach((old) => exports.finder_free(old));
+        this.#finders.clear();
+      }
+      this.#finders.set(key, finder);
+    }
+    this.#lastKey = key;
+    return (this.#lastFinder = finder);
+  }
+}
+
+/** Filters that say anything. */
+function some(filters: Filters | undefined): Filters | undefined {
+  return filters !== undefined && Object.keys(filters).length > 0 ? filters : undefined;
+}

@@ -1,0 +1,2 @@
+// Its module without SIMD, likewise.
+export { bytes } from "wasm:broadside-pairs-scalar";

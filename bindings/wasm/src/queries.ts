@@ -1,0 +1,172 @@
+// Queries: indexes of arrays of boxes, and worlds that are asked as well.
+import type {
+  BoxArray, Dimension, Filters, Hit, Index, NearestOptions, Neighbours, QueriedWorld, Queries, QueryOptions,
+  RayOptions, TrackerUpdateOptions, WorldOptions,
+} from "../types/types.d.ts";
+import { type Given, bytesOfFilter, checkDimension, countIn, putFilter } from "./boxes.ts";
+import type { Core, Exports } from "./core.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { Kept } from "./kept.ts";
+import { idsOf, putFrame } from "./tracker.ts";
+import { KeptWorld, handlesOf } from "./world.ts";
+
+/** What the module with queries exports besides: module/queries.cpp. */
+export interface QueryExports extends Exports {
+  index_make(dimension: number): number;
+  index_free(index: number): void;
+  index_update(
+    index: number, boxes: number, count: number, changed: number, changedCount: number, filters: number,
+  ): number;
+  query_overlapping(kind: number, asked: number, filter: number, except: number): number;
+  query_nearest(
+    kind: number, asked: number, filter: number, except: number, k: number, maxDistance: number,
+  ): number;
+  query_first_hit(kind: number, asked: number, filter: number, except: number): number;
+}
+
+const queryOptions = ["filter", "except"];
+const nothing = -1;  // the `except` of a query that leaves none out
+
+/** The kinds of what is asked, less 2, the dimension. */
+const kindOfIndex = -2;
+const kindOfWorld = 0;
+
+/** Asks an index or a world. `Numbers` are ids or handles. */
+class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbers> {
+  readonly #core: Core;
+  readonly #exports: QueryExports;
+  readonly #dimension: Dimension;
+  readonly #kind: number;
+  readonly #address: () => number;
+  readonly #found: (number: number) => Numbers;
+
+  constructor(core: Core, dimension: Dimension, kind: number, address: () => number,
+    found: (number: number) => Numbers) {
+    this.#core = core;
+    this.#exports = core.exports as QueryExports;
+    this.#dimension = dimension;
+    this.#kind = kind + dimension;
+    this.#address = address;
+    this.#found = found;
+  }
+
+  /** Puts numbers of a question into the module, and returns where the next ones go. */
+  #ask(at: number, numbers: unknown, count: number, name: string): number {
+    if (countIn(numbers, 1, name) !== count)
+      refuse(`the length of ${name}`, (numbers as ArrayLike<number>).length, String(count));
+    this.#core.f32.set(numbers as ArrayLike<number>, this.#core.question + at);
+    return at + count;
+  }
+
+  #options(options: QueryOptions, more: readonly string[]): { filter: number; except: number } {
+    checkOptions(options, [...queryOptions, ...more]);
+    const { filter, except = nothing } = options;
+    if (typeof except !== "number") refuse("except", except, "a number");
+    this.#core.stage(bytesOfFilter);
+    return { filter: filter === undefined ? 0 : putFilter(this.#core, filter), except };
+  }
+
+  overlapping(box: ArrayLike<number>, options: QueryOptions = {}): Numbers {
+    const address = this.#address();
+    const { filter, except } = this.#options(options, []);
+    this.#ask(0, box, 2 * this.#dimension, "box");
+    this.#core.check(this.#exports.query_overlapping(this.#kind, address, filter, except));
+    return this.#found(0);
+  }
+
+  nearest(point: ArrayLike<number>, k: number, options: NearestOptions = {}): Neighbours<Numbers> {
+    const address = this.#address();
+    if (!Number.isInteger(k) || k < 0 || k >= 2 ** 32) refuse("k", k, "a whole number of at least 0");
+    const { maxDistance = Infinity } = options;
+    if (!(typeof maxDistance === "number" && maxDistance >= 0))
+      refuse("maxDistance", maxDistance, "0, more, or Infinity");
+    const { filter, except } = this.#options(options, ["maxDistance"]);
+    this.#ask(0, point, this.#dimension, "point");
+    const core = this.#core;
+    core.check(this.#exports.query_nearest(this.#kind, address, filter, except, k, maxDistance));
+    return { ids: this.#found(0), distances: handlesOf(core, 1, 1) };
+  }
+
+  firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options: RayOptions = {}): Hit | undefined {
+    const address = this.#address();
+    const { tMax = Infinity, halfExtent } = options;
+    if (typeof tMax !== "number") refuse("tMax", tMax, "a number");
+    const { filter, except } = this.#options(options, ["tMax", "halfExtent"]);
+    const dimension = this.#dimension;
+    let at = this.#ask(0, origin, dimension, "origin");
+    at = this.#ask(at, direction, dimension, "direction");
+    const core = this.#core;
+    core.f32[core.question + at++] = tMax;
+    this.#ask(at, halfExtent ?? new Float32Array(dimension), dimension, "halfExtent");
+    core.check(this.#exports.query_first_hit(this.#kind, address, filter, except));
+    const found = this.#found(0);
+    return found.length === 0 ? undefined : { id: found[0] as number, t: core.f32[core.question] as number };
+  }
+}
+
+export class KeptIndex extends Kept implements Index {
+  readonly #core: Core;
+  readonly #asker: Asker<Uint32Array>;
+  readonly dimension: Dimension;
+
+  constructor(core: Core, boxes: BoxArray,
+    options: { readonly dimension?: Dimension; readonly filters?: Filters } = {}) {
+    const { dimension = 2, ...rest } = options;
+    checkOptions(options, ["dimension", "filters"]);
+    checkDimension(dimension);
+    const exports = core.exports as QueryExports;
+    core.check(exports.index_make(dimension));
+    super(core.u32[core.reply] as number, (address) => exports.index_free(address));
+    this.#core = core;
+    this.dimension = dimension;
+    this.#asker = new Asker(core, dimension, kindOfIndex, () => this.address, (n) => idsOf(core, n, 1));
+    try {
+      this.update(boxes, rest);
+    } catch (error) {
+      this.free();
+      throw error;
+    }
+  }
+
+  update(boxes: BoxArray, options: TrackerUpdateOptions = {}): void {
+    const core = this.#core;
+    const index = this.address;
+    const frame = putFrame(core, boxes as Given, this.dimension, options);
+    core.check((core.exports as QueryExports).index_update(index, frame.at, frame.count, frame.changed,
+      frame.changedCount, frame.filters));
+  }
+
+  overlapping(box: ArrayLike<number>, options?: QueryOptions): Uint32Array {
+    return this.#asker.overlapping(box, options);
+  }
+
+  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Uint32Array> {
+    return this.#asker.nearest(point, k, options);
+  }
+
+  firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined {
+    return this.#asker.firstHit(origin, direction, options);
+  }
+}
+
+export class AskedWorld extends KeptWorld implements QueriedWorld {
+  readonly #asker: Asker<Float64Array>;
+
+  constructor(core: Core, options?: WorldOptions) {
+    super(core, options);
+    this.#asker = new Asker(core, this.dimension, kindOfWorld, () => this.address,
+      (n) => handlesOf(core, n, 1));
+  }
+
+  overlapping(box: ArrayLike<number>, options?: QueryOptions): Float64Array {
+    return this.#asker.overlapping(box, options);
+  }
+
+  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Float64Array> {
+    return this.#asker.nearest(point, k, options);
+  }
+
+  firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined {
+    return this.#asker.firstHit(origin, direction, options);
+  }
+}

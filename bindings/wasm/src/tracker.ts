@@ -1,0 +1,68 @@
+// Trackers of arrays of boxes.
+import type { BoxArray, Dimension, Events, Tracker, TrackerOptions, TrackerUpdateOptions } from "../types/types.d.ts";
+import {
+  type Given, bytesOf, bytesOfFilter, checkDimension, checkFilters, countIn, countOf, put, putFilters, putWords,
+} from "./boxes.ts";
+import type { Core } from "./core.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { Kept } from "./kept.ts";
+
+/** The spec of an object that is made with options, checked. */
+export function specOf(core: Core, options: TrackerOptions, known: readonly string[]):
+  { dimension: Dimension; algorithm: string } {
+  checkOptions(options, ["dimension", "algorithm", ...known]);
+  const { dimension = 2, algorithm = core.algorithmFor(Infinity) } = options;
+  checkDimension(dimension);
+  if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
+  return { dimension, algorithm };
+}
+
+/** Puts a frame's arguments into the module. */
+export function putFrame(core: Core, boxes: Given, dimension: Dimension, options: TrackerUpdateOptions) {
+  checkOptions(options, ["changed", "filters"]);
+  const { changed, filters } = options;
+  const count = countOf(core, boxes, dimension);
+  const changedCount = changed === undefined ? 0 : countIn(changed, 1, "changed");
+  if (filters !== undefined) checkFilters(filters, count);
+  core.stage(bytesOf(boxes) + 4 * changedCount + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
+  return {
+    at: put(core, boxes),
+    count,
+    changed: changed === undefined ? 0 : putWords(core, changed),
+    changedCount,
+    filters: putFilters(core, filters, count),
+  };
+}
+
+const noOptions: TrackerUpdateOptions = {};
+export const noIds = new Uint32Array(0);
+
+/** An array of ids or of pairs of them in the module, the `number`-th one of its reply. */
+export function idsOf(core: Core, number: number, each: number): Uint32Array {
+  const { u32, reply } = core;
+  const count = u32[reply + 2 * number + 1] as number;
+  return count === 0 ? noIds : new Uint32Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+}
+
+export class KeptTracker extends Kept implements Tracker {
+  readonly #core: Core;
+  readonly dimension: Dimension;
+
+  constructor(core: Core, options: TrackerOptions = {}) {
+    const { dimension, algorithm } = specOf(core, options, []);
+    const { exports } = core;
+    super(core.make(algorithm, (spec, size) => exports.tracker_make(dimension, spec, size)),
+      (address) => exports.tracker_free(address));
+    this.#core = core;
+    this.dimension = dimension;
+  }
+
+  update(boxes: BoxArray, options: TrackerUpdateOptions = noOptions): Events<Uint32Array> {
+    const core = this.#core;
+    const tracker = this.address;
+    const frame = putFrame(core, boxes as Given, this.dimension, options);
+    core.check(core.exports.tracker_update(tracker, frame.at, frame.count, frame.changed, frame.changedCount,
+      frame.filters));
+    return { begun: idsOf(core, 0, 2), ended: idsOf(core, 1, 2) };
+  }
+}

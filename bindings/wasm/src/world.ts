@@ -1,0 +1,145 @@
+// Worlds.
+import type {
+  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, World, WorldOptions,
+} from "../types/types.d.ts";
+import {
+  type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilter, putFilters, putFloats,
+} from "./boxes.ts";
+import type { Core } from "./core.ts";
+import { checkOptions, refuse } from "./error.ts";
+import { Kept } from "./kept.ts";
+import { specOf } from "./tracker.ts";
+
+const worldOptions = ["margin", "relativeMargin", "predictedFrames", "events"];
+
+/** A handle's lowest bits are its slot: module/handles.hpp. */
+const mostSlots = 2 ** 24;
+
+const noHandles = new Float64Array(0);
+
+export function handlesOf(core: Core, number: number, each: number): Float64Array {
+  const { u32, reply } = core;
+  const count = u32[reply + 2 * number + 1] as number;
+  return count === 0 ? noHandles : new Float64Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+}
+
+function countOfHandles(handles: Handles): number {
+  return typeof handles === "number" ? 1 : countIn(handles, 1, "handles");
+}
+
+function putHandles(core: Core, handles: Handles, count: number): number {
+  const address = core.take(8 * count);
+  if (typeof handles === "number") core.f64[address / 8] = handles;
+  else core.f64.set(handles, address / 8);
+  return address;
+}
+
+function make(core: Core, options: WorldOptions): { address: number; dimension: Dimension } {
+  const { dimension, algorithm } = specOf(core, options, worldOptions);
+  const { margin = 0, relativeMargin = 0, predictedFrames = 0, events = "exact" } = options;
+  if (events !== "exact" && events !== "enlarged") refuse("events", events, "'exact' or 'enlarged'");
+  for (const [name, value] of Object.entries({ margin, relativeMargin, predictedFrames }))
+    if (typeof value !== "number") refuse(name, value, "a number");
+  const address = core.make(algorithm, (spec, size) => core.exports.world_make(dimension, spec, size, margin,
+    relativeMargin, predictedFrames, events === "enlarged" ? 1 : 0));
+  return { address, dimension };
+}
+
+export class KeptWorld extends Kept implements World {
+  protected readonly core: Core;
+  readonly dimension: Dimension;
+
+  constructor(core: Core, options: WorldOptions = {}) {
+    const { exports } = core;
+    const { address, dimension } = make(core, options);
+    super(address, (world) => exports.world_free(world));
+    this.core = core;
+    this.dimension = dimension;
+  }
+
+  get size(): number {
+    return this.core.exports.world_size(this.address) >>> 0;
+  }
+
+  add(boxes: BoxArray, options: { readonly filters?: Filters } = {}): Float64Array {
+    const { core } = this;
+    const world = this.address;
+    checkOptions(options, ["filters"]);
+    const count = countOf(core, boxes, this.dimension);
+    const { filters } = options;
+    if (filters !== undefined) checkFilters(filters, count);
+    core.stage(bytesOf(boxes as Given) + 8 * count + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
+    const at = put(core, boxes as Given);
+    const handles = core.take(8 * count);
+    core.check(core.exports.world_add(world, at, count, putFilters(core, filters, count), handles));
+    return core.f64.slice(handles / 8, handles / 8 + count);
+  }
+
+  move(handles: Handles, boxes: BoxArray, options: { readonly velocities?: ArrayLike<number> } = {}): void {
+    const { core } = this;
+    const world = this.address;
+    checkOptions(options, ["velocities"]);
+    const count = countOf(core, boxes, this.dimension);
+    const given = countOfHandles(handles);
+    if (given !== count) refuse("the number of handles", given, `${count}, one for each box`);
+    const { velocities } = options;
+    if (velocities !== undefined && countIn(velocities, this.dimension, "velocities") !== count)
+      refuse("the length of velocities", velocities.length, `${this.dimension * count}, ${this.dimension} for each box`);
+    core.stage(bytesOf(boxes as Given) + 8 * count + (velocities === undefined ? 0 : 4 * velocities.length));
+    core.check(core.exports.world_move(world, putHandles(core, handles, count), put(core, boxes as Given), count,
+      velocities === undefined ? 0 : putFloats(core, velocities)));
+  }
+
+  remove(handles: Handles): void {
+    const { core } = this;
+    const world = this.address;
+    const count = countOfHandles(handles);
+    core.stage(8 * count);
+    core.check(core.exports.world_remove(world, putHandles(core, handles, count), count));
+  }
+
+  update(): Events<Float64Array> {
+    const { core } = this;
+    core.check(core.exports.world_update(this.address));
+    return { begun: handlesOf(core, 0, 1), ended: handlesOf(core, 1, 1) };
+  }
+
+  pairs(): Float64Array {
+    const { core } = this;
+    core.check(core.exports.world_pairs(this.address));
+    return handlesOf(core, 0, 1);
+  }
+
+  has(handle: Handle): boolean {
+    return this.core.exports.world_contains(this.address, checked(handle)) !== 0;
+  }
+
+  box(handle: Handle): Float32Array {
+    const { core } = this;
+    core.check(core.exports.world_box(this.address, checked(handle)));
+    return core.f32.slice(core.question, core.question + 2 * this.dimension);
+  }
+
+  slot(handle: Handle): number {
+    return checked(handle) % mostSlots;
+  }
+
+  setFilter(handle: Handle, filter: Filter): void {
+    const { core } = this;
+    const world = this.address;
+    core.stage(bytesOfFilter);
+    core.check(core.exports.world_set_filter(world, checked(handle), putFilter(core, filter)));
+  }
+
+  ignore(a: Handle, b: Handle): void {
+    this.core.check(this.core.exports.world_ignore(this.address, checked(a), checked(b), 1));
+  }
+
+  unignore(a: Handle, b: Handle): void {
+    this.core.check(this.core.exports.world_ignore(this.address, checked(a), checked(b), 0));
+  }
+}
+
+function checked(handle: unknown): number {
+  return typeof handle === "number" ? handle : refuse("a handle", handle, "a number that add() returned");
+}

@@ -1,0 +1,6 @@
+import type { LoadOptions, PairFinding } from "./types.js";
+
+export * from "./types.js";
+
+/** The smaller module: pairs, trackers and worlds, without queries. */
+export declare function load(options?: LoadOptions): Promise<PairFinding>;

@@ -1,0 +1,252 @@
+// The types that all entries of the package share.
+/// <reference lib="esnext.disposable" />
+
+/** Boxes of the plane or of space. */
+export type Dimension = 2 | 3;
+
+/** An algorithm, perhaps with tunables: `"auto"`, `"grid"`, `"grid:cell=2.5"`. */
+export type AlgorithmSpec =
+  | "auto" | "brute_force" | "grid" | "sweep_and_prune" | "quadtree" | "bvh" | (string & {});
+
+/**
+ * Boxes one behind the other, each its minima and then its maxima: `minX, minY, maxX, maxY` in 2D, six numbers in
+ * 3D. Numbers are rounded to floats. Boxes are closed: boxes that touch overlap. A box of `+Infinity` minima and
+ * `-Infinity` maxima is absent: there is none at its place.
+ */
+export type BoxArray = Float32Array | ArrayLike<number> | Boxes;
+
+/** Which overlapping boxes count as pairs: an array for each property, one element a box. */
+export interface Filters {
+  /** Bits: what the box is. 1 if left out. */
+  readonly category?: ArrayLike<number>;
+  /** Bits: the categories that it meets. All if left out. */
+  readonly mask?: ArrayLike<number>;
+  /** Two boxes of one group other than 0 meet whatever their bits if it is positive, and never if it is negative. */
+  readonly group?: ArrayLike<number>;
+  /** Two static boxes never meet. */
+  readonly isStatic?: ArrayLike<number | boolean>;
+}
+
+/** The filter of one box. */
+export interface Filter {
+  readonly category?: number;
+  readonly mask?: number;
+  readonly group?: number;
+  readonly isStatic?: boolean;
+}
+
+export interface CountOptions {
+  /** 2 if left out. */
+  readonly dimension?: Dimension;
+  /** `"auto"` if left out; of `broadside/pairs`, which has only `brute_force` and `grid`, the one for so many boxes. */
+  readonly algorithm?: AlgorithmSpec;
+  readonly filters?: Filters;
+}
+
+export interface PairsOptions extends CountOptions {
+  /** Whether pairs are sorted. Otherwise they have an order that the algorithm and the boxes fix. */
+  readonly sorted?: boolean;
+}
+
+export interface CountJoinOptions extends CountOptions {
+  readonly rightFilters?: Filters;
+}
+
+export interface JoinOptions extends CountJoinOptions, PairsOptions {}
+
+export interface TrackerOptions {
+  readonly dimension?: Dimension;
+  readonly algorithm?: AlgorithmSpec;
+}
+
+export interface WorldOptions extends TrackerOptions {
+  /** How far a box is enlarged on every side, so that small moves cost next to nothing. */
+  readonly margin?: number;
+  /** The same as a share of the box's longest side; the lesser counts where both are given. */
+  readonly relativeMargin?: number;
+  /** For how many frames ahead an enlarged box covers the way of its box, where `move` is given velocities. */
+  readonly predictedFrames?: number;
+  /** Which boxes make the pairs: the boxes themselves (`"exact"`), or the enlarged ones. */
+  readonly events?: "exact" | "enlarged";
+}
+
+/** An object whose memory is in the module. `free` gives it back; so does the garbage collector, but later. */
+export interface Freeable {
+  /** Afterwards the object can be freed again, and anything else throws. */
+  free(): void;
+  [Symbol.dispose](): void;
+}
+
+/** Boxes in the module's memory: searches take them without a copy. */
+export interface Boxes extends Freeable {
+  readonly dimension: Dimension;
+  /** How many boxes there are. */
+  readonly count: number;
+  /** The coordinates, to be read and written. Read it anew after other calls: they may move the module's memory. */
+  readonly data: Float32Array;
+}
+
+/** What one update brought, sorted: two numbers a pair. The arrays hold until the next update of the same object. */
+export interface Events<Numbers> {
+  readonly begun: Numbers;
+  readonly ended: Numbers;
+}
+
+/** Follows an array of boxes from frame to frame. */
+export interface Tracker extends Freeable {
+  readonly dimension: Dimension;
+  /**
+   * Takes the boxes of the next frame, and tells which pairs began and which ended, as places in the array.
+   *
+   * It compares the boxes with those of the frame before. If you know which ones differ, list them: a change that is
+   * not listed is not seen.
+   */
+  update(boxes: BoxArray, options?: TrackerUpdateOptions): Events<Uint32Array>;
+}
+
+export interface TrackerUpdateOptions {
+  readonly changed?: ArrayLike<number>;
+  readonly filters?: Filters;
+}
+
+/** A whole number that names one box of a world for ever, and can be the key of a `Map`. */
+export type Handle = number;
+
+/** One handle, or many. */
+export type Handles = Handle | ArrayLike<Handle>;
+
+/** Boxes that come, move and go under handles, and the pairs that begin and end. */
+export interface World extends Freeable {
+  readonly dimension: Dimension;
+  /** How many boxes there are. */
+  readonly size: number;
+  /** Adds boxes, and returns a handle for each. */
+  add(boxes: BoxArray, options?: { readonly filters?: Filters }): Float64Array;
+  /** Replaces boxes: all of them or, if one is wrong, none. */
+  move(handles: Handles, boxes: BoxArray, options?: { readonly velocities?: ArrayLike<number> }): void;
+  /** Takes boxes out. Their pairs end at the next update. */
+  remove(handles: Handles): void;
+  /** Brings the pairs up to date. Each pair is two handles. */
+  update(): Events<Float64Array>;
+  /** The pairs that hold since the last update, sorted, each as two handles. They hold until the next call. */
+  pairs(): Float64Array;
+  has(handle: Handle): boolean;
+  /** The box's coordinates. */
+  box(handle: Handle): Float32Array;
+  /** A small whole number, unlike that of any other box that is there: a place in arrays of your own. */
+  slot(handle: Handle): number;
+  setFilter(handle: Handle, filter: Filter): void;
+  /** Lets two boxes never count as a pair, as those that a joint connects. */
+  ignore(a: Handle, b: Handle): void;
+  /** Lets them count again. */
+  unignore(a: Handle, b: Handle): void;
+}
+
+export interface QueryOptions {
+  /** Only boxes that this filter accepts are found. */
+  readonly filter?: Filter;
+  /** The box that is not found, such as the one that a ray starts from: a place, or a world's handle. */
+  readonly except?: number;
+}
+
+export interface NearestOptions extends QueryOptions {
+  /** Boxes farther away are not found. */
+  readonly maxDistance?: number;
+}
+
+export interface RayOptions extends QueryOptions {
+  /** The ray ends at `origin + tMax * direction`. It does not end if left out. */
+  readonly tMax?: number;
+  /** Half the extent, on each axis, of a box that is moved instead of the point. */
+  readonly halfExtent?: ArrayLike<number>;
+}
+
+/** A box that a ray meets, at `origin + t * direction`. */
+export interface Hit {
+  readonly id: number;
+  readonly t: number;
+}
+
+/** Boxes by distance, the nearest first. */
+export interface Neighbours<Numbers> {
+  readonly ids: Numbers;
+  readonly distances: Float64Array;
+}
+
+/** Questions about boxes. What is found holds until the next question; its order means nothing unless it says so. */
+export interface Queries<Numbers> {
+  /** The boxes that overlap a box. For the boxes that contain a point, give it as minima and as maxima. */
+  overlapping(box: ArrayLike<number>, options?: QueryOptions): Numbers;
+  /** The `k` boxes nearest to a point. */
+  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Numbers>;
+  /** The box that a ray meets first. */
+  firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined;
+}
+
+/** An array of boxes to ask. */
+export interface Index extends Queries<Uint32Array>, Freeable {
+  readonly dimension: Dimension;
+  /** Takes other boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
+  update(boxes: BoxArray, options?: TrackerUpdateOptions): void;
+}
+
+/** A world to ask as well. */
+export interface QueriedWorld extends World, Queries<Float64Array> {}
+
+/** Pairs, trackers and worlds. */
+export interface PairFinding {
+  /**
+   * Every pair of overlapping boxes, once, as places in the array: `a0, b0, a1, b1, ...` with `a < b`. The array holds
+   * until the next call of `pairs` or `join`; `.slice()` keeps it.
+   */
+  pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array;
+  /** Every pair of a box of `left` and an overlapping one of `right`, likewise. */
+  join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array;
+  count(boxes: BoxArray, options?: CountOptions): number;
+  countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number;
+  /** Room for `count` boxes in the module's memory, absent until you set them. */
+  boxes(count: number, dimension?: Dimension): Boxes;
+  tracker(options?: TrackerOptions): Tracker;
+  world(options?: WorldOptions): World;
+  /** The names of the algorithms. */
+  algorithms(): string[];
+  readonly version: string;
+  /** Whether this is the build that uses SIMD. */
+  readonly simd: boolean;
+}
+
+/** Everything. */
+export interface Broadside extends PairFinding {
+  world(options?: WorldOptions): QueriedWorld;
+  /** An index of boxes, for queries. */
+  index(boxes: BoxArray, options?: { readonly dimension?: Dimension; readonly filters?: Filters }): Index;
+}
+
+/** What went wrong, as the library says it. Nothing has changed. */
+export declare class BroadsideError extends Error {
+  readonly name: "BroadsideError";
+  readonly code: BroadsideErrorCode;
+  /** Of `INVALID_INPUT`: the place of the first box at fault. */
+  readonly index: number | undefined;
+}
+
+export type BroadsideErrorCode =
+  /** A box with a NaN, or with min > max. */
+  | "INVALID_INPUT"
+  /** Arrays that do not fit together. */
+  | "INVALID_FRAME"
+  /** A question with a NaN, or with an infinity where there may be none. */
+  | "INVALID_QUERY"
+  /** An unknown algorithm, or a tunable out of its range. */
+  | "INVALID_SPEC"
+  /** A handle that names no box of this world. */
+  | "INVALID_HANDLE"
+  /** Another argument that cannot be. */
+  | "INVALID_ARGUMENT"
+  | "OUT_OF_MEMORY"
+  | "FAILED";
+
+export interface LoadOptions {
+  /** Whether to take the build that uses SIMD. If left out, it is taken wherever WebAssembly has SIMD. */
+  readonly simd?: boolean;
+}

@@ -1,0 +1,155 @@
+// What cannot be is refused by an error that names the thing, what was found and what was expected; afterwards
+// everything is as before.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { type BoxArray, BroadsideError, type Handle, load } from "broadside";
+import { load as loadExternal } from "broadside/external";
+import { load as loadPairs } from "broadside/pairs";
+
+import { at } from "./support.ts";
+
+const broadside = await load();
+const overlapping = [0, 0, 2, 2, 1, 1, 3, 3];
+
+/** The error that a call throws. */
+function errorOf(call: () => unknown): BroadsideError {
+  try {
+    call();
+  } catch (error) {
+    assert.ok(error instanceof BroadsideError && error instanceof Error, String(error));
+    assert.deepEqual([...broadside.pairs(overlapping)], [0, 1], "and then all is well");
+    return error;
+  }
+  return assert.fail("nothing was thrown");
+}
+
+test("invalid boxes are named, in the library's words", () => {
+  for (const count of [2, 100]) {
+    const boxes = new Float32Array(4 * count).fill(1);
+    boxes[4 * count - 3] = NaN;
+    const error = errorOf(() => broadside.pairs(boxes));
+    assert.equal(error.name, "BroadsideError");
+    assert.equal(error.code, "INVALID_INPUT");
+    assert.equal(error.index, count - 1);
+    assert.equal(error.message, `box ${count - 1} has min (1, nan) and max (1, 1); expected numbers with min <= max ` +
+      "on every axis, or the absent box (min = +inf, max = -inf)");
+  }
+  assert.equal(errorOf(() => broadside.pairs([2, 0, 1, 1])).index, 0);
+  assert.equal(errorOf(() => broadside.pairs([0, 0, 0, 0, 0, -1], { dimension: 3 })).code, "INVALID_INPUT");
+  assert.match(errorOf(() => broadside.join([0, 0, 1, 1], [0, NaN, 1, 1])).message, /^right box 0 has/);
+  assert.match(errorOf(() => broadside.pairs([0.1, 0, -1e-30, 1])).message,
+    /^box 0 has min \(0\.100000001, 0\) and max \(-1e-30, 1\);/);
+});
+
+test("specs", () => {
+  const error = errorOf(() => broadside.pairs(overlapping, { algorithm: "grit", sorted: true }));
+  assert.equal(error.code, "INVALID_SPEC");
+  assert.match(error.message, /^unknown algorithm 'grit' \(did you mean 'grid'\?\); expected one of: auto, /);
+  assert.equal(errorOf(() => broadside.pairs(overlapping, { algorithm: "grid:cell=-1", filters: {} })).message,
+    "grid: cell is '-1'; expected a number above 0, or auto");
+  assert.equal(errorOf(() => broadside.tracker({ algorithm: "" })).code, "INVALID_SPEC");
+  assert.equal(errorOf(() => broadside.world({ algorithm: "grid:sell=1" })).code, "INVALID_SPEC");
+});
+
+/** Calls that take what JavaScript's types do not keep out. */
+const wrong = (value: unknown) => value as BoxArray;
+
+test("arguments of the wrong kind", () => {
+  const cases: [() => unknown, string][] = [
+    [() => broadside.pairs([0, 0, 1]), "the length of boxes is 3; expected a multiple of 4"],
+    [() => broadside.pairs(new Float32Array(5)), "the length of boxes is 5; expected a multiple of 4"],
+    [() => broadside.pairs([0, 0, 1, 1], { dimension: 3 }), "the length of boxes is 4; expected a multiple of 6"],
+    [() => broadside.pairs(wrong(undefined)), "boxes is undefined; expected an array of numbers"],
+    [() => broadside.pairs(wrong("four")), "boxes is 'four'; expected an array of numbers"],
+    [() => broadside.pairs(wrong(null)), "boxes is null; expected an array of numbers"],
+    [() => broadside.pairs(wrong({})), "boxes is Object; expected an array of numbers"],
+    [() => broadside.pairs(wrong(new DataView(new ArrayBuffer(16)))),
+      "boxes is DataView; expected an array of numbers"],
+    [() => broadside.pairs([], { dimension: 4 as 3 }), "dimension is 4; expected 2 or 3"],
+    [() => broadside.pairs([], { algorithm: 3 as unknown as string }), "algorithm is 3; expected a text such as 'auto'"],
+    [() => broadside.pairs([], { sorted: 1 as unknown as boolean }), "sorted is 1; expected true or false"],
+    [() => broadside.pairs([], { sortd: true } as object),
+      "unknown option 'sortd'; expected some of: dimension, algorithm, filters, sorted"],
+    [() => broadside.count([], { sorted: true } as object),
+      "unknown option 'sorted'; expected some of: dimension, algorithm, filters"],
+    [() => broadside.pairs(overlapping, { filters: { category: [1] } }),
+      "the length of filters.category is 1; expected 2, one for each box"],
+    [() => broadside.pairs(overlapping, { filters: { kind: [1] } as object }),
+      "unknown option 'kind'; expected some of: category, mask, group, isStatic"],
+    [() => broadside.boxes(-1), "the number of boxes is -1; expected a whole number of at least 0"],
+    [() => broadside.boxes(1, 1 as 2), "dimension is 1; expected 2 or 3"],
+    [() => broadside.pairs(broadside.boxes(1, 3)), "the dimension of boxes is 3; expected 2"],
+    [() => broadside.world({ margin: "1" as unknown as number }), "margin is '1'; expected a number"],
+    [() => broadside.world({ margin: -1 }), "the margin of a world is -1; expected a finite number of at least 0"],
+    [() => broadside.world({ events: "some" as "exact" }), "events is 'some'; expected 'exact' or 'enlarged'"],
+    [() => broadside.world().add([0, 0, 1, 1], { userData: 1 } as object),
+      "unknown option 'userData'; expected some of: filters"],
+    [() => broadside.world().box("1" as unknown as Handle), "a handle is '1'; expected a number that add() returned"],
+  ];
+  for (const [call, message] of cases) {
+    const error = errorOf(call);
+    assert.equal(error.code, "INVALID_ARGUMENT", message);
+    assert.equal(error.message, message);
+  }
+});
+
+test("handles that name no box of this world", () => {
+  const world = broadside.world();
+  const other = broadside.world();
+  const handle = at(world.add(overlapping), 0);
+  const foreign = at(other.add(overlapping), 0);
+  world.update();
+  for (const invalid of [foreign, handle + 0.5, -1, NaN, Infinity, 2 ** 53, 0]) {
+    assert.equal(errorOf(() => world.move(invalid, [0, 0, 1, 1])).code, "INVALID_HANDLE", String(invalid));
+    assert.equal(errorOf(() => world.remove(invalid)).code, "INVALID_HANDLE");
+    assert.equal(errorOf(() => world.box(invalid)).code, "INVALID_HANDLE");
+    assert.equal(world.has(invalid), false);
+  }
+  assert.equal(errorOf(() => world.ignore(handle, handle)).code, "INVALID_ARGUMENT");
+  assert.deepEqual(world.update(), { begun: new Float64Array(0), ended: new Float64Array(0) });
+});
+
+test("a call that is refused has changed nothing", () => {
+  const world = broadside.world();
+  const handles = world.add(overlapping);
+  world.update();
+  assert.equal(errorOf(() => world.move(handles, [9, 9, 9, 9, 0, 0, NaN, 1])).index, 1);
+  assert.equal(errorOf(() => world.add([0, 0, 1, 1, 3, 0, 1, 1])).index, 1);
+  assert.equal(errorOf(() => world.move(handles, [0, 0, 1, 1])).message,
+    "the number of handles is 2; expected 1, one for each box");
+  assert.equal(errorOf(() => world.move(handles, overlapping, { velocities: [1] })).code, "INVALID_ARGUMENT");
+  assert.equal(world.size, 2);
+  assert.equal(world.update().begun.length + world.update().ended.length, 0);
+
+  const tracker = broadside.tracker();
+  tracker.update(overlapping);
+  assert.equal(errorOf(() => tracker.update([0, 0, 2, 2, 1, NaN, 3, 3])).code, "INVALID_INPUT");
+  assert.equal(errorOf(() => tracker.update(overlapping, { changed: [7] })).code, "INVALID_FRAME");
+  assert.deepEqual([...tracker.update([0, 0, 2, 2, 5, 5, 6, 6]).ended], [0, 1]);
+});
+
+test("objects that were freed", () => {
+  const objects = [broadside.boxes(1), broadside.tracker(), broadside.world(), broadside.index([])] as const;
+  for (const object of objects) {
+    object.free();
+    object.free();
+  }
+  const [boxes, tracker, world, index] = objects;
+  const freed = "an object was used after free(); expected one that is not freed";
+  for (const call of [() => boxes.data, () => broadside.pairs(boxes), () => tracker.update([]), () => world.update(),
+    () => world.add([]), () => world.size, () => index.overlapping([0, 0, 1, 1]), () => index.update([])])
+    assert.equal(errorOf(call).message, freed);
+});
+
+test("boxes of another module", async () => {
+  const boxes = (await load()).boxes(1);
+  assert.equal(errorOf(() => broadside.pairs(boxes)).code, "INVALID_ARGUMENT");
+});
+
+test("load() refuses options that do not apply", async () => {
+  await assert.rejects(load({ simd: "yes" as unknown as boolean }), { code: "INVALID_ARGUMENT" });
+  await assert.rejects(load({ fast: true } as object), { message: "unknown option 'fast'; expected some of: simd" });
+  await assert.rejects(loadPairs({ wasm: 1 } as object), { code: "INVALID_ARGUMENT" });
+  await assert.rejects(loadExternal({ wasm: 1 as unknown as URL }), { code: "INVALID_ARGUMENT" });
+});

@@ -1,0 +1,149 @@
+// The package as a visitor gets it: its size, its README's example, in a worker, packed and installed, and bundled.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { Worker } from "node:worker_threads";
+import { gzipSync } from "node:zlib";
+
+import { load } from "broadside";
+import { load as loadExternal, supportsSimd } from "broadside/external";
+
+/** The folders of the package and of the repository's web/: the Makefile says. */
+const packageFolder = process.env["BROADSIDE_PACKAGE"] as string;
+const web = process.env["BROADSIDE_WEB"] as string;
+
+const work = mkdtempSync(join(tmpdir(), "broadside-"));
+after(() => rmSync(work, { recursive: true, force: true }));
+
+const example = "import { load } from \"broadside\";\n" +
+  "const broadside = await load();\n" +
+  "console.log(broadside.simd, [...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6])].join());\n";
+
+/**
+ * What one visitor downloads: an entry, its module with SIMD inline. So that it does not grow unseen; the goals are 60,000
+ * and 40,000, which docs/javascript.md says are missed.
+ */
+const limits: readonly (readonly [string, number])[] = [["index.js", 215_000], ["pairs.js", 135_000]];
+
+for (const [file, most] of limits) {
+  test(`${file} is small enough`, () => {
+    const size = gzipSync(readFileSync(join(packageFolder, file)), { level: 9 }).length;
+    assert.ok(size <= most, `${file} has ${size} bytes, gzipped; expected at most ${most}`);
+  });
+}
+
+test("entries bring one module each", () => {
+  for (const file of ["index.js", "pairs.js"]) {
+    const text = readFileSync(join(packageFolder, file), "utf8");
+    assert.match(text, /import\("\.\/(pairs-)?scalar\.js"\)/, "the module without SIMD comes apart");
+    assert.doesNotMatch(text, /\beval\b|new Function/);
+  }
+  assert.ok(readFileSync(join(packageFolder, "external.js")).length < 40_000);
+});
+
+/** The README's examples, one after the other, as a program. */
+function examplesOf(readme: string): string {
+  const blocks = [...readme.matchAll(/```js\n([\s\S]*?)```/g)].map(([, code]) => code as string);
+  assert.ok(blocks.length > 0);
+  return blocks.join("\n");
+}
+
+test("the README's examples run", async () => {
+  const folder = join(work, "readme");
+  install(folder);
+  writeFileSync(join(folder, "readme.mjs"), examplesOf(readFileSync(join(packageFolder, "README.md"), "utf8")));
+  const printed = execFileSync(process.execPath, ["readme.mjs"], { cwd: folder, encoding: "utf8" });
+  assert.match(printed, /boxes 0 and 1 overlap/);
+});
+
+let packed: string | undefined;
+
+/** Installs the packed package in an empty project. */
+function install(folder: string): void {
+  packed ??= join(work, execFileSync("npm", ["pack", "--silent", "--pack-destination", work],
+    { cwd: packageFolder, encoding: "utf8" }).trim());
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, "package.json"), JSON.stringify({ type: "module" }));
+  execFileSync("npm", ["install", "--silent", "--offline", "--no-audit", "--no-fund", packed], { cwd: folder });
+}
+
+test("packed, installed in an empty project, and bundled", async () => {
+  const folder = join(work, "project");
+  install(folder);
+  writeFileSync(join(folder, "main.mjs"), example);
+  const run = (file: string) => execFileSync(process.execPath, [file], { cwd: folder, encoding: "utf8" });
+  assert.equal(run("main.mjs"), "true 0,1\n");
+  assert.deepEqual(readdirSync(join(folder, "node_modules")).filter((name) => !name.startsWith(".")), ["broadside"]);
+
+  const { build } = createRequire(join(web, "package.json"))("esbuild");
+  await build({
+    entryPoints: [join(folder, "main.mjs")], outdir: join(folder, "bundle"), outExtension: { ".js": ".mjs" },
+    bundle: true, format: "esm", splitting: true, logLevel: "warning",
+  });
+  assert.equal(run("bundle/main.mjs"), "true 0,1\n");
+});
+
+test("its types are those of a strict project", () => {
+  const folder = join(work, "types");
+  install(folder);
+  writeFileSync(join(folder, "main.ts"), `import { load, BroadsideError, type Handle } from "broadside";
+import { load as loadPairs } from "broadside/pairs";
+import { load as loadExternal } from "broadside/external";
+const broadside = await load();
+const pairs: Uint32Array = broadside.pairs(new Float32Array(4), { dimension: 2, algorithm: "grid:cell=2" });
+const handle: Handle | undefined = broadside.world().add([0, 0, 1, 1])[0];
+{ using tracker = broadside.tracker(); tracker.update(pairs); }
+// @ts-expect-error: this module has no queries
+(await loadPairs()).index([]);
+// @ts-expect-error: the bytes are missing
+await loadExternal();
+// @ts-expect-error: no such option
+broadside.pairs(pairs, { dimensions: 3 });
+if (handle === undefined) throw new BroadsideError();
+`.replace("throw new BroadsideError()", "throw new Error(BroadsideError.name)"));
+  const tsc = join(web, "node_modules/typescript/bin/tsc");
+  for (const resolution of [["--module", "nodenext"], ["--module", "esnext", "--moduleResolution", "bundler"]]) {
+    execFileSync(process.execPath, [tsc, "--noEmit", "--strict", "--exactOptionalPropertyTypes", "--target", "es2022",
+      "--lib", "es2022,dom,esnext.disposable", ...resolution, "main.ts"], { cwd: folder, stdio: "inherit" });
+  }
+});
+
+test("in a worker", async () => {
+  const code = `import { load } from ${JSON.stringify(pathToFileURL(join(packageFolder, "index.js")).href)};
+    import { parentPort } from "node:worker_threads";
+    const broadside = await load();
+    parentPort.postMessage(broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3]).slice());`;
+  const worker = new Worker(new URL(`data:text/javascript,${encodeURIComponent(code)}`));
+  const pairs = await new Promise((resolve, reject) => worker.once("message", resolve).once("error", reject));
+  assert.deepEqual(pairs, Uint32Array.of(0, 1));
+  await worker.terminate();
+});
+
+test("modules that the caller brings", async () => {
+  const path = join(packageFolder, "broadside.wasm");
+  assert.ok(existsSync(path) && supportsSimd());
+  const bytes = readFileSync(path);
+  const response = () => new Response(bytes, { headers: { "content-type": "application/wasm" } });
+  const wasms = [bytes, new Uint8Array(bytes).buffer, await WebAssembly.compile(bytes), response(),
+    Promise.resolve(response()), `data:application/wasm;base64,${bytes.toString("base64")}`];
+  for (const wasm of wasms) {
+    const broadside = await loadExternal({ wasm });
+    assert.deepEqual([...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3])], [0, 1]);
+  }
+  const scalar = await loadExternal({ wasm: readFileSync(join(packageFolder, "broadside-scalar.wasm")) });
+  assert.equal(scalar.simd, false);
+  await assert.rejects(loadExternal({ wasm: new Response("", { status: 404 }) }),
+    { message: "the response's status is 404; expected 200" });
+});
+
+test("modules are apart from each other", async () => {
+  const [one, other] = [await load(), await load()];
+  const pairs = one.pairs([0, 0, 2, 2, 1, 1, 3, 3], { filters: {} });
+  other.pairs([5, 5, 6, 6, 5, 5, 6, 6, 5, 5, 6, 6], { filters: {} });
+  assert.deepEqual([...pairs], [0, 1]);
+});

@@ -1,0 +1,129 @@
+// Pairs, of one set and of two, equal those of the definition.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { type Broadside, type Dimension, type Filters, load } from "broadside";
+import { load as loadPairs } from "broadside/pairs";
+
+import { joinByDefinition, pairsByDefinition, random, scenes } from "./support.ts";
+
+const dimensions = [2, 3] as const satisfies readonly Dimension[];
+const counts = [0, 1, 2, 3, 5, 8, 16, 19, 20, 21, 23, 24, 25, 33, 100, 1200];
+
+const builds = [
+  { name: "with SIMD", broadside: await load({ simd: true }) },
+  { name: "without SIMD", broadside: await load({ simd: false }) },
+  { name: "of pairs, with SIMD", broadside: await loadPairs({ simd: true }) },
+  { name: "of pairs, without SIMD", broadside: await loadPairs({ simd: false }) },
+];
+
+for (const { name, broadside } of builds) {
+  for (const scene of scenes) {
+    for (const dimension of dimensions) {
+      test(`${name}: the pairs of boxes ${scene.name}, ${dimension}D`, () => {
+        for (const count of counts) {
+          const boxes = scene.boxes(count, dimension, count + 1);
+          const expected = pairsByDefinition(boxes, dimension);
+          for (const algorithm of broadside.algorithms()) {
+            const found = broadside.pairs(boxes, { dimension, algorithm, sorted: true });
+            assert.deepEqual([...found], expected, `${count} boxes by ${algorithm}`);
+          }
+          assert.equal(broadside.count(boxes, { dimension }), expected.length / 2);
+        }
+      });
+    }
+  }
+}
+
+const broadside: Broadside = await load();
+
+test("each build says which it is", () => {
+  assert.deepEqual(builds.map((build) => build.broadside.simd), [true, false, true, false]);
+  assert.equal(broadside.simd, true);
+  assert.match(broadside.version, /^\d+\.\d+\.\d+$/);
+});
+
+test("the pairs of few boxes have the order of brute force, whether JavaScript or the module finds them", () => {
+  for (const dimension of dimensions) {
+    for (let count = 0; count <= 30; ++count) {
+      const boxes = (scenes[0] as (typeof scenes)[0]).boxes(count, dimension, 7).map((x) => x / 20);
+      const inJavaScript = [...broadside.pairs(boxes, { dimension })];
+      // No filters that say anything: but then the module is asked.
+      const inModule = [...broadside.pairs(boxes, { dimension, filters: {} })];
+      assert.deepEqual(inJavaScript, inModule, `${count} boxes`);
+    }
+  }
+});
+
+test("absent and infinite boxes", () => {
+  const absent = [Infinity, Infinity, -Infinity, -Infinity];
+  const all = [-Infinity, -Infinity, Infinity, Infinity];
+  const one = [0, 0, 1, 1];
+  for (const count of [1, 20]) {
+    const boxes = Array.from({ length: count }, () => [...absent, ...all, ...one]).flat();
+    assert.deepEqual([...broadside.pairs(boxes, { sorted: true })], pairsByDefinition(boxes, 2));
+  }
+});
+
+test("plain arrays, doubles and boxes in the module's memory", () => {
+  const boxes = [0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6];
+  assert.deepEqual([...broadside.pairs(boxes)], [0, 1]);
+  assert.deepEqual([...broadside.pairs(Float64Array.from(boxes))], [0, 1]);
+  const kept = broadside.boxes(3);
+  assert.deepEqual([...broadside.pairs(kept)], [], "boxes are absent at first");
+  kept.data.set(boxes);
+  assert.deepEqual([...broadside.pairs(kept)], [0, 1]);
+  assert.equal(broadside.count(kept), 1);
+  kept.free();
+});
+
+for (const dimension of dimensions) {
+  test(`two sets, ${dimension}D`, () => {
+    for (const scene of scenes) {
+      for (const [leftCount, rightCount] of [[0, 5], [3, 4], [40, 700]] as const) {
+        const left = scene.boxes(leftCount, dimension, 1);
+        const right = scene.boxes(rightCount, dimension, 2);
+        const expected = joinByDefinition(left, right, dimension);
+        const found = broadside.join(left, right, { dimension, sorted: true });
+        assert.deepEqual([...found], expected, scene.name);
+        assert.equal(broadside.countJoin(left, right, { dimension }), expected.length / 2);
+      }
+    }
+  });
+
+  test(`filters, ${dimension}D`, () => {
+    const rng = random(3);
+    for (const count of [2, 10, 300]) {
+      const boxes = (scenes[4] as (typeof scenes)[0]).boxes(count, dimension, count);
+      const of = (value: () => number) => Array.from({ length: count }, value);
+      const filters: Filters = {
+        category: Uint32Array.from(of(() => 1 << Math.floor(32 * rng()))),
+        mask: Uint32Array.from(of(() => 2 ** 32 * rng())),
+        group: Int32Array.from(of(() => Math.floor(5 * rng()) - 2)),
+        isStatic: of(() => Math.floor(2 * rng())),
+      };
+      const { category, mask, group, isStatic } = filters;
+      for (const some of [filters, { category, mask }, { group }, { isStatic }, {}] as Filters[]) {
+        const found = broadside.pairs(boxes, { dimension, filters: some, sorted: true });
+        assert.deepEqual([...found], pairsByDefinition(boxes, dimension, some));
+      }
+    }
+  });
+}
+
+test("the smaller module has two algorithms, and takes the one for so many boxes", async () => {
+  const small = await loadPairs();
+  assert.deepEqual(small.algorithms(), ["brute_force", "grid"]);
+  assert.throws(() => small.pairs([0, 0, 1, 1, 0, 0, 1, 1], { algorithm: "quadtree" }), { code: "INVALID_SPEC" });
+  const boxes = (scenes[0] as (typeof scenes)[0]).boxes(1000, 2, 1);
+  assert.deepEqual([...small.pairs(boxes)], [...small.pairs(boxes, { algorithm: "grid" })]);
+  assert.deepEqual([...small.pairs(boxes.subarray(0, 240))],
+    [...small.pairs(boxes.subarray(0, 240), { algorithm: "brute_force" })]);
+});
+
+test("tunables and former names are the library's", () => {
+  const boxes = (scenes[0] as (typeof scenes)[0]).boxes(400, 2, 1);
+  const expected = pairsByDefinition(boxes, 2);
+  for (const algorithm of ["grid:cell=2.5", "grid:cell=1e-3", "hierarchical_grid"])
+    assert.deepEqual([...broadside.pairs(boxes, { algorithm, sorted: true })], expected, algorithm);
+});
