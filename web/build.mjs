@@ -4,11 +4,15 @@
 //   node build.mjs --html FILE.html  the page itself, without a document
 //   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
 //   node build.mjs --paper FOLDER    the program that makes the paper, and its tests, to FOLDER/*.mjs
-import { mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+//   node build.mjs --playground FOLDER [ENGINE]  the playground, with the engine of build/playground/engine or another
+//   node build.mjs --playground-tests FOLDER     its tests, and in FOLDER/page the page that they open
+import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { build } from "esbuild";
+
+import { buildPlayground } from "./playground/build.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const paper = join(here, "../paper/web");
@@ -98,10 +102,28 @@ async function buildPrograms(entryPoints, outdir) {
     platform: "node",
     format: "esm",
     target: "node18",
+    loader: { ".wasm": "binary" },
+    jsx: "automatic",
+    jsxImportSource: "preact",
     nodePaths: [join(here, "node_modules")],  // for the files of paper/web
     external: ["playwright-core"],
     logLevel: "warning",
   });
+}
+
+/** The playground's tests; where its engine was not built, those of the page alone, with a naive engine in it. */
+async function buildPlaygroundTests(folder) {
+  const tests = testsIn(join(here, "playground/tests"));
+  const built = existsSync(join(here, "../build/playground/engine/observing.wasm"));
+  const reason = "skipped: the playground's engine is missing; make playground builds it";
+  const needy = built ? [] : tests.filter((path) => readFileSync(path, "utf8").includes("/engine/engine.ts"));
+  if (!built) console.log(`${reason}. The page is tested with a naive one.`);
+  await buildPrograms(tests.filter((path) => !needy.includes(path)), folder);
+  for (const path of needy) {
+    write(join(folder, basename(path).replace(".ts", ".mjs")),
+      `import { test } from "node:test";\ntest(${JSON.stringify(basename(path))}, { skip: ${JSON.stringify(reason)} }, () => {});\n`);
+  }
+  await buildPlayground(join(folder, "page"), built ? undefined : join(here, "playground/tests/naive_engine.ts"));
 }
 
 /** The tests in a folder. */
@@ -113,12 +135,14 @@ async function buildPaper(folder) {
   await buildPrograms([join(paper, "main.ts"), ...testsIn(join(paper, "tests"))], folder);
 }
 
-const [mode, path] = process.argv.slice(2);
+const [mode, path, engine] = process.argv.slice(2);
 if (mode === "--tests") await buildPrograms(testsIn(join(here, "tests")), path ?? join(here, "../build/web/tests"));
 else if (mode === "--paper" && path !== undefined) await buildPaper(path);
+else if (mode === "--playground" && path !== undefined) await buildPlayground(path, engine);
+else if (mode === "--playground-tests" && path !== undefined) await buildPlaygroundTests(path);
 else if (mode === "--page" && path !== undefined) await buildPage(path);
 else if (mode === "--html" && path !== undefined) write(path, (await page()).join("/*DOCUMENT*/"));
 else {
-  console.error(`build.mjs: '${process.argv.slice(2).join(" ")}'; expected --page FILE.cpp, --html FILE.html, --paper FOLDER or --tests [FOLDER]`);
+  console.error(`build.mjs: '${process.argv.slice(2).join(" ")}'; expected --page FILE.cpp, --html FILE.html, --paper FOLDER, --playground FOLDER [ENGINE], --playground-tests FOLDER or --tests [FOLDER]`);
   process.exitCode = 2;
 }

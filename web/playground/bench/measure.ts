@@ -1,0 +1,58 @@
+// Times: of searches against the number of boxes, and of `auto` against the library's other algorithms.
+import type { Engine } from "../engine/types.ts";
+import { fileScene, makeScene, type SceneChoice } from "../scene/catalogue.ts";
+import type { Dimension } from "../scene/scene.ts";
+import { refusal } from "./budget.ts";
+import type { Duel, Measured } from "./protocol.ts";
+import { timeOf } from "./times.ts";
+
+/** What a time may cost, in ms. */
+const budget = 25;
+
+function pause(): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, 0));
+}
+
+/** The time of each spec at each number of boxes, as each is known. */
+export async function* measure(engine: Engine, choice: SceneChoice, counts: readonly number[],
+                               specs: readonly string[]): AsyncGenerator<Measured> {
+  if (choice.name === fileScene) throw new Error("a file has the boxes that it has; choose another scene to measure");
+  const slow = new Set<string>();
+  for (const count of counts) {
+    const scene = makeScene({ ...choice, count });
+    const boxes = scene.at(0);
+    for (const spec of specs) {
+      if (slow.has(spec) || refusal(spec, count) !== undefined) continue;
+      const milliseconds = timeOf(engine, spec, boxes, scene.dimension, budget);
+      // The next number of boxes may take ten times as long.
+      if (milliseconds > 200) slow.add(spec);
+      yield { spec, count, milliseconds };
+      await pause();
+    }
+  }
+}
+
+/** `auto` and the others in the same rounds. */
+export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimension): Promise<Duel> {
+  const count = boxes.length / (2 * dimension);
+  const specs = engine.algorithms()
+    .filter(({ name, kind, dimensions }) => kind === "own" && name !== "auto" && dimensions.includes(dimension))
+    .map(({ name }) => name)
+    .filter((name) => refusal(name, count) === undefined);
+  const times = new Map<string, number>(["auto", ...specs].map((spec) => [spec, Infinity]));
+  const begin = performance.now();
+  const { explanation } = engine.find("auto", boxes, dimension);
+  for (let round = 0; round < 5; ++round) {
+    for (const spec of times.keys()) {
+      times.set(spec, Math.min(times.get(spec)!, timeOf(engine, spec, boxes, dimension, budget)));
+    }
+    await pause();
+    if (performance.now() - begin > 4000) break;
+  }
+  return {
+    auto: times.get("auto")!,
+    explanation,
+    others: specs.map((spec) => ({ spec, milliseconds: times.get(spec)! }))
+      .sort((a, b) => a.milliseconds - b.milliseconds),
+  };
+}

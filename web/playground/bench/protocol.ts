@@ -1,0 +1,114 @@
+// What the page and its bench say to each other. The bench has the engine; it runs in a worker where it can.
+import type { Algorithm, Outline, Statistics } from "../engine/types.ts";
+import type { SceneChoice } from "../scene/catalogue.ts";
+import type { Edit } from "../scene/edits.ts";
+import type { Recorded } from "../scene/frames.ts";
+import type { Bounds, Dimension } from "../scene/scene.ts";
+
+export interface PanelChoice {
+  spec: string;
+  /** Whether a tracker follows the boxes; else each frame is searched anew. */
+  follow: boolean;
+}
+
+/** What is shown, but for the time. */
+export interface Setup {
+  scene: SceneChoice;
+  edits: readonly Edit[];
+  panels: readonly PanelChoice[];
+  structure: boolean;
+  overlaps: boolean;
+  /** The box whose tests are wanted; -1: none. */
+  selected: number;
+}
+
+/** The first message to the bench: the engine's modules, packed as unpack.ts says. */
+export interface Start {
+  kind: "start";
+  engine: string;
+  observing: string;
+}
+
+export type Request =
+  | { kind: "setup"; setup: Setup }
+  | { kind: "file"; recorded: Recorded }
+  | { kind: "frame"; time: number; held: Edit | null }
+  | { kind: "measure"; counts: number[]; specs: string[] }
+  | { kind: "duel" };
+
+/** What a box is, as a number that the painter has a colour for. */
+export const Mark = { none: 0, lit: 1, tested: 2, testedLit: 3, selected: 4, faded: 5 } as const;
+
+/** Some boxes that were not compared with the selected one, and why. */
+export interface Untested {
+  why: string;
+  count: number;
+}
+
+/** What became of the selected box. */
+export interface Selection {
+  box: number;
+  tested: Uint32Array;
+  /** How many of the tested ones overlap it. */
+  hits: number;
+  untested: Untested[];
+  /** Of the whole observation: equal to the statistics' tests. */
+  tests: number;
+}
+
+export interface PanelResult {
+  spec: string;
+  pairs: number;
+  statistics: Statistics;
+  explanation: string;
+  milliseconds: number;
+  /** The tracker's memory; 0 where there is none. */
+  bytes: number;
+  begun: number;
+  ended: number;
+  outline?: Outline;
+  selection?: Selection;
+  /** Why no tests of the selected box are shown. */
+  unobserved?: string;
+  /** A mark for each box, where the panel has its own. */
+  marks?: Uint8Array<ArrayBuffer>;
+  /** Why it did not search. */
+  error?: string;
+  /** Its search takes long: these are an earlier frame's results. */
+  late: boolean;
+}
+
+export interface Shown {
+  time: number;
+  dimension: Dimension;
+  bounds: Bounds;
+  duration: number;
+  boxes: Float32Array<ArrayBuffer>;
+  present: number;
+  marks: Uint8Array<ArrayBuffer>;
+  /** [a0, b0, ...] of this frame. */
+  pairs: Uint32Array;
+  /** Where pairs overlap, as boxes. */
+  overlaps: Float32Array<ArrayBuffer>;
+  panels: PanelResult[];
+}
+
+export interface Measured {
+  spec: string;
+  count: number;
+  milliseconds: number;
+}
+
+export interface Duel {
+  auto: number;
+  explanation: string;
+  /** The library's other algorithms, fastest first. */
+  others: { spec: string; milliseconds: number }[];
+}
+
+export type Reply =
+  | { kind: "ready"; algorithms: Algorithm[] }
+  | { kind: "shown"; shown: Shown }
+  | { kind: "measured"; measured: Measured | null }
+  | { kind: "duel"; duel: Duel }
+  | { kind: "failed"; message: string; of: Request["kind"] | "start" };

@@ -1,0 +1,77 @@
+// What part of the world a panel shows, and where a pixel is in it.
+import { m4, v3 } from "twgl.js";
+
+import type { Bounds } from "../scene/scene.ts";
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+/** How the visitor looks at the boxes: the same in every panel. */
+export interface View {
+  zoom: number;
+  /** What is in the middle, as a share of the bounds' size from their middle. */
+  x: number;
+  y: number;
+  /** Of the camera in 3D, in radians. */
+  turn: number;
+  tilt: number;
+}
+
+export const standardView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
+
+/** A flat camera: pixels of a panel from coordinates by `x * scale + left` and `y * scale + top`; y grows downwards. */
+export interface Flat {
+  scale: number;
+  left: number;
+  top: number;
+}
+
+export function flatCamera(bounds: Bounds, size: Size, view: View): Flat {
+  const [x0, y0, x1, y1] = bounds as [number, number, number, number];
+  const [wide, high] = [x1 - x0 || 1, y1 - y0 || 1];
+  const scale = 0.96 * Math.min(size.width / wide, size.height / high) * view.zoom;
+  const [x, y] = [(x0 + x1) / 2 + view.x * wide, (y0 + y1) / 2 + view.y * high];
+  return { scale, left: size.width / 2 - x * scale, top: size.height / 2 - y * scale };
+}
+
+export function toWorld({ scale, left, top }: Flat, x: number, y: number): [number, number] {
+  return [(x - left) / scale, (y - top) / scale];
+}
+
+/** From coordinates to the clip space of a panel, as WebGL's matrix. */
+export function flatMatrix({ scale, left, top }: Flat, { width, height }: Size): m4.Mat4 {
+  const [x, y] = [2 * scale / width, 2 * scale / height];
+  return [x, 0, 0, 0, 0, -y, 0, 0, 0, 0, 0, 0, 2 * left / width - 1, 1 - 2 * top / height, 0, 1];
+}
+
+export function solidMatrix(bounds: Bounds, { width, height }: Size, view: View): m4.Mat4 {
+  const low = bounds.slice(0, 3);
+  const high = bounds.slice(3, 6);
+  const centre = low.map((one, axis) => (one + high[axis]!) / 2);
+  const radius = Math.hypot(...low.map((one, axis) => high[axis]! - one)) / 2 || 1;
+  const field = Math.PI / 5;
+  // The narrower side of the panel must hold the ball around the bounds.
+  const narrow = Math.min(1, width / height);
+  const away = radius / Math.sin(field / 2) / narrow / view.zoom * 0.8;
+  const eye = [
+    centre[0]! + away * Math.cos(view.tilt) * Math.sin(view.turn),
+    centre[1]! + away * Math.sin(view.tilt),
+    centre[2]! + away * Math.cos(view.tilt) * Math.cos(view.turn),
+  ];
+  const near = Math.max(away - 2 * radius, away / 100);
+  const projection = m4.perspective(field, width / height, near, away + 3 * radius);
+  const looking = m4.inverse(m4.lookAt(eye, centre, [0, 1, 0]));
+  return m4.multiply(projection, looking);
+}
+
+/** Where a pixel's ray begins, and which way it goes. */
+export function rayAt(matrix: m4.Mat4, { width, height }: Size, x: number, y: number):
+    { origin: number[]; direction: number[] } {
+  const back = m4.inverse(matrix);
+  const at = (depth: number): number[] =>
+    Array.from(m4.transformPoint(back, [2 * x / width - 1, 1 - 2 * y / height, depth]));
+  const [origin, far] = [at(-1), at(1)];
+  return { origin, direction: Array.from(v3.subtract(far, origin)) };
+}

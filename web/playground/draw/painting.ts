@@ -1,0 +1,72 @@
+// What a painter paints: the same for WebGL, for a plain canvas and for SVG.
+import type { Outline } from "../engine/types.ts";
+import type { Bounds, Dimension } from "../scene/scene.ts";
+import type { Palette } from "./colours.ts";
+import type { View } from "./camera.ts";
+
+/** A part of the picture, in pixels from its top left corner. */
+export interface Place {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+export interface PanelPainting {
+  place: Place;
+  outline: Outline | undefined;
+  /** A mark for each box, where the panel has its own. */
+  marks: Uint8Array | undefined;
+  /** The selected box and those that it was tested against. */
+  tests: { box: number; others: Uint32Array } | undefined;
+}
+
+export interface Painting {
+  dimension: Dimension;
+  bounds: Bounds;
+  boxes: Float32Array;
+  marks: Uint8Array;
+  overlaps: Float32Array;
+  panels: PanelPainting[];
+  view: View;
+  palette: Palette;
+}
+
+export interface Painter {
+  /** Sets the size of the picture, in CSS pixels and in those of the device for each. */
+  resize(width: number, height: number, ratio: number): void;
+  paint(painting: Painting): void;
+}
+
+/** How opaque overlaps are: less where many lie over each other, so that the boxes under them can be seen. */
+export function overlapStrength({ overlaps, bounds, dimension }: Painting): number {
+  const volume = (of: ArrayLike<number>, at: number): number => {
+    let product = 1;
+    for (let axis = 0; axis < dimension; ++axis) product *= of[at + dimension + axis]! - of[at + axis]!;
+    return product;
+  };
+  const world = volume(bounds, 0);
+  let sum = 0;
+  for (let at = 0; at < overlaps.length; at += 2 * dimension) sum += Math.min(world, volume(overlaps, at));
+  return (dimension === 2 ? 0.62 : 0.4) / Math.max(1, sum / (0.12 * world));
+}
+
+/** The most lines from a selected box to those that it was tested against. */
+export const mostTestLines = 3000;
+
+/** Lines between centres: two points each. */
+export function testLines(boxes: Float32Array, dimension: Dimension, box: number, others: Uint32Array):
+    Float32Array<ArrayBuffer> {
+  const stride = 2 * dimension;
+  const count = Math.min(mostTestLines, others.length);
+  const lines = new Float32Array(6 * count);
+  const centre = (of: number, axis: number): number =>
+    axis < dimension ? (boxes[stride * of + axis]! + boxes[stride * of + dimension + axis]!) / 2 : 0;
+  for (let line = 0; line < count; ++line) {
+    for (let axis = 0; axis < 3; ++axis) {
+      lines[6 * line + axis] = centre(box, axis);
+      lines[6 * line + 3 + axis] = centre(others[line]!, axis);
+    }
+  }
+  return lines;
+}

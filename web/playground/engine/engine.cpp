@@ -1,0 +1,352 @@
+// The library as the playground calls it: functions of numbers, texts and arrays, exported from a WebAssembly
+// module.
+//
+// A call takes its boxes from the module's input, which the page fills first, and leaves what it has found in
+// the module's answers, which hold until the next call. A call that fails returns 1, and its message is the
+// text.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/debug/outline.hpp"
+#include "broadside/error.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
+
+#include "core/number_text.hpp"
+#include "kernels/observed_tests.hpp"
+#include "lab/scenes/descriptions.hpp"
+#include "paper/listings/descriptions.hpp"
+
+namespace broadside::playground {
+namespace {
+
+/// Where the page puts what a call takes.
+struct Input {
+  std::vector<float> boxes;  // minima, then maxima
+  std::string text;
+};
+
+/// What the last call has found.
+struct Answers {
+  std::string text;
+  std::vector<Pair> pairs;       // of a search; those that an update's frame has begun
+  std::vector<Pair> more_pairs;  // the tests of a search that was observed; the pairs that ended
+  std::vector<float> boxes;      // of an outline or a scene
+  std::vector<double>
+      numbers;  // statistics and bytes; of an outline the swept axis and the sizes of its levels
+};
+
+Input input;
+Answers answers;
+
+template <int D>
+std::vector<Box<D>> boxes_of(std::size_t count) {
+  std::vector<Box<D>> boxes(count);
+  const float* from = input.boxes.data();
+  for (Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) box.min[axis] = *from++;
+    for (int axis = 0; axis < D; ++axis) box.max[axis] = *from++;
+  }
+  return boxes;
+}
+
+template <int D>
+void answer_boxes(std::span<const Box<D>> boxes) {
+  for (const Box<D>& box : boxes) {
+    answers.boxes.insert(answers.boxes.end(), box.min.begin(), box.min.end());
+    answers.boxes.insert(answers.boxes.end(), box.max.begin(), box.max.end());
+  }
+}
+
+void answer_statistics(const std::optional<Statistics>& counted) {
+  const Statistics statistics = counted.value_or(Statistics{});
+  for (const std::uint64_t number :
+       {statistics.tests, statistics.references, statistics.cells, statistics.hits})
+    answers.numbers.push_back(static_cast<double>(number));
+}
+
+std::string quoted(std::string_view text) {
+  std::string json = "\"";
+  for (const char character : text) {
+    if (character == '"' || character == '\\') json += '\\';
+    json += character == '\n' ? ' ' : character;
+  }
+  return json + '"';
+}
+
+/// Texts and their values as a JSON object; the values are JSON.
+std::string object(std::initializer_list<std::pair<const char*, std::string>> fields) {
+  std::string json;
+  for (const auto& [name, value] : fields) {
+    if (!value.empty()) json += (json.empty() ? "{" : ",") + quoted(name) + ":" + value;
+  }
+  return json + "}";
+}
+
+template <typename Items, typename ToJson>
+std::string array_of(const Items& items, ToJson to_json) {
+  std::string json = "[";
+  for (const auto& item : items) json += (json.size() == 1 ? "" : ",") + to_json(item);
+  return json + "]";
+}
+
+std::string to_json(const Tunable& tunable) {
+  const bool is_choice = tunable.type == Tunable::Type::choice;
+  constexpr std::array<const char*, 3> types = {"number", "integer", "choice"};
+  return object({{"name", quoted(tunable.name)},
+                 {"summary", quoted(tunable.summary)},
+                 {"standard", quoted(tunable.standard)},
+                 {"type", quoted(types[static_cast<std::size_t>(tunable.type)])},
+                 {"least", is_choice ? "" : core::text_of(tunable.least)},
+                 {"most", is_choice ? "" : core::text_of(tunable.most)},
+                 {"choices", is_choice ? array_of(tunable.choices, quoted) : ""}});
+}
+
+template <typename Described>
+std::string dimensions_of(const Described& described) {
+  std::vector<int> dimensions;
+  for (const int dimension : {2, 3}) {
+    if (described.has_dimension(dimension)) dimensions.push_back(dimension);
+  }
+  return array_of(dimensions, [](int dimension) { return std::to_string(dimension); });
+}
+
+std::string to_json(const Algorithm& algorithm) {
+  return object(
+      {{"name", quoted(algorithm.name)},
+       {"summary", quoted(algorithm.summary)},
+       {"source", quoted(algorithm.source)},
+       {"kind", quoted(name(algorithm.kind))},
+       {"dimensions", dimensions_of(algorithm)},
+       {"tracks", algorithm.tracker_2d || algorithm.tracker_3d ? "true" : "false"},
+       {"tunables", array_of(algorithm.tunables, [](const Tunable& each) { return to_json(each); })}});
+}
+
+/// The finders that were asked for, which keep their memory between calls, as a program's would.
+template <int D>
+PairFinder<D>& finder_of(const std::string& spec) {
+  constexpr std::size_t most_kept = 32;
+  static std::map<std::string, std::unique_ptr<PairFinder<D>>> finders;
+  auto found = finders.find(spec);
+  if (found == finders.end()) {
+    auto made = make_finder<D>(spec);
+    if (finders.size() == most_kept) finders.clear();
+    found = finders.emplace(spec, std::move(made)).first;
+  }
+  return *found->second;
+}
+
+template <int D>
+void find(std::size_t count) {
+  PairFinder<D>& finder = finder_of<D>(input.text);
+  const std::vector<Box<D>> boxes = boxes_of<D>(count);
+  kernels::observed_tests().clear();
+  PairCollector pairs(answers.pairs);
+  finder.find(boxes, pairs);
+  Statistics statistics = finder.statistics().value_or(Statistics{});
+  if constexpr (kernels::is_observing) {
+    answers.more_pairs.swap(kernels::observed_tests());
+    statistics.hits = 0;
+    for (const Pair test : answers.more_pairs)
+      statistics.hits += overlap(boxes[index(test.first)], boxes[index(test.second)]) ? 1 : 0;
+  }
+  answer_statistics(statistics);
+  answers.text = finder.explanation();
+}
+
+template <int D>
+void outline_of(std::size_t count) {
+  const Outline<D> laid_out = outline(finder_of<D>(input.text), boxes_of<D>(count));
+  answers.text = laid_out.kind + "\n" + laid_out.caption;
+  answers.numbers.push_back(laid_out.swept_axis);
+  for (const std::vector<Box<D>>& level : laid_out.levels) {
+    answers.numbers.push_back(static_cast<double>(level.size()));
+    answer_boxes<D>(level);
+  }
+}
+
+/// A tracker, and the frame that it took last.
+class Following {
+ public:
+  Following() = default;
+  Following(const Following&) = delete;
+  Following& operator=(const Following&) = delete;
+  virtual ~Following() = default;
+
+  /// Takes `count` boxes as the next frame.
+  virtual void update(std::size_t count) = 0;
+};
+
+template <int D>
+class FollowingIn final : public Following {
+ public:
+  explicit FollowingIn(const std::string& spec) : tracker_(make_tracker<D>(spec)) {}
+
+ private:
+  void update(std::size_t count) override {
+    std::vector<Box<D>> boxes = boxes_of<D>(count);
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < std::max(count, before_.size()); ++i) {
+      const bool is_in_both = i < count && i < before_.size();
+      if (!is_in_both || !(boxes[i] == before_[i])) changed.push_back(BoxId(i));
+    }
+    PairCollector begun(answers.pairs);
+    PairCollector ended(answers.more_pairs);
+    tracker_->update({boxes, changed}, begun, ended);
+    before_ = std::move(boxes);
+    answer_statistics(tracker_->statistics());
+    answers.numbers.push_back(static_cast<double>(tracker_->bytes()));
+    answers.text = tracker_->explanation();
+  }
+
+  std::unique_ptr<PairTracker<D>> tracker_;
+  std::vector<Box<D>> before_;
+};
+
+std::map<std::uint32_t, std::unique_ptr<Following>> trackers;
+std::uint32_t last_tracker = 0;
+
+/// The scenes of the lab that are made of a formula and stand still.
+const std::vector<lab::Scene>& scenes() {
+  namespace generated = lab::generated;
+  static const std::vector<lab::Scene> list = {
+      generated::uniform(),   generated::power_law(), generated::mixed(),   generated::clustered(),
+      generated::one_point(), generated::one_line(),  generated::lattice(), generated::integers(),
+      generated::thin(),      generated::terdiman()};
+  return list;
+}
+
+template <int D>
+void make_scene(std::size_t count, std::uint32_t seed) {
+  const Spec spec = Spec::parse(input.text);
+  std::string names;
+  for (const lab::Scene& scene : scenes()) {
+    names += (names.empty() ? "" : ", ") + scene.name;
+    if (scene.name != spec.name) continue;
+    const lab::MakeBoxes<D>* make = nullptr;
+    if constexpr (D == 2)
+      make = &scene.boxes_2d;
+    else
+      make = &scene.boxes_3d;
+    if (!*make)
+      throw InvalidSpec("scene '" + spec.name + "' does not exist in " + std::to_string(D) +
+                        "D; expected dimension " + std::to_string(5 - D));
+    return answer_boxes<D>((*make)(Settings(spec, scene.tunables), count, seed));
+  }
+  throw InvalidSpec("no scene '" + spec.name + "'; expected one of: " + names);
+}
+
+/// Does what an exported function is for, and answers what went wrong.
+template <typename Body>
+int answer(Body body) {
+  answers.text.clear();
+  answers.pairs.clear();
+  answers.more_pairs.clear();
+  answers.boxes.clear();
+  answers.numbers.clear();
+  try {
+    paper::register_listings();
+    body();
+    return 0;
+  } catch (const std::exception& error) {
+    answers.text = error.what();
+    return 1;
+  }
+}
+
+template <typename Body>
+int answer_in(int dimension, Body body) {
+  return answer([&] { dimension == 2 ? body.template operator()<2>() : body.template operator()<3>(); });
+}
+
+}  // namespace
+}  // namespace broadside::playground
+
+#define BROADSIDE_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
+
+using namespace broadside::playground;
+
+/// Room for `count` numbers of boxes, and for a text of `size` bytes.
+BROADSIDE_EXPORT(input_boxes)(std::uint32_t count)->float* {
+  input.boxes.resize(count);
+  return input.boxes.data();
+}
+BROADSIDE_EXPORT(input_text)(std::uint32_t size)->char* {
+  input.text.resize(size);
+  return input.text.data();
+}
+
+BROADSIDE_EXPORT(answer_text)()->const char* { return answers.text.c_str(); }
+BROADSIDE_EXPORT(answer_text_size)()->std::uint32_t { return answers.text.size(); }
+BROADSIDE_EXPORT(answer_pairs)()->const void* { return answers.pairs.data(); }
+BROADSIDE_EXPORT(answer_pair_count)()->std::uint32_t { return answers.pairs.size(); }
+BROADSIDE_EXPORT(answer_more_pairs)()->const void* { return answers.more_pairs.data(); }
+BROADSIDE_EXPORT(answer_more_pair_count)()->std::uint32_t { return answers.more_pairs.size(); }
+BROADSIDE_EXPORT(answer_boxes_begin)()->const float* { return answers.boxes.data(); }
+BROADSIDE_EXPORT(answer_boxes_size)()->std::uint32_t { return answers.boxes.size(); }
+BROADSIDE_EXPORT(answer_numbers)()->const double* { return answers.numbers.data(); }
+BROADSIDE_EXPORT(answer_number_count)()->std::uint32_t { return answers.numbers.size(); }
+
+BROADSIDE_EXPORT(list_algorithms)()->int {
+  return answer([] {
+    answers.text =
+        array_of(broadside::algorithms(), [](const broadside::Algorithm& each) { return to_json(each); });
+  });
+}
+
+/// The pairs of the input's `count` boxes, by the algorithm that the text specifies.
+BROADSIDE_EXPORT(find_pairs)(std::uint32_t count, int dimension)->int {
+  return answer_in(dimension, [&]<int D>() { find<D>(count); });
+}
+
+BROADSIDE_EXPORT(lay_out)(std::uint32_t count, int dimension)->int {
+  return answer_in(dimension, [&]<int D>() { outline_of<D>(count); });
+}
+
+/// A tracker by the algorithm that the text specifies; its number is the answer.
+BROADSIDE_EXPORT(start_tracker)(int dimension)->int {
+  return answer_in(dimension, [&]<int D>() {
+    trackers[++last_tracker] = std::make_unique<FollowingIn<D>>(input.text);
+    answers.numbers.push_back(last_tracker);
+  });
+}
+
+BROADSIDE_EXPORT(update_tracker)(std::uint32_t tracker, std::uint32_t count)->int {
+  return answer([&] {
+    const auto found = trackers.find(tracker);
+    if (found == trackers.end())
+      throw broadside::InvalidHandle("tracker " + std::to_string(tracker) +
+                                     " was freed; expected one that was not");
+    found->second->update(count);
+  });
+}
+
+BROADSIDE_EXPORT(free_tracker)(std::uint32_t tracker)->void { trackers.erase(tracker); }
+
+BROADSIDE_EXPORT(list_scenes)()->int {
+  return answer([] {
+    answers.text = array_of(scenes(), [](const broadside::lab::Scene& scene) {
+      return object({{"name", quoted(scene.name)},
+                     {"summary", quoted(scene.summary)},
+                     {"dimensions", dimensions_of(scene)}});
+    });
+  });
+}
+
+BROADSIDE_EXPORT(make_boxes)(std::uint32_t count, std::uint32_t seed, int dimension)->int {
+  return answer_in(dimension, [&]<int D>() { make_scene<D>(count, seed); });
+}

@@ -1,0 +1,111 @@
+// The library in a page or in Node: two modules of WebAssembly, one as users have it and one that writes its tests down.
+import engineBytes from "../../../build/playground/engine/engine.wasm";
+import observingBytes from "../../../build/playground/engine/observing.wasm";
+
+import { EngineModule } from "./module.ts";
+import type { Algorithm, Engine, Frame, Observation, Outline, Scene, Search, Statistics, Tracker } from "./types.ts";
+
+export type { Engine } from "./types.ts";
+
+/** The two modules, as their files have them. */
+export interface EngineBytes {
+  engine: BufferSource;
+  observing: BufferSource;
+}
+
+/** Makes an engine, without a request: the bytes are in the bundle unless they are given. */
+export async function loadEngine(bytes: EngineBytes = { engine: engineBytes, observing: observingBytes }):
+    Promise<Engine> {
+  const [plain, observing] = await Promise.all([EngineModule.load(bytes.engine), EngineModule.load(bytes.observing)]);
+  return new LoadedEngine(plain, observing);
+}
+
+function statisticsOf([tests = 0, references = 0, cells = 0, hits = 0]: number[]): Statistics {
+  return { tests, references, cells, hits };
+}
+
+function search(module: EngineModule, spec: string, boxes: Float32Array, dimension: 2 | 3): Search {
+  module.putText(spec);
+  const count = module.putBoxes(boxes, dimension);
+  const milliseconds = module.call((exports) => exports.find_pairs(count, dimension));
+  return {
+    pairs: module.pairs(),
+    statistics: statisticsOf(module.numbers()),
+    explanation: module.text(),
+    milliseconds,
+  };
+}
+
+class LoadedEngine implements Engine {
+  readonly #plain: EngineModule;
+  readonly #observing: EngineModule;
+
+  constructor(plain: EngineModule, observing: EngineModule) {
+    this.#plain = plain;
+    this.#observing = observing;
+  }
+
+  algorithms(): Algorithm[] {
+    this.#plain.call((exports) => exports.list_algorithms());
+    return JSON.parse(this.#plain.text()) as Algorithm[];
+  }
+
+  find(spec: string, boxes: Float32Array, dimension: 2 | 3): Search {
+    return search(this.#plain, spec, boxes, dimension);
+  }
+
+  observe(spec: string, boxes: Float32Array, dimension: 2 | 3): Observation {
+    return { ...search(this.#observing, spec, boxes, dimension), tests: this.#observing.morePairs() };
+  }
+
+  outline(spec: string, boxes: Float32Array, dimension: 2 | 3): Outline {
+    this.#plain.putText(spec);
+    const count = this.#plain.putBoxes(boxes, dimension);
+    this.#plain.call((exports) => exports.lay_out(count, dimension));
+    const [kind = "", caption = ""] = this.#plain.text().split("\n");
+    const [sweptAxis = -1, ...sizes] = this.#plain.numbers();
+    const all = this.#plain.boxes();
+    let begin = 0;
+    const levels = sizes.map((size) => all.slice(begin, begin += 2 * dimension * size));
+    return { kind, caption, sweptAxis, levels };
+  }
+
+  tracker(spec: string, dimension: 2 | 3): Tracker {
+    const module = this.#plain;
+    module.putText(spec);
+    module.call((exports) => exports.start_tracker(dimension));
+    const tracker = module.numbers()[0]!;
+    return {
+      update(boxes: Float32Array): Frame {
+        const count = module.putBoxes(boxes, dimension);
+        const milliseconds = module.call((exports) => exports.update_tracker(tracker, count));
+        const [bytes = 0, ...statistics] = module.numbers().reverse();
+        return {
+          begun: module.pairs(),
+          ended: module.morePairs(),
+          statistics: statisticsOf(statistics.reverse()),
+          milliseconds,
+          bytes,
+        };
+      },
+      free: () => module.freeTracker(tracker),
+    };
+  }
+
+  advise(boxes: Float32Array, dimension: 2 | 3): string {
+    return this.find("auto", boxes, dimension).explanation;
+  }
+
+  scenes(): Scene[] {
+    this.#plain.call((exports) => exports.list_scenes());
+    const scenes = JSON.parse(this.#plain.text()) as { name: string; summary: string; dimensions: number[] }[];
+    return scenes.flatMap(({ name, summary, dimensions }) =>
+      dimensions.map((dimension) => ({ name, summary, dimension })));
+  }
+
+  scene(spec: string, count: number, seed: number, dimension: 2 | 3 = 2): Float32Array<ArrayBuffer> {
+    this.#plain.putText(spec);
+    this.#plain.call((exports) => exports.make_boxes(count, seed, dimension));
+    return this.#plain.boxes();
+  }
+}

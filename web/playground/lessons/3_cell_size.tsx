@@ -1,0 +1,46 @@
+import { nameOf } from "../state/spec.ts";
+import { grouped } from "../ui/numbers.ts";
+import { panels, scene, type Lesson } from "./lesson.ts";
+
+/** Tests and references together; the best cells need some 1,600. */
+const most = 1800;
+
+export const cellSize: Lesson = {
+  title: "The cell-size cliff",
+  start: { scene: scene("drift", 500), panels: panels("paper_grid:cell=60") },
+  tries: [
+    { label: "Large cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=60") } },
+    { label: "Tiny cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=0.6") } },
+    { label: "Sizes that differ", state: {
+      scene: scene("drift", 500, { ratio: 100 }), panels: panels("paper_grid:cell=5", "grid") } },
+  ],
+  text: (
+    <>
+      <p>A <b>grid</b> puts each box into every cell that it touches, and compares only boxes of the same cell. Large
+        cells hold many boxes, so there are many <b>tests</b>. In tiny cells there are few tests, but a box is in many of
+        them, and each entry, a <b>reference</b>, costs memory and time. Somewhere between is the best size, and on both
+        sides it gets steep.</p>
+      <p>A pair that shares several cells would be found in each. It is reported in one alone: the cell that holds the
+        greater of the two minima on each axis, the <b>reference point</b>.</p>
+      <p>Where sizes differ much, no cell suits all. The library's <code>grid</code> therefore keeps a box in one place,
+        and cuts one axis only: long rows, each swept.</p>
+    </>
+  ),
+  exercise: {
+    task: <p>Move the slider <b>cell</b> until tests and references of <code>paper_grid</code> add up to less than{" "}
+      {grouped(most)} for these 500 boxes.</p>,
+    hint: <p>Take cells about twice as wide as a usual box, and look at both counts while you drag.</p>,
+    check({ shown, state }) {
+      const panel = shown.panels.find(({ spec }) => nameOf(spec) === "paper_grid");
+      if (panel === undefined) return { done: false, text: "Keep paper_grid in a panel." };
+      const { scene: { name, count, knobs } } = state;
+      if (name !== "drift" || count < 500 || knobs.ratio !== 3 || !panel.spec.includes("cell="))
+        return { done: false, text: "This is about the 500 boxes that the lesson begins with, and a cell that you set." };
+      const { tests, references } = panel.statistics;
+      return {
+        done: panel.error === undefined && tests + references < most,
+        text: `${grouped(tests)} tests and ${grouped(references)} references: ${grouped(tests + references)}.`,
+      };
+    },
+  },
+};

@@ -1,0 +1,43 @@
+import { grouped } from "../ui/numbers.ts";
+import { scene, type Lesson } from "./lesson.ts";
+
+const both = [{ spec: "grid", follow: false }, { spec: "grid", follow: true }];
+
+export const coherence: Lesson = {
+  title: "What coherence buys",
+  start: { scene: scene("drift", 1000, { moving: 1 }), panels: both, panel: 1 },
+  tries: [
+    { label: "All move", state: { scene: scene("drift", 1000, { moving: 1 }), panels: both } },
+    { label: "One in five moves", state: { scene: scene("drift", 1000, { moving: 0.2 }), panels: both } },
+    { label: "None moves", state: { scene: scene("drift", 1000, { moving: 0 }), panels: both } },
+  ],
+  text: (
+    <>
+      <p>From one frame to the next little changes: that is <b>coherence</b>. A search starts from nothing each time. A{" "}
+        <b>tracker</b> keeps its structure, moves the boxes that moved, and tells which pairs <b>began</b> and which{" "}
+        <b>ended</b>. Boxes at rest cost it nothing.</p>
+      <p>Following a box costs more than looking at it once in a search. So it pays while few boxes move; where nearly all
+        do, searching anew is as good or better. The library's trackers choose between the two by themselves, unless{" "}
+        <code>update</code> says which.</p>
+    </>
+  ),
+  exercise: {
+    task: <p>Both panels show the same boxes; the second one follows. Change how the boxes move, but keep <b>some moving</b>,
+      until following makes <b>less than half</b> of the search's tests.</p>,
+    hint: <p>The slider is “Share that moves”. A follower compares each mover with many boxes near it, so few may move.</p>,
+    check({ shown, state }) {
+      const searching = shown.panels.find((_, at) => state.panels[at]?.follow === false);
+      const following = shown.panels.find((_, at) => state.panels[at]?.follow === true);
+      if (searching === undefined || following === undefined)
+        return { done: false, text: "Keep a panel that searches and one that follows." };
+      const { name, count, knobs } = state.scene;
+      if (name !== "drift" || count < 1000 || knobs.moving < 0.01 || knobs.speed < 0.1 || !state.playing)
+        return { done: false, text: "Keep 1,000 drifting boxes, some of them moving." };
+      const [a, b] = [searching.statistics.tests, following.statistics.tests];
+      return {
+        done: a > 0 && b < a / 2 && searching.pairs === following.pairs,
+        text: `The search makes ${grouped(a)} tests a frame, following ${grouped(b)}.`,
+      };
+    },
+  },
+};

@@ -1,0 +1,59 @@
+import { signal } from "@preact/signals";
+
+import { duration } from "../ui/numbers.ts";
+import { panels, scene, type Lesson } from "./lesson.ts";
+
+const cases = [
+  { name: "a crowd of 60", scene: scene("drift", 60, { ratio: 2 }) },
+  { name: "a street of 5,000", scene: scene("street", 5000) },
+  { name: "20,000 spread evenly", scene: scene("drift", 20_000, { moving: 0 }) },
+] as const;
+
+/** Choices that were good enough, by the case's name. */
+const solved = signal<ReadonlySet<string>>(new Set());
+
+/** As many times as long as the fastest is good enough. */
+const enough = 1.5;
+
+export const choosing: Lesson = {
+  title: "How to choose",
+  start: { scene: cases[0].scene, panels: panels("quadtree"), structure: true },
+  tries: cases.map(({ name, scene: one }) => ({ label: name, state: { scene: one, panels: panels("quadtree") } })),
+  text: (
+    <>
+      <p>No algorithm suits all boxes. How many are there? Are they spread evenly, along a line, or in clusters? Do sizes
+        differ? How many move? The answers decide:</p>
+      <ul>
+        <li>fewer than some hundred: <code>brute_force</code>, there is nothing to build;</li>
+        <li>along a line: <code>sweep_and_prune</code>, one sorted sweep does it all;</li>
+        <li>many, spread over the plane or space: <code>grid</code>;</li>
+        <li>clusters, crowds, surfaces: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
+        <li>few tests whatever the boxes: <code>quadtree</code>;</li>
+        <li>you do not know: <code>auto</code>, which takes a sample and decides so for you;</li>
+        <li>it is important: measure, with your own boxes.</li>
+      </ul>
+    </>
+  ),
+  exercise: {
+    task: <p>For each of the three cases, choose an algorithm in the panel (not <code>auto</code>), then press <b>Race</b>{" "}
+      under “Make auto lose”. It has to take less than {enough} times as long as the fastest.</p>,
+    hint: <p>The list above has a line for each of the three.</p>,
+    check({ state, duel }) {
+      const now = cases.find((one) => one.scene.name === state.scene.name && one.scene.count === state.scene.count);
+      const spec = state.panels[0]?.spec ?? "";
+      const mine = duel?.others.find((one) => one.spec === spec);
+      const best = duel?.others[0];
+      let text = now === undefined ? "Show one of the three cases." : `Choose for ${now.name}, and race.`;
+      if (now !== undefined && mine !== undefined && best !== undefined) {
+        const good = mine.milliseconds <= enough * best.milliseconds;
+        text = `${spec} took ${duration(mine.milliseconds)}, the fastest, ${best.spec}, ${duration(best.milliseconds)}.`;
+        if (good && !solved.value.has(now.name)) solved.value = new Set([...solved.value, now.name]);
+      }
+      const left = cases.filter(({ name }) => !solved.value.has(name));
+      return {
+        done: left.length === 0,
+        text: `${text} ${left.length === 0 ? "All three are done." : `Left: ${left.map(({ name }) => name).join(", ")}.`}`,
+      };
+    },
+  },
+};

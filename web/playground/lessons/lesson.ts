@@ -1,0 +1,49 @@
+// A lesson: some text, boxes to look at, and an exercise that checks itself.
+import type { ComponentChildren } from "preact";
+
+import type { Duel, PanelChoice, Shown } from "../bench/protocol.ts";
+import { standardKnobs, type Knobs } from "../scene/drift.ts";
+import type { SceneChoice } from "../scene/catalogue.ts";
+import type { State } from "../state/state.ts";
+
+/** What an exercise is judged by. */
+export interface Facts {
+  state: State;
+  shown: Shown;
+  duel: Duel | null;
+}
+
+export interface Verdict {
+  done: boolean;
+  /** How things stand, as a sentence. */
+  text: string;
+}
+
+export interface Exercise {
+  task: ComponentChildren;
+  hint: ComponentChildren;
+  check(facts: Facts): Verdict;
+}
+
+/** A button in the text that shows something. */
+export interface Try {
+  label: string;
+  state: Partial<State>;
+}
+
+export interface Lesson {
+  title: string;
+  text: ComponentChildren;
+  tries: readonly Try[];
+  /** What the lesson begins with. */
+  start: Partial<State>;
+  exercise: Exercise;
+}
+
+export function scene(name: string, count: number, knobs: Partial<Knobs> = {}): SceneChoice {
+  return { name, count, seed: 1, knobs: { ...standardKnobs, ...knobs } };
+}
+
+export function panels(...specs: readonly string[]): PanelChoice[] {
+  return specs.map((spec) => ({ spec, follow: false }));
+}

@@ -1,0 +1,69 @@
+// The page's script: the state of its address, the bench, the loop and the interface.
+import { render } from "preact";
+
+import { startBench } from "./bench/client.ts";
+import { sceneEntry } from "./scene/catalogue.ts";
+import { setClient } from "./state/client.ts";
+import { firstFrame, frames, Loop, scriptTimes } from "./state/loop.ts";
+import { clock, latest, patch, problem, shown, state } from "./state/store.ts";
+import { readState, writeState } from "./state/url.ts";
+import { App } from "./ui/app.tsx";
+import { keepAddress } from "./ui/address.ts";
+import { acceptDrops } from "./ui/drop.ts";
+import { openLesson } from "./ui/lesson_view.tsx";
+import { Stage } from "./ui/stage.ts";
+
+function takeAddress(): void {
+  const read = readState(location.search, location.hash);
+  const known = read.state.scene.name === "file" || sceneEntry(read.state.scene.name) !== undefined;
+  state.value = read.state;
+  clock.value = latest.value = read.time;
+  problem.value = "";
+  // A link to a lesson shows what the lesson begins with, unless it says what else.
+  if (read.state.mode === "lesson" && !/[?#&](scene|a|n)=/.test(location.search + location.hash)) openLesson(read.state.lesson);
+  if (!known) {
+    problem.value = `The link names a scene "${read.state.scene.name}" that there is not. Drifting boxes are shown instead.`;
+    patch({ scene: { ...read.state.scene, name: "drift" } });
+  }
+}
+
+takeAddress();
+// A link followed within the page; the page's own changes of its address say nothing.
+window.addEventListener("hashchange", takeAddress);
+
+let loop: Loop | undefined;
+const client = startBench((reply) => loop?.receive(reply));
+setClient(client);
+const stage = new Stage();
+loop = new Loop(client, () => stage.paint());
+stage.onChange = () => loop?.repaint();
+acceptDrops();
+keepAddress();
+if (state.value.embed) document.documentElement.dataset["embed"] = "";
+
+const root = document.getElementById("app")!;
+root.replaceChildren();
+render(<App stage={stage} />, root);
+
+/** For those who look into the page: tests, and pages that embed this one. */
+const face = {
+  get state() { return state.value; },
+  get shown() { return shown.value; },
+  get firstFrame() { return firstFrame; },
+  get inPage() { return client.inPage; },
+  /** How many frames the bench has shown, and whether one is under way or due. */
+  get frames() { return frames; },
+  get busy() { return loop?.busy ?? true; },
+  /** Where the middle of a box is in the first panel, in pixels of the page. */
+  where: (box: number) => stage.where(box),
+  address: () => writeState(state.value, clock.value),
+  scriptTimes,
+};
+
+declare global {
+  interface Window {
+    playground: typeof face;
+  }
+}
+
+window.playground = face;

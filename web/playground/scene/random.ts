@@ -1,0 +1,16 @@
+// Random numbers that a seed and a place fix, so that box 7 is the same box however many there are.
+
+/** A number of [0, 1) for a seed, a box and what it is for. */
+export function randomAt(seed: number, box: number, purpose: number): number {
+  let bits = Math.imul(seed ^ 0x9e3779b9, 0x85ebca6b) ^ Math.imul(box + 1, 0xc2b2ae35);
+  bits ^= Math.imul(purpose + 1, 0x27d4eb2f);
+  bits = Math.imul(bits ^ (bits >>> 16), 0x7feb352d);
+  bits = Math.imul(bits ^ (bits >>> 15), 0x846ca68b);
+  return ((bits ^ (bits >>> 16)) >>> 0) / 2 ** 32;
+}
+
+/** A number of the standard normal distribution (Box and Muller). */
+export function normalAt(seed: number, box: number, purpose: number): number {
+  const radius = Math.sqrt(-2 * Math.log(1 - randomAt(seed, box, purpose)));
+  return radius * Math.cos(2 * Math.PI * randomAt(seed, box, purpose + 1));
+}

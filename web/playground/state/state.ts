@@ -1,0 +1,46 @@
+// The state of the page: all that a link holds.
+import { standardKnobs } from "../scene/drift.ts";
+import type { Edit } from "../scene/edits.ts";
+import type { PanelChoice } from "../bench/protocol.ts";
+import type { SceneChoice } from "../scene/catalogue.ts";
+import type { StepAlgorithm } from "../engine/types.ts";
+
+export type Mode = "play" | "steps" | "lesson";
+
+export interface State {
+  mode: Mode;
+  scene: SceneChoice;
+  edits: readonly Edit[];
+  panels: readonly PanelChoice[];
+  /** Which panel's counts the sliders and the line to copy are about. */
+  panel: number;
+  structure: boolean;
+  overlaps: boolean;
+  selected: number;
+  playing: boolean;
+  /** Seconds of the scene in a second. */
+  pace: number;
+  /** The lesson, from 0. */
+  lesson: number;
+  steps: { algorithm: StepAlgorithm; at: number; count: number; cell: number; capacity: number };
+  embed: boolean;
+}
+
+export const mostPanels = 4;
+export const mostBoxes = 100_000;
+
+export const standardState: State = {
+  mode: "play",
+  scene: { name: "drift", count: 300, seed: 1, knobs: standardKnobs },
+  edits: [],
+  panels: [{ spec: "grid", follow: false }],
+  panel: 0,
+  structure: true,
+  overlaps: true,
+  selected: -1,
+  playing: true,
+  pace: 1,
+  lesson: 0,
+  steps: { algorithm: "grid", at: 0, count: 12, cell: 0, capacity: 3 },
+  embed: false,
+};

@@ -1,0 +1,132 @@
+// The state as the part of an address behind "#", and back. Only what differs from the standard is written.
+import { standardKnobs, type Knobs } from "../scene/drift.ts";
+import type { Edit } from "../scene/edits.ts";
+import type { PanelChoice } from "../bench/protocol.ts";
+import { mostBoxes, mostPanels, standardState, type Mode, type State } from "./state.ts";
+
+/** Four significant digits are finer than a pixel. */
+function short(value: number): string {
+  return String(Number(value.toPrecision(5)));
+}
+
+const editNumbers = ["box", "time", "x", "y", "width", "height", "vx", "vy"] as const;
+
+function writeEdits(edits: readonly Edit[]): string {
+  return edits.map((edit) => editNumbers.map((name) => short(edit[name])).join("_")).join("~");
+}
+
+function readEdits(text: string): Edit[] {
+  return text.split("~").flatMap((one) => {
+    const numbers = one.split("_").map(Number);
+    if (numbers.length !== editNumbers.length || !numbers.every(Number.isFinite)) return [];
+    const edit = Object.fromEntries(editNumbers.map((name, at) => [name, numbers[at]])) as unknown as Edit;
+    return Number.isInteger(edit.box) && edit.box >= 0 && edit.box < 2 * mostBoxes ? [edit] : [];
+  });
+}
+
+function writePanels(panels: readonly PanelChoice[]): string {
+  return panels.map(({ spec, follow }) => (follow ? "follow " : "") + spec).join(";");
+}
+
+function readPanels(text: string): PanelChoice[] {
+  return text.split(";").filter((one) => one !== "").slice(0, mostPanels).map((one) => {
+    const follow = one.startsWith("follow ");
+    return { follow, spec: follow ? one.slice("follow ".length) : one };
+  });
+}
+
+/** A number of a range, else the standard one. */
+function numberOf(text: string | null, standard: number, least: number, most: number): number {
+  const value = text === null || text.trim() === "" ? NaN : Number(text);
+  return Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : standard;
+}
+
+const knobNames: Record<keyof Knobs, [least: number, most: number]> = {
+  ratio: [1, 1000], clustering: [0, 1], moving: [0, 1], speed: [0, 10],
+};
+
+/** The state at a time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
+export function writeState(state: State, time: number): string {
+  const query = new URLSearchParams();
+  const put = (name: string, value: string, standard: string): void => {
+    if (value !== standard) query.set(name, value);
+  };
+  const { scene, steps } = state;
+  const usual = standardState;
+  put("mode", state.mode, usual.mode);
+  if (state.mode === "lesson") query.set("lesson", String(state.lesson + 1));
+  put("scene", scene.name, usual.scene.name);
+  put("n", String(scene.count), String(usual.scene.count));
+  put("seed", String(scene.seed), String(usual.scene.seed));
+  for (const name of Object.keys(knobNames) as (keyof Knobs)[])
+    put(name, short(scene.knobs[name]), short(standardKnobs[name]));
+  put("a", writePanels(state.panels), writePanels(usual.panels));
+  put("panel", String(state.panel), "0");
+  put("structure", state.structure ? "1" : "0", "1");
+  put("overlaps", state.overlaps ? "1" : "0", "1");
+  put("box", String(state.selected), "-1");
+  put("paused", state.playing ? "0" : "1", "0");
+  put("pace", short(state.pace), "1");
+  put("t", short(time), "0");
+  put("edits", writeEdits(state.edits), "");
+  if (state.mode === "steps") {
+    put("steps", steps.algorithm, usual.steps.algorithm);
+    put("step", String(steps.at), "0");
+    put("stepboxes", String(steps.count), String(usual.steps.count));
+    put("cell", short(steps.cell), "0");
+    put("capacity", String(steps.capacity), String(usual.steps.capacity));
+  }
+  if (state.embed) query.set("embed", "");
+  // These may stand in an address as they are, and are easier to read so.
+  return query.toString().replace(/%3A/g, ":").replace(/%3D/g, "=").replace(/%3B/g, ";").replace(/%2C/g, ",")
+    .replace(/embed=$/, "embed");
+}
+
+/** What an address says, before and behind its "#"; what it says wrongly is as usual. */
+export function readState(search: string, hash: string): { state: State; time: number } {
+  const query = new URLSearchParams(search.replace(/^\?/, ""));
+  new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => query.set(name, value));
+  const usual = standardState;
+  const flag = (name: string, standard: boolean): boolean => {
+    const value = query.get(name);
+    return value === null ? standard : value !== "0" && value !== "false";
+  };
+  const modes: Mode[] = ["play", "steps", "lesson"];
+  const knobs = { ...standardKnobs };
+  for (const [name, [least, most]] of Object.entries(knobNames) as [keyof Knobs, [number, number]][])
+    knobs[name] = numberOf(query.get(name), standardKnobs[name], least, most);
+  const panels = readPanels(query.get("a") ?? "");
+  const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree"] as const;
+  const whole = (name: string, standard: number, least: number, most: number): number =>
+    Math.round(numberOf(query.get(name), standard, least, most));
+  const shownPanels = panels.length > 0 ? panels : usual.panels;
+  return {
+    time: numberOf(query.get("t"), 0, 0, 1e6),
+    state: {
+      mode: query.has("lesson") ? "lesson" : modes.find((mode) => mode === query.get("mode")) ?? usual.mode,
+      lesson: whole("lesson", 1, 1, 5) - 1,
+      scene: {
+        name: query.get("scene") ?? usual.scene.name,
+        count: whole("n", usual.scene.count, 1, mostBoxes),
+        seed: whole("seed", usual.scene.seed, 0, 2 ** 31 - 1),
+        knobs,
+      },
+      edits: readEdits(query.get("edits") ?? ""),
+      panels: shownPanels,
+      panel: whole("panel", 0, 0, shownPanels.length - 1),
+      structure: flag("structure", true),
+      overlaps: flag("overlaps", true),
+      selected: whole("box", -1, -1, 2 * mostBoxes),
+      playing: !flag("paused", false),
+      pace: numberOf(query.get("pace"), 1, 0.05, 10),
+      steps: {
+        algorithm: algorithms.find((one) => one === query.get("steps")) ?? usual.steps.algorithm,
+        at: whole("step", 0, 0, 1e6),
+        count: whole("stepboxes", usual.steps.count, 2, 40),
+        cell: numberOf(query.get("cell"), 0, 0, 1000),
+        capacity: whole("capacity", usual.steps.capacity, 1, 32),
+      },
+      embed: query.has("embed") && query.get("embed") !== "0",
+    },
+  };
+}

@@ -1,0 +1,92 @@
+// The bench with a naive engine: frames, edits, followers, the selected box.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Bench } from "../bench/bench.ts";
+import { refusal } from "../bench/budget.ts";
+import { Mark, type Reply, type Setup, type Shown } from "../bench/protocol.ts";
+import { reasons } from "../bench/reasons.ts";
+import { sceneEntries } from "../scene/catalogue.ts";
+import { standardKnobs } from "../scene/drift.ts";
+import { asText, pairsByDefinition } from "./law.ts";
+import { loadEngine } from "./naive_engine.ts";
+
+const setup: Setup = {
+  scene: { name: "drift", count: 60, seed: 1, knobs: standardKnobs }, edits: [],
+  panels: [{ spec: "grid", follow: false }], structure: true, overlaps: true, selected: -1,
+};
+
+async function bench(): Promise<{ frame: (time: number) => Promise<Shown>; take: Bench["take"] }> {
+  let last: Reply | undefined;
+  const one = new Bench(await loadEngine(), (reply) => { last = reply; });
+  return {
+    take: (request) => one.take(request),
+    async frame(time) {
+      await one.take({ kind: "frame", time, held: null });
+      if (last?.kind !== "shown") throw new Error(JSON.stringify(last));
+      return last.shown;
+    },
+  };
+}
+
+test("shows each scene's pairs, and marks their boxes", async () => {
+  const { frame, take } = await bench();
+  for (const { name, dimension } of sceneEntries) {
+    await take({ kind: "setup", setup: { ...setup, scene: { ...setup.scene, name } } });
+    const shown = await frame(2);
+    assert.equal(shown.dimension, dimension, name);
+    const expected = pairsByDefinition(shown.boxes, dimension);
+    assert.deepEqual(asText(shown.pairs), expected, name);
+    const lit = new Set(expected.flatMap((pair) => pair.split(" ").map(Number)));
+    shown.marks.forEach((mark, box) => assert.equal(mark === Mark.lit, lit.has(box)));
+    assert.equal(shown.overlaps.length / (2 * dimension), expected.length);
+  }
+});
+
+test("a follower's pairs are those of each frame, also when time goes back", async () => {
+  const { frame, take } = await bench();
+  await take({ kind: "setup", setup: { ...setup, panels: [{ spec: "grid", follow: true }] } });
+  for (const time of [0, 0.5, 1, 0.2]) {
+    const shown = await frame(time);
+    assert.deepEqual(asText(shown.pairs), pairsByDefinition(shown.boxes, 2));
+  }
+});
+
+test("a box's tests and all the others add up", async () => {
+  const { frame, take } = await bench();
+  await take({ kind: "setup", setup: { ...setup, selected: 5 } });
+  const selection = (await frame(0)).panels[0]!.selection!;
+  const others = selection.untested.reduce((sum, { count }) => sum + count, 0);
+  assert.equal(selection.tested.length + others, 59);
+});
+
+test("says what the structure kept apart, then what the sweep did, then where boxes lie", () => {
+  // Two cells of 10; boxes 0, 1 and 2 in the first one.
+  const boxes = Float32Array.from([0, 0, 1, 1, 5, 0, 6, 1, 0, 5, 1, 6, 12, 0, 13, 1]);
+  const outline = {
+    kind: "cells", caption: "", sweptAxis: 0, levels: [Float32Array.from([0, 0, 10, 10, 10, 0, 20, 10])],
+  };
+  const told = reasons(boxes, 2, 0, new Set(), outline).map(({ count, why }) => `${count} ${why}`);
+  assert.equal(told.length, 3);
+  assert.match(told[0]!, /^1 share no cell/);
+  assert.match(told[1]!, /^1 end before it begins, .* on x/);
+  assert.match(told[2]!, /^1 are apart from it on y/);
+});
+
+test("a file is a scene of its frames, and a link without it says so", async () => {
+  const { frame, take } = await bench();
+  const file: Setup = { ...setup, scene: { ...setup.scene, name: "file" } };
+  await take({ kind: "setup", setup: file });
+  await assert.rejects(frame(0), /no scene was set up/);
+  await take({ kind: "file", recorded: { dimension: 2, frames: [
+    Float32Array.from([0, 0, 1, 1, 5, 5, 6, 6]), Float32Array.from([0, 0, 5, 5, 5, 5, 6, 6])] } });
+  await take({ kind: "setup", setup: file });
+  assert.equal((await frame(0)).pairs.length, 0);
+  assert.equal((await frame(0.06)).pairs.length, 2);
+});
+
+test("brute force is refused where it would stop the page", () => {
+  assert.match(refusal("brute_force", 40_000)!, /800 million tests/);
+  assert.equal(refusal("brute_force", 1000), undefined);
+  assert.equal(refusal("grid", 100_000), undefined);
+});

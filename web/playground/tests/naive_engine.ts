@@ -1,0 +1,65 @@
+// The engine's contract in some lines of JavaScript: brute force under every name. For tests of the page alone.
+import type { Algorithm, Engine, Observation, Outline, Search } from "../engine/types.ts";
+
+function naive(boxes: Float32Array, dimension: number): Observation {
+  const stride = 2 * dimension;
+  const count = boxes.length / stride;
+  const begin = performance.now();
+  const pairs: number[] = [];
+  const tests: number[] = [];
+  for (let a = 0; a < count; ++a) {
+    if (boxes[stride * a]! > boxes[stride * a + dimension]!) continue;
+    for (let b = a + 1; b < count; ++b) {
+      if (boxes[stride * b]! > boxes[stride * b + dimension]!) continue;
+      tests.push(a, b);
+      let hit = true;
+      for (let axis = 0; axis < dimension && hit; ++axis) {
+        hit = boxes[stride * a + axis]! <= boxes[stride * b + dimension + axis]! &&
+          boxes[stride * b + axis]! <= boxes[stride * a + dimension + axis]!;
+      }
+      if (hit) pairs.push(a, b);
+    }
+  }
+  return {
+    pairs: Uint32Array.from(pairs), tests: Uint32Array.from(tests), explanation: "",
+    statistics: { tests: tests.length / 2, references: count, cells: 0, hits: pairs.length / 2 },
+    milliseconds: performance.now() - begin,
+  };
+}
+
+const algorithms = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"].map((name): Algorithm => ({
+  name, summary: `A stand-in for ${name}`, source: "", kind: "own", dimensions: [2, 3], tracks: true,
+  tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", standard: "auto", type: "number", least: 0 }] : [],
+}));
+
+export async function loadEngine(): Promise<Engine> {
+  return {
+    algorithms: () => algorithms,
+    find: (_, boxes, dimension): Search => naive(boxes, dimension),
+    observe: (_, boxes, dimension) => naive(boxes, dimension),
+    outline: (): Outline => ({ kind: "", caption: "", sweptAxis: -1, levels: [] }),
+    tracker: (_, dimension) => {
+      let last = new Set<string>();
+      return {
+        update(boxes) {
+          const { pairs, statistics, milliseconds } = naive(boxes, dimension);
+          const now = new Set<string>();
+          for (let at = 0; at < pairs.length; at += 2) now.add(`${pairs[at]} ${pairs[at + 1]}`);
+          const packed = (keys: Iterable<string>): Uint32Array =>
+            Uint32Array.from([...keys].flatMap((key) => key.split(" ").map(Number)));
+          const frame = {
+            begun: packed([...now].filter((key) => !last.has(key))),
+            ended: packed([...last].filter((key) => !now.has(key))),
+            statistics, milliseconds, bytes: 1,
+          };
+          last = now;
+          return frame;
+        },
+        free() {},
+      };
+    },
+    advise: () => "",
+    scenes: () => [],
+    scene: () => new Float32Array(),
+  };
+}

@@ -1,0 +1,78 @@
+// A lesson beside its boxes.
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+
+import { lessons } from "../lessons/index.ts";
+import type { Lesson, Verdict } from "../lessons/lesson.ts";
+import type { State } from "../state/state.ts";
+import { clock, duel, latest, patch, say, shown, state } from "../state/store.ts";
+import { wholeView } from "./view.ts";
+
+/** Shows what a lesson wants to show. */
+function show(change: Partial<State>): void {
+  clock.value = 0;
+  latest.value = 0;
+  duel.value = null;
+  wholeView();
+  patch({ edits: [], selected: -1, panel: 0, playing: true, structure: true, overlaps: true, ...change });
+}
+
+export function openLesson(at: number): void {
+  show({ ...lessons[at]!.start, mode: "lesson", lesson: at });
+}
+
+export function LessonView() {
+  const at = state.value.lesson;
+  const lesson = lessons[at]!;
+  return (
+    <article class="card lesson" aria-labelledby="lesson-title">
+      <nav class="row" aria-label="Lessons">
+        {lessons.map(({ title }, one) => (
+          <button key={title} type="button" aria-current={one === at ? "true" : undefined} title={title}
+            aria-label={`Lesson ${one + 1}: ${title}`} onClick={() => openLesson(one)}>{one + 1}</button>
+        ))}
+      </nav>
+      <h2 id="lesson-title">{at + 1}. {lesson.title}</h2>
+      {lesson.text}
+      <div class="row">
+        {lesson.tries.map(({ label, state: change }) =>
+          <button key={label} type="button" onClick={() => show({ ...lesson.start, ...change })}>{label}</button>)}
+      </div>
+      <ExerciseView key={lesson.title} lesson={lesson} />
+      {at + 1 < lessons.length &&
+        <button type="button" onClick={() => openLesson(at + 1)}>Next: {lessons[at + 1]!.title}</button>}
+    </article>
+  );
+}
+
+function ExerciseView({ lesson }: { lesson: Lesson }) {
+  const done = useSignal(false);
+  const verdict = useSignal<Verdict | null>(null);
+  useEffect(() => {
+    const judge = (): void => {
+      // What is shown has to be of what is chosen now.
+      const now = shown.value;
+      const specs = state.value.panels.map(({ spec }) => spec).join(";");
+      if (now === null || now.panels.map(({ spec }) => spec).join(";") !== specs) return;
+      const next = lesson.exercise.check({ state: state.value, shown: now, duel: duel.value });
+      if (next.text !== verdict.value?.text || next.done !== verdict.value.done) verdict.value = next;
+      if (next.done && !done.value) {
+        done.value = true;
+        say("Exercise done");
+      }
+    };
+    const timer = setInterval(judge, 250);
+    return () => clearInterval(timer);
+  }, [lesson]);
+  return (
+    <section class={`exercise ${done.value ? "done" : ""}`} aria-label="Exercise">
+      <h3>Exercise {done.value && <span class="badge">Done</span>}</h3>
+      {lesson.exercise.task}
+      <p class="verdict">{verdict.value?.text ?? "…"}</p>
+      <div class="row">
+        <button type="button" onClick={() => show(lesson.start)}>Start again</button>
+      </div>
+      <details><summary>Hint</summary>{lesson.exercise.hint}</details>
+    </section>
+  );
+}

@@ -1,0 +1,74 @@
+// A panel: an algorithm's name, its window onto the boxes, and its counts.
+import { useEffect, useRef } from "preact/hooks";
+
+import type { PanelResult } from "../bench/protocol.ts";
+import { changePanel, dimension, removePanel, state, told } from "../state/store.ts";
+import { AlgorithmChoice } from "./algorithm_choice.tsx";
+import { Switch } from "./field.tsx";
+import { keysHelp, windowKey } from "./keys.ts";
+import { bytes, duration, grouped } from "./numbers.ts";
+import { PointerInput } from "./pointer.ts";
+import type { Stage } from "./stage.ts";
+import { tool } from "./tools.ts";
+
+export function PanelView({ at, stage }: { at: number; stage: Stage }) {
+  const element = useRef<HTMLDivElement>(null);
+  const choice = state.value.panels[at];
+  useEffect(() => {
+    if (element.current !== null) new PointerInput(stage, at, element.current);
+  }, [stage, at]);
+  if (choice === undefined) return null;
+  const { panels, panel, embed } = state.value;
+  return (
+    <section class={`panel ${panel === at && panels.length > 1 ? "current" : ""}`} aria-label={`Panel ${at + 1}`}>
+      <header>
+        <AlgorithmChoice spec={choice.spec} dimension={dimension.value} label={`Algorithm of panel ${at + 1}`}
+          onChange={(spec) => changePanel(at, { spec })} />
+        {!embed && <Switch label="follow" value={choice.follow}
+          hint="Follow the boxes from frame to frame instead of searching anew"
+          onChange={(follow) => changePanel(at, { follow })} />}
+        {panels.length > 1 && !embed &&
+          <button type="button" class="quiet" aria-label={`Close panel ${at + 1}`} onClick={() => removePanel(at)}>×</button>}
+      </header>
+      <div ref={element} class={`window tool-${tool.value}`} tabIndex={0} role="group"
+        aria-label={`Boxes, searched by ${choice.spec}`} aria-describedby="keys-help" onKeyDown={windowKey} />
+      <Counts at={at} />
+      {at === 0 && <p id="keys-help" class="unseen">{keysHelp}</p>}
+    </section>
+  );
+}
+
+function Counts({ at }: { at: number }) {
+  const result = told.value?.panels[at];
+  if (result === undefined) return <div class="counts" />;
+  if (result.error !== undefined) return <p class="counts error" role="alert">{result.error}</p>;
+  return (
+    <div class="counts">
+      <dl>
+        {countsOf(result).map(([name, value, hint]) => (
+          <div key={name} title={hint}><dt>{name}</dt><dd data-count={name}>{value}</dd></div>
+        ))}
+      </dl>
+      <p class="structure-caption">
+        {result.late ? "Too slow for every frame: shown is an earlier one. " : ""}
+        {result.outline?.caption ?? ""}
+      </p>
+    </div>
+  );
+}
+
+function countsOf(result: PanelResult): [name: string, value: string, hint: string][] {
+  const { statistics } = result;
+  const follows = state.value.panels.some(({ follow }) => follow);
+  return [
+    ["tests", grouped(statistics.tests), "Pairs of boxes that were compared"],
+    ["pairs", grouped(result.pairs), "Pairs of boxes that overlap"],
+    ["references", grouped(statistics.references), "Entries of boxes in cells, nodes or lists"],
+    ["time", duration(result.milliseconds), "The fastest of the last frames, in this browser"],
+    ...(follows ? [
+      ["begun, ended", result.bytes > 0 ? `${grouped(result.begun)}, ${grouped(result.ended)}` : "–",
+        "Pairs that began and ended in this frame"],
+      ["memory", result.bytes > 0 ? bytes(result.bytes) : "–", "What the tracker holds"],
+    ] as [string, string, string][] : []),
+  ];
+}

@@ -1,0 +1,71 @@
+// The boxes: a scene or a file, how many, and the sliders with cliffs.
+import { sceneEntries, sceneEntry, fileScene } from "../scene/catalogue.ts";
+import type { Knobs } from "../scene/drift.ts";
+import { mostBoxes } from "../state/state.ts";
+import { changeScene, chooseScene, fileName, patch, state } from "../state/store.ts";
+import { openFile } from "./drop.ts";
+import { Card, Choice, Slider, Switch } from "./field.tsx";
+import { grouped } from "./numbers.ts";
+
+interface Knob {
+  name: keyof Knobs;
+  label: string;
+  least: number;
+  most: number;
+  logarithmic?: boolean;
+  text: (value: number) => string;
+  hint: string;
+}
+
+const percent = (value: number): string => `${Math.round(100 * value)} %`;
+
+const knobs: readonly Knob[] = [
+  { name: "ratio", label: "Size ratio", least: 1, most: 300, logarithmic: true, text: (value) => `1 to ${value < 10 ? value.toFixed(1) : Math.round(value)}`,
+    hint: "How many times as long as the smallest box the largest is" },
+  { name: "clustering", label: "Clustering", least: 0, most: 1, text: percent, hint: "From evenly spread to tight clusters" },
+  { name: "moving", label: "Share that moves", least: 0, most: 1, text: percent, hint: "The other boxes rest" },
+  { name: "speed", label: "Speed", least: 0, most: 6, text: (value) => `${value.toFixed(1)}×`, hint: "Of the boxes that move" },
+];
+
+/** Two digits are enough to drag. */
+function rounded(count: number): number {
+  const unit = 10 ** Math.max(0, Math.floor(Math.log10(count)) - 1);
+  return Math.min(mostBoxes, Math.max(1, Math.round(count / unit) * unit));
+}
+
+export function SceneCard() {
+  const { scene, structure, overlaps } = state.value;
+  const entry = sceneEntry(scene.name);
+  const options = sceneEntries.map((one) => ({ value: one.name, label: one.title, group: one.breaks === undefined ? "Plain" : "That break algorithms" }));
+  if (scene.name === fileScene) options.push({ value: fileScene, label: fileName.value || "A file", group: "Yours" });
+  return (
+    <Card title="Boxes">
+      <Choice label="Scene" value={scene.name} options={options} onChange={chooseScene} />
+      <p class="note">{entry?.summary ?? "Boxes of a file that was dropped here. It stays in this page."}</p>
+      {entry?.breaks !== undefined && <p class="note">It breaks <code>{entry.breaks.spec}</code>: {entry.breaks.why}</p>}
+      {scene.name !== fileScene && <Slider label="Number of boxes" value={scene.count} least={10} most={mostBoxes}
+        logarithmic text={grouped} onChange={(value) => changeScene({ count: rounded(value) })} />}
+      {entry?.knobs === true && knobs.map(({ name, label, least, most, logarithmic, text, hint }) => (
+        <Slider key={name} label={label} value={scene.knobs[name]} least={least} most={most} text={text} hint={hint}
+          logarithmic={logarithmic ?? false}
+          onChange={(value) => changeScene({ knobs: { ...scene.knobs, [name]: value } })} />
+      ))}
+      <div class="row">
+        <Switch label="structure" value={structure} hint="Draw the algorithm's cells, stripes or nodes"
+          onChange={(value) => patch({ structure: value })} />
+        <Switch label="overlaps" value={overlaps} hint="Fill where the boxes of a pair overlap"
+          onChange={(value) => patch({ overlaps: value })} />
+        {scene.name !== fileScene &&
+          <button type="button" onClick={() => changeScene({ seed: scene.seed % 1000 + 1 })}>Other boxes</button>}
+        <label class="file-choice">
+          <span>Open a file …</span>
+          <input type="file" class="unseen" accept=".csv,.txt,.btrace,.ply,.json,.geojson" onChange={(event) => {
+            const file = event.currentTarget.files?.[0];
+            if (file !== undefined) void openFile(file);
+          }} />
+        </label>
+      </div>
+      <p class="note">CSV, trace, PLY or GeoJSON; or drop it anywhere on the page.</p>
+    </Card>
+  );
+}

@@ -1,0 +1,105 @@
+// The picture: one canvas behind all panels, and where each panel's window is on it.
+import { effect } from "@preact/signals";
+
+import { flatCamera } from "../draw/camera.ts";
+import { CanvasPainter } from "../draw/canvas_painter.ts";
+import type { Painter, Painting, Place } from "../draw/painting.ts";
+import { WebglPainter } from "../draw/webgl_painter.ts";
+import { shown, state } from "../state/store.ts";
+import { palette } from "./themes.ts";
+import { view } from "./view.ts";
+
+/** Finer pixels than this cost much and show little. */
+const mostRatio = 2;
+
+export class Stage {
+  readonly canvas = document.createElement("canvas");
+  private painter: Painter;
+  private holder: HTMLElement | undefined;
+  private places: Place[] = [];
+  private readonly observed = new WeakSet<Element>();
+  private readonly observer = new ResizeObserver(() => this.measure());
+  /** Called where another picture of the same boxes is due. */
+  onChange: () => void = () => {};
+
+  constructor() {
+    this.canvas.className = "picture";
+    this.canvas.setAttribute("aria-hidden", "true");
+    try {
+      this.painter = new WebglPainter(this.canvas);
+    } catch {
+      this.painter = new CanvasPainter(this.canvas);
+    }
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.canvas.addEventListener("webglcontextrestored", () => {
+      this.painter = new WebglPainter(this.canvas);
+      this.measure();
+    });
+    effect(() => {
+      void palette.value;
+      void view.value;
+      this.onChange();
+    });
+  }
+
+  /** The element that holds the panels; their windows have the class "window". */
+  attach(holder: HTMLElement): void {
+    this.holder = holder;
+    holder.prepend(this.canvas);
+    this.observer.disconnect();
+    this.observer.observe(holder);
+    this.measure();
+  }
+
+  measure(): void {
+    if (this.holder === undefined) return;
+    const all = this.holder.getBoundingClientRect();
+    this.painter.resize(all.width, all.height, Math.min(mostRatio, window.devicePixelRatio));
+    this.places = [...this.holder.querySelectorAll(".window")].map((one) => {
+      // Counts that wrap take height from a window. What is observed anew is told of at once, so only once.
+      if (!this.observed.has(one)) {
+        this.observed.add(one);
+        this.observer.observe(one);
+      }
+      const { x, y, width, height } = one.getBoundingClientRect();
+      return { x: x - all.x, y: y - all.y, width, height };
+    });
+    this.onChange();
+  }
+
+  /** Where the middle of a flat box is in the first panel, in pixels of the page. */
+  where(box: number): [x: number, y: number] | undefined {
+    const [now, place] = [shown.value, this.places[0]];
+    if (now === null || place === undefined || now.dimension !== 2 || this.holder === undefined) return undefined;
+    const { scale, left, top } = flatCamera(now.bounds, place, view.value);
+    const { x, y } = this.holder.getBoundingClientRect();
+    const [x0, y0, x1, y1] = [...now.boxes.subarray(4 * box, 4 * box + 4)] as [number, number, number, number];
+    return [x + place.x + left + scale * (x0 + x1) / 2, y + place.y + top + scale * (y0 + y1) / 2];
+  }
+
+  place(panel: number): Place | undefined {
+    return this.places[panel];
+  }
+
+  painting(): Painting | undefined {
+    const now = shown.value;
+    if (now === null) return undefined;
+    const { dimension, bounds, boxes, marks, overlaps, panels } = now;
+    return {
+      dimension, bounds, boxes, marks, overlaps, view: view.value, palette: palette.value,
+      panels: this.places.slice(0, state.value.panels.length).map((place, at) => {
+        const panel = panels[at];
+        const selection = panel?.selection;
+        return {
+          place, outline: panel?.outline, marks: panel?.marks,
+          tests: selection === undefined ? undefined : { box: selection.box, others: selection.tested },
+        };
+      }),
+    };
+  }
+
+  paint(): void {
+    const painting = this.painting();
+    if (painting !== undefined) this.painter.paint(painting);
+  }
+}

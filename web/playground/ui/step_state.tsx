@@ -1,0 +1,32 @@
+// What a search keeps, as text: cells, the active list, nodes.
+import type { StepState } from "../engine/types.ts";
+
+const list = (ids: readonly number[]): string => ids.length === 0 ? "none" : ids.join(", ");
+
+export function StepStateText({ state }: { state: StepState }) {
+  switch (state.kind) {
+    case "brute_force":
+      return <p>i = {state.i < 0 ? "–" : state.i}, j = {state.j < 0 ? "–" : state.j}</p>;
+    case "grid":
+      return <p>{state.cells.length === 0 ? "No cells yet." :
+        `${state.columns} × ${state.rows} cells of ${Number(state.size.toPrecision(3))}. ` +
+        (state.current < 0 ? "" : `This cell: ${list(state.cells[state.current] ?? [])}.`)}
+        {state.point !== undefined && " The dot is the reference point: the cell that holds it reports the pair."}</p>;
+    case "sweep_and_prune":
+      return (
+        <>
+          <p>Active: <b>{list(state.active)}</b></p>
+          <ol class="order" aria-label="Boxes by their least x">
+            {state.order.map((id, at) => <li key={id} class={at === state.next ? "next" : at < state.next ? "passed" : ""}>{id}</li>)}
+          </ol>
+        </>
+      );
+    case "quadtree": {
+      const leaves = state.nodes.filter(({ children }) => children === undefined).length;
+      const node = state.nodes[state.current];
+      return <p>{state.nodes.length} nodes, {leaves} of them leaves; a leaf holds up to {state.capacity}.{" "}
+        {node !== undefined && `This node, at depth ${node.depth}: ${list(node.boxes)}.`}
+        {state.point !== undefined && " The dot is the reference point: the leaf that holds it reports the pair."}</p>;
+    }
+  }
+}

@@ -1,0 +1,129 @@
+// A search of the draft's algorithms, step by step: forward and back, beside the listing.
+import { useComputed, useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+
+import type { StepAlgorithm, StepOptions } from "../engine/types.ts";
+import { stepBoxes } from "../scene/step_boxes.ts";
+import type { State } from "../state/state.ts";
+import { changeScene, patch, state } from "../state/store.ts";
+import { steps } from "../steps/index.ts";
+import { Buttons, Slider } from "./field.tsx";
+import { grouped } from "./numbers.ts";
+import { StepPicture } from "./step_picture.tsx";
+import { StepStateText } from "./step_state.tsx";
+
+const algorithms: readonly { value: StepAlgorithm; label: string }[] = [
+  { value: "brute_force", label: "Brute force" },
+  { value: "grid", label: "Grid" },
+  { value: "sweep_and_prune", label: "Sweep and prune" },
+  { value: "quadtree", label: "Quadtree" },
+];
+
+function change(part: Partial<State["steps"]>): void {
+  patch({ steps: { ...state.value.steps, ...part } });
+}
+
+export function StepsView() {
+  const run = useComputed(() => {
+    const { algorithm, count, cell, capacity } = state.value.steps;
+    const options: StepOptions = algorithm === "grid" && cell > 0 ? { cell } : algorithm === "quadtree" ? { capacity } : {};
+    const boxes = stepBoxes(count, state.value.scene.seed);
+    return { boxes, key: JSON.stringify([algorithm, count, cell, capacity, state.value.scene.seed]), options };
+  });
+  const cache = useRef<{ key: string; result: ReturnType<typeof steps> } | null>(null);
+  const { boxes, key, options } = run.value;
+  const { algorithm, count, cell, capacity } = state.value.steps;
+  if (cache.current?.key !== key) cache.current = { key, result: steps(algorithm, boxes, options) };
+  const { result } = cache.current;
+  const last = result.steps.length - 1;
+  const at = Math.min(state.value.steps.at, last);
+  const playing = useSignal(false);
+  const pace = useSignal(2);
+  const go = (to: number): void => change({ at: Math.min(last, Math.max(0, to)) });
+  useEffect(() => {
+    if (!playing.value) return undefined;
+    const timer = setInterval(() => {
+      if (state.value.steps.at >= last) playing.value = false;
+      else go(state.value.steps.at + 1);
+    }, 1000 / pace.value);
+    return () => clearInterval(timer);
+  }, [playing.value, pace.value, last]);
+  const listing = useRef<HTMLOListElement>(null);
+  const step = result.steps[at];
+  useEffect(() => {
+    // The list alone is scrolled, never the page.
+    const [list, line] = [listing.current, listing.current?.children[step?.line ?? 0]];
+    if (list === null || !(line instanceof HTMLElement)) return;
+    const top = line.offsetTop - list.offsetTop;
+    if (top < list.scrollTop || top + line.offsetHeight > list.scrollTop + list.clientHeight)
+      list.scrollTop = top - list.clientHeight / 3;
+  }, [step?.line, algorithm]);
+  if (step === undefined) return <p class="notice">There is nothing to step through.</p>;
+  const past = result.steps.slice(0, at + 1);
+  const tests = past.filter(({ outcome }) => outcome === "test").length;
+  const reported = past.filter(({ outcome }) => outcome === "reported");
+  const found = new Set(reported.flatMap(({ pair }) => pair ?? []));
+  const onKey = (event: KeyboardEvent): void => {
+    // A slider has its own arrows.
+    if (event.target instanceof HTMLInputElement) return;
+    if (event.key === "ArrowRight") go(at + 1);
+    else if (event.key === "ArrowLeft") go(at - 1);
+    else if (event.key === "Home") go(0);
+    else if (event.key === "End") go(last);
+    else return;
+    event.preventDefault();
+  };
+  return (
+    <div class="steps" onKeyDown={onKey}>
+      <div class="steps-left">
+        <Buttons label="Algorithm" value={algorithm} options={algorithms}
+          onChange={(value) => change({ algorithm: value, at: 0 })} />
+        <StepPicture boxes={boxes} step={step} found={found} />
+        <p class="step-text" role="status" aria-live={playing.value ? "off" : "polite"}>{step.text}</p>
+        <div class="row" role="group" aria-label="Steps">
+          <button type="button" aria-label="First step" disabled={at === 0} onClick={() => go(0)}>|◂</button>
+          <button type="button" disabled={at === 0} onClick={() => go(at - 1)}>◂ Step back</button>
+          <button type="button" class="strong" onClick={() => { playing.value = !playing.value; }}>
+            {playing.value ? "Pause" : "Play"}</button>
+          <button type="button" disabled={at === last} onClick={() => go(at + 1)}>Step forward ▸</button>
+          <button type="button" aria-label="Last step" disabled={at === last} onClick={() => go(last)}>▸|</button>
+        </div>
+        <Slider label="Step" value={at} least={0} most={last} step={1} text={(one) => `${grouped(one + 1)} of ${grouped(last + 1)}`}
+          onChange={(one) => go(Math.round(one))} />
+        <dl class="step-counts">
+          <div><dt>tests so far</dt><dd>{grouped(tests)} of {grouped(result.tests)}</dd></div>
+          <div><dt>pairs so far</dt><dd>{grouped(reported.length)} of {grouped(result.pairs.length)}</dd></div>
+        </dl>
+      </div>
+      <div class="steps-right">
+        <section class="card" aria-label="Listing">
+          <h2>Listing</h2>
+          <ol ref={listing} class="listing" tabIndex={0} aria-label="Lines of the listing">
+            {result.listing.map((line, one) => (
+              <li key={one} aria-current={one === step.line ? "step" : undefined}><code>{line === "" ? " " : line}</code></li>
+            ))}
+          </ol>
+        </section>
+        <section class="card" aria-label="State">
+          <h2>State</h2>
+          <StepStateText state={step.state} />
+        </section>
+        <section class="card" aria-label="Boxes">
+          <h2>Boxes</h2>
+          <Slider label="Number of boxes" value={count} least={2} most={40} step={1}
+            onChange={(value) => change({ count: Math.round(value), at: 0 })} />
+          {algorithm === "grid" && <Slider label="Cell" value={cell} least={0} most={8} step={0.25}
+            text={(value) => value === 0 ? "by itself" : String(value)} onChange={(value) => change({ cell: value, at: 0 })} />}
+          {algorithm === "quadtree" && <Slider label="Capacity" value={capacity} least={1} most={16} step={1}
+            onChange={(value) => change({ capacity: Math.round(value), at: 0 })} />}
+          <Slider label="Steps in a second" value={pace.value} least={0.5} most={30} logarithmic
+            text={(value) => value.toFixed(1)} onChange={(value) => { pace.value = value; }} />
+          <button type="button" onClick={() => {
+            changeScene({ seed: state.value.scene.seed % 1000 + 1 });
+            change({ at: 0 });
+          }}>Other boxes</button>
+        </section>
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,54 @@
+// Time: play, pause, step, scrub; the pointer's tool; recording.
+import { clock, dimension, duration, latest, patch, recording, say, state, told } from "../state/store.ts";
+import { Buttons, Slider, Switch } from "./field.tsx";
+import { stepTime, togglePlaying } from "./keys.ts";
+import { tool, tools } from "./tools.ts";
+import { view, wholeView, zoomBy } from "./view.ts";
+
+const frame = 1 / 30;
+
+/** By itself, since it changes often. */
+function TimeSlider() {
+  const most = Number.isFinite(duration.value) ? duration.value : Math.max(10, latest.peek());
+  const now = state.value.playing ? told.value?.time ?? 0 : clock.value;
+  return <Slider label="Time" value={now} least={0} most={most} step={most / 1000}
+    text={(value) => `${value.toFixed(1)} s`}
+    onChange={(value) => {
+      patch({ playing: false });
+      clock.value = value;
+    }} />;
+}
+
+export function Transport() {
+  const { playing, pace, edits } = state.value;
+  const flat = dimension.value === 2;
+  return (
+    <div class="transport" role="group" aria-label="Time and tools">
+      <div class="row">
+        <button type="button" class="strong" onClick={togglePlaying}>{playing ? "Pause" : "Play"}</button>
+        <button type="button" onClick={() => stepTime(-frame)} aria-label="One frame back">◂ back</button>
+        <button type="button" onClick={() => stepTime(frame)} aria-label="One frame forward">forward ▸</button>
+        <TimeSlider />
+        <Slider label="Pace" value={pace} least={0.1} most={4} logarithmic text={(value) => `${value.toFixed(1)}×`}
+          onChange={(value) => patch({ pace: value })} />
+      </div>
+      <div class="row">
+        {flat && <Buttons label="What the pointer does" value={tool.value}
+          options={tools.map(({ name, label, hint }) => ({ value: name, label, hint }))}
+          onChange={(name) => { tool.value = name; }} />}
+        {flat && <Switch label="record drags" value={recording.value}
+          hint="Keep the way that a box is dragged, to scrub through it later"
+          onChange={(value) => { recording.value = value; }} />}
+        {edits.length > 0 && <button type="button" onClick={() => {
+          patch({ edits: [], selected: -1 });
+          say("All boxes are as the scene has them");
+        }}>Undo all edits</button>}
+        <div class="buttons" role="group" aria-label="Camera">
+          <button type="button" aria-label="Zoom in" onClick={() => zoomBy(1.25)}>+</button>
+          <button type="button" aria-label="Zoom out" onClick={() => zoomBy(0.8)}>−</button>
+          <button type="button" aria-disabled={view.value.zoom === 1} onClick={wholeView}>whole</button>
+        </div>
+      </div>
+    </div>
+  );
+}
