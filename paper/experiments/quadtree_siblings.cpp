@@ -125,8 +125,8 @@ struct Line {
   double fewest_ratio() const { return fewest().ratio; }
   double most_ratio() const { return most().ratio; }
   double least_ratio() const { return worst().ratio; }
-  bool pays() const { return fewest().ratio > 1 + margin; }
-  bool always_pays() const { return least_ratio() > 1 + margin; }
+  bool pays() const { return fewest().is_above(1 + margin); }
+  bool always_pays() const { return worst().is_above(1 + margin); }
 };
 
 std::vector<Line> lines_of(const Table& table, const std::string& gain) {
@@ -149,11 +149,12 @@ std::vector<Line> lines_of(const Table& table, const std::string& gain) {
 
 /// The verdict on a way that is to be faster than the one from the root.
 Statement judge_way(std::string name, std::string text, const std::vector<Line>& lines) {
-  Statement statement{.name = std::move(name),
-                      .text = std::move(text),
-                      .threshold = fmt::format("more than {:.0f} % faster, in both trees and wherever boxes "
-                                               "are in several leaves",
-                                               100 * margin)};
+  Statement statement{
+      .name = std::move(name),
+      .text = std::move(text),
+      .threshold = fmt::format("more than {:.0f} % faster, the interval too, in both trees and "
+                               "wherever boxes are in several leaves",
+                               100 * margin)};
   double until = INFINITY;
   std::vector<std::string> trees;
   for (const Line& line : lines) {

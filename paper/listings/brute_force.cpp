@@ -6,6 +6,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
+#include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"
 
@@ -21,6 +22,7 @@ class BruteForce final : public PairFinder<D> {
     Statistics statistics{.references = e_.size()};
     algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) {
       ++statistics.tests;
+      if constexpr (kernels::is_observing) kernels::observe_test(a, b);
       if (overlap(boxes[index(a)], boxes[index(b)])) pairs.add(a, b);
     });
     this->count(statistics);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
 
 namespace broadside::paper {
@@ -76,6 +77,7 @@ void GridListing::algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, 
       statistics.references += g(i, j).size();
       algorithm_1_brute_force(g(i, j), [&](BoxId a, BoxId b) {
         ++statistics.tests;
+        if constexpr (kernels::is_observing) kernels::observe_test(a, b);
         const Box2& first = boxes[index(a)];
         const Box2& second = boxes[index(b)];
         if (!overlap(first, second)) return;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernels/observed_tests.hpp"
+
 namespace broadside::paper {
 namespace {
 
@@ -184,6 +186,7 @@ Statistics search_tree(const QuadTree& tree, const QuadTreeNode& root, PairSink&
   Statistics statistics{.references = root.references()};
   auto test_collide = [&](const Region& leaf, BoxId a, BoxId b) {
     ++statistics.tests;
+    if constexpr (kernels::is_observing) kernels::observe_test(a, b);
     const Box2& first = tree.boxes[index(a)];
     const Box2& second = tree.boxes[index(b)];
     if (!overlap(first, second)) return;

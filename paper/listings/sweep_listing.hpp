@@ -10,6 +10,8 @@
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
+#include "kernels/observed_tests.hpp"
+
 namespace broadside::paper {
 
 /// A box in the order of the sweep: by its MINX, and of equal ones by id.
@@ -44,6 +46,7 @@ class SweepListing {
       algorithm_6_prune(boxes, e);
       for (const BoxId active : f_) {  // Erratum 5c
         ++statistics.tests;
+        if constexpr (kernels::is_observing) kernels::observe_test(active, e);
         if (overlap(boxes[index(active)], boxes[index(e)])) pairs.add(active, e);
       }
       f_.push_back(e);
