@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python bench test sanitize systems clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python wasm test-wasm compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -83,6 +83,43 @@ $(python_folder)/%/ready: | setup
 	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
 
+# CMake's build folders: the modules with SIMD and without.
+wasm_folder := build/wasm
+
+wasm: $(wasm_folder)/simd/build.ninja $(wasm_folder)/scalar/build.ninja ## Build the npm package for JavaScript: build/wasm/package/
+	@test -f $(wasm_folder)/simd/build.ninja || emcmake cmake --preset wasm
+	@test -f $(wasm_folder)/scalar/build.ninja || emcmake cmake --preset wasm-scalar
+	cmake --build --preset wasm
+	cmake --build --preset wasm-scalar
+	node bindings/wasm/build.mjs $(wasm_folder) $(wasm_folder)/package
+
+test-wasm: wasm ## Run the tests of the npm package
+	node bindings/wasm/build.mjs --tests $(wasm_folder)/tests $(wasm_folder)/package
+	BROADSIDE_PACKAGE=$(CURDIR)/$(wasm_folder)/package BROADSIDE_WEB=$(CURDIR)/web \
+	  node --test $(wasm_folder)/tests/
+
+$(wasm_folder)/simd/build.ninja: CMakePresets.json | setup
+	emcmake cmake --preset wasm
+$(wasm_folder)/scalar/build.ninja: CMakePresets.json | setup
+	emcmake cmake --preset wasm-scalar
+
+compare-web: wasm ## Compare the npm package with other libraries of JavaScript, in Node and in Chromium
+	cd bench/web && npm ci --silent --ignore-scripts --no-audit --no-fund
+	node bench/web/compare.mjs $(wasm_folder)/package
+	node bench/web/compare.mjs --chromium $(wasm_folder)/package
+
+# Its engine is the whole library, built by itself.
+playground: $(wasm_folder)/playground/build.ninja ## Build the playground, a page to see and compare algorithms: build/playground/index.html
+	@test -f $< || emcmake cmake --preset playground
+	cmake --build --preset playground
+	node web/build.mjs --playground build/playground
+
+$(wasm_folder)/playground/build.ninja: CMakePresets.json | setup
+	emcmake cmake --preset playground
+
+# Debian's Emscripten does not find Debian's acorn by itself.
+wasm test-wasm compare-web playground: export NODE_PATH := /usr/share/nodejs
+
 test: tests-release ## Build everything and run all tests
 
 sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
@@ -91,6 +128,11 @@ systems: build/release/build.ninja ## Check the law on ARM, Windows, 32-bit x86 
 	@test -f $< || cmake --preset release
 	cmake --build --preset release --target law_here
 	ctest --preset release -R '^systems' --parallel $(jobs)
+
+windows: build/windows/build.ninja ## Build the program for Windows by MinGW-w64; run it and the unit tests by Wine
+	@test -f $< || cmake --preset windows
+	cmake --build --preset windows
+	ctest --preset windows
 
 clang: tests-clang ## The tests in an optimised build by clang; CI has clang in the build of the address sanitizer
 
@@ -115,8 +157,9 @@ paper: setup_options := --paper
 
 deb: setup_options := --deb
 
-systems: setup_options := --systems
+systems windows: setup_options := --systems
 python test-python: setup_options := --python
+wasm test-wasm compare-web playground: setup_options := --web
 
 setup:
 	@scripts/setup $(setup_options)

@@ -20,7 +20,8 @@ const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
-  const std::string interface = core + R"(|"interface/[a-z_]+\.hpp"|"kernels/overlap_flags\.hpp")";
+  const std::string interface =
+      core + R"(|"interface/[a-z_]+\.hpp"|"kernels/(overlap_flags|observed_tests)\.hpp")";
   const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/descriptions\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
                           R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
@@ -41,7 +42,7 @@ const std::vector<Rule>& rules() {
       {"src/interface/", interface},
       {"src/kernels/",
        standard +
-           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis|large_array)\.hpp")" +
+           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis|large_array|lean)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry",
        interface + R"(|"algorithms/descriptions\.hpp"|"doubles/double_finder\.hpp")"},
@@ -50,13 +51,15 @@ const std::vector<Rule>& rules() {
       {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
       {"src/world/", interface + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
-      {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp")"},
+      {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
+      {"web/playground/engine/", library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
+                                     R"(|"(lab/scenes|paper/listings)/descriptions\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/literature/", library + R"(|"lab/peers/peer_tracker\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"lab/formats/", lab + "|<assimp/.*>"},
+      {"lab/formats/", lab + R"(|<assimp/.*>|<(cpl_error|ogr_api)\.h>)"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/engines/",
