@@ -10,6 +10,8 @@ results := paper/results
 published := build/published
 PROCESSES := 10
 sources := find $(wildcard include src bindings integrations paper lab cli tests bench examples) -name '*.[ch]pp'
+# The sources that a build compiles, of which some include several others.
+compiled := sed -n 's/^ *"file": "\(.*\)".*/\1/p'
 
 help: ## List the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
@@ -139,9 +141,12 @@ clang: tests-clang ## The tests in an optimised build by clang; CI has clang in 
 format: setup-ci ## Put every source file in the project's format
 	$(sources) | xargs clang-format -i
 
-lint: check-format build/clang/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
+lint: check-format build/lint/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
 	web/node_modules/.bin/tsc --noEmit --project web
-	find $(wildcard src paper lab cli examples) -name '*.cpp' | xargs -P $(jobs) -n 1 clang-tidy -p build/clang --quiet
+	@test -f build/lint/build.ninja || cmake --preset lint
+	$(compiled) build/lint/compile_commands.json | sort -u | grep --extended-regexp --invert-match \
+	  '/(tests|bench)/|/lab/page_template\.cpp$$|/linked_algorithms\.cpp$$|\.c$$' | \
+	  xargs -P $(jobs) -n 1 clang-tidy -p build/lint --quiet
 
 check-format: setup-ci
 	$(sources) | xargs clang-format --dry-run --Werror
@@ -195,5 +200,5 @@ tests-clang: build/clang/build.ninja
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
 
-# Both are clang's.
-build/asan/build.ninja build/clang/build.ninja: | setup-ci
+# These are clang's.
+build/asan/build.ninja build/clang/build.ninja build/lint/build.ninja: | setup-ci

@@ -16,7 +16,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-constexpr std::string_view suffix = ".npy";
+constexpr std::string_view array_suffix = ".npy";
 constexpr std::string_view zip_magic = "PK\x03\x04";
 
 struct Array {
@@ -28,7 +28,7 @@ std::vector<Array> arrays_of(const ZipArchive& archive) {
   std::vector<Array> arrays;
   for (std::size_t i = 0; i < archive.members().size(); ++i) {
     const std::string& member = archive.members()[i];
-    if (member.ends_with(suffix)) arrays.push_back({member.substr(0, member.size() - suffix.size()), i});
+    if (member.ends_with(array_suffix)) arrays.push_back({member.substr(0, member.size() - array_suffix.size()), i});
   }
   return arrays;
 }
@@ -66,7 +66,7 @@ bool is_npz(std::string_view bytes, std::string_view extension) {
   if (!bytes.starts_with(zip_magic) || bytes.size() < name_at) return false;
   const auto byte = [&](std::size_t i) { return std::size_t{static_cast<unsigned char>(bytes[i])}; };
   const std::size_t size = byte(name_size_at) | byte(name_size_at + 1) << 8;
-  return bytes.size() >= name_at + size && bytes.substr(name_at, size).ends_with(suffix);
+  return bytes.size() >= name_at + size && bytes.substr(name_at, size).ends_with(array_suffix);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ namespace broadside::lab::readers {
 
 /// Pointers to them, under their own names.
 struct Gdal {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): what is declared can stand in none.
 #define BROADSIDE_GDAL_MEMBER(name) decltype(&::name) name = nullptr;
   // NOLINTNEXTLINE(readability-identifier-naming)
   BROADSIDE_GDAL_FUNCTIONS(BROADSIDE_GDAL_MEMBER)

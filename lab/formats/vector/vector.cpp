@@ -31,11 +31,11 @@ class QuietErrors {
   QuietErrors& operator=(const QuietErrors&) = delete;
 };
 
-template <auto Gdal::*free>
+template <auto Gdal::*Function>
 struct Free {
   template <typename Thing>
   void operator()(Thing* thing) const {
-    (gdal().*free)(thing);
+    (gdal().*Function)(thing);
   }
 };
 using Dataset = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, Free<&Gdal::GDALClose>>;
