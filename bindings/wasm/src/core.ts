@@ -55,6 +55,7 @@ export class Core {
   readonly reply: number;     // in elements of u32
   readonly question: number;  // in elements of f32
   readonly algorithms: readonly string[];
+  readonly simd: boolean;
   #staging = 0;
   #room = 0;
   #used = 0;
@@ -73,6 +74,7 @@ export class Core {
     this.lookAgain();
     this.reply = exports.reply() >> 2;
     this.question = exports.question() >> 2;
+    this.simd = exports.has_simd() !== 0;
     this.algorithms = [...this.#algorithms()];
   }
 

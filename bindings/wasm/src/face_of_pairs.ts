@@ -20,7 +20,7 @@ export class PairFindingFace implements PairFinding {
     this.#pairs = new Pairs(core);
     core.exports.version();
     this.version = core.text(0);
-    this.simd = core.exports.has_simd() !== 0;
+    this.simd = core.simd;
   }
 
   pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array {

@@ -3,54 +3,74 @@
 // The pairs, and their order, are those of the module's brute force. Where a box is invalid or absent, the module is
 // to look at it.
 
-/** Up to how many boxes this is the faster way; measured by bench/web/compare.mjs. */
-export const few2 = 24;
-export const few3 = 20;
+/** Views of up to so many ids are kept: making one costs as much as comparing ten boxes. */
+const mostKept = 256;
 
-const most = Math.max(few2, few3);
-const pairs = new Uint32Array(most * (most - 1));
-/** By the number of ids in it. Views are made once: making one costs as much as comparing ten boxes. */
-const views: Uint32Array[] = [];
+export class Few {
+  /** Up to how many boxes this is the faster way, in the plane and in space; measured by bench/web/compare.mjs. */
+  readonly most2: number;
+  readonly most3: number;
+  #pairs: Uint32Array = new Uint32Array(1024);
+  readonly #views: Uint32Array[] = [];
 
-function firstOf(count: number): Uint32Array {
-  return (views[count] ??= pairs.subarray(0, count));
-}
+  constructor(simd: boolean) {
+    this.most2 = simd ? 48 : 300;
+    this.most3 = simd ? 44 : 300;
+  }
 
-/** The pairs of up to `few2` boxes, or undefined if one is not as it should be. */
-export function fewPairs2(boxes: Float32Array): Uint32Array | undefined {
-  const { length } = boxes;
-  let found = 0;
-  for (let a = 0; a < length; a += 4) {
-    const minX = boxes[a] as number, minY = boxes[a + 1] as number;
-    const maxX = boxes[a + 2] as number, maxY = boxes[a + 3] as number;
-    if (!(minX <= maxX && minY <= maxY)) return undefined;
-    for (let b = a + 4; b < length; b += 4) {
-      if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 2] as number) &&
-          (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 3] as number)) {
-        pairs[found++] = a >> 2;
-        pairs[found++] = b >> 2;
+  /** The pairs of up to `most2` boxes, or undefined if one is not as it should be. */
+  pairs2(boxes: Float32Array): Uint32Array | undefined {
+    const { length } = boxes;
+    let pairs: Uint32Array = this.#pairs;
+    let found = 0;
+    for (let a = 0; a < length; a += 4) {
+      const minX = boxes[a] as number, minY = boxes[a + 1] as number;
+      const maxX = boxes[a + 2] as number, maxY = boxes[a + 3] as number;
+      if (!(minX <= maxX && minY <= maxY)) return undefined;
+      if (found + length > pairs.length) pairs = this.#grow(found + length);
+      for (let b = a + 4; b < length; b += 4) {
+        if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 2] as number) &&
+            (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 3] as number)) {
+          pairs[found++] = a >> 2;
+          pairs[found++] = b >> 2;
+        }
       }
     }
+    return this.#first(found);
   }
-  return firstOf(found);
-}
 
-/** The same for up to `few3` boxes of space. */
-export function fewPairs3(boxes: Float32Array): Uint32Array | undefined {
-  const { length } = boxes;
-  let found = 0;
-  for (let a = 0, first = 0; a < length; a += 6, ++first) {
-    const minX = boxes[a] as number, minY = boxes[a + 1] as number, minZ = boxes[a + 2] as number;
-    const maxX = boxes[a + 3] as number, maxY = boxes[a + 4] as number, maxZ = boxes[a + 5] as number;
-    if (!(minX <= maxX && minY <= maxY && minZ <= maxZ)) return undefined;
-    for (let b = a + 6, second = first + 1; b < length; b += 6, ++second) {
-      if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 3] as number) &&
-          (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 4] as number) &&
-          (boxes[b + 2] as number) <= maxZ && minZ <= (boxes[b + 5] as number)) {
-        pairs[found++] = first;
-        pairs[found++] = second;
+  /** The same for up to `most3` boxes of space. */
+  pairs3(boxes: Float32Array): Uint32Array | undefined {
+    const { length } = boxes;
+    let pairs: Uint32Array = this.#pairs;
+    let found = 0;
+    for (let a = 0, first = 0; a < length; a += 6, ++first) {
+      const minX = boxes[a] as number, minY = boxes[a + 1] as number, minZ = boxes[a + 2] as number;
+      const maxX = boxes[a + 3] as number, maxY = boxes[a + 4] as number, maxZ = boxes[a + 5] as number;
+      if (!(minX <= maxX && minY <= maxY && minZ <= maxZ)) return undefined;
+      if (found + length > pairs.length) pairs = this.#grow(found + length);
+      for (let b = a + 6, second = first + 1; b < length; b += 6, ++second) {
+        if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 3] as number) &&
+            (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 4] as number) &&
+            (boxes[b + 2] as number) <= maxZ && minZ <= (boxes[b + 5] as number)) {
+          pairs[found++] = first;
+          pairs[found++] = second;
+        }
       }
     }
+    return this.#first(found);
   }
-  return firstOf(found);
+
+  /** Makes room for `ids` and keeps those that are there. */
+  #grow(ids: number): Uint32Array {
+    const pairs = new Uint32Array(2 * ids);
+    pairs.set(this.#pairs);
+    this.#views.length = 0;
+    return (this.#pairs = pairs);
+  }
+
+  #first(count: number): Uint32Array {
+    if (count >= mostKept) return this.#pairs.subarray(0, count);
+    return (this.#views[count] ??= this.#pairs.subarray(0, count));
+  }
 }

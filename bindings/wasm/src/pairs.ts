@@ -5,7 +5,7 @@ import type {
 import { type Given, bytesOf, bytesOfFilter, checkDimension, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
-import { few2, few3, fewPairs2, fewPairs3 } from "./few.ts";
+import { Few } from "./few.ts";
 
 /** As in module/pairs.cpp. */
 const enum Mode { counts = 1, sorts = 2, joins = 4 }
@@ -26,18 +26,21 @@ export class Pairs {
   #lastChecked: object | undefined;  // options that were looked through for unknown ones
   #lastView: Uint32Array = new Uint32Array(0);
 
+  readonly #few: Few;
   readonly #forFew: string;  // the algorithm that few boxes get where none is named
 
   constructor(core: Core) {
     this.#core = core;
+    this.#few = new Few(core.simd);
     this.#forFew = core.algorithmFor(0);
   }
 
   pairs(boxes: Given, options?: PairsOptions): Uint32Array {
+    const few = this.#few;
     if (options === undefined) {
-      if (boxes instanceof Float32Array && boxes.length <= 4 * few2 && boxes.length % 4 === 0) {
-        const few = fewPairs2(boxes);
-        if (few !== undefined) return few;
+      if (boxes instanceof Float32Array && boxes.length <= 4 * few.most2 && boxes.length % 4 === 0) {
+        const found = few.pairs2(boxes);
+        if (found !== undefined) return found;
       }
       return this.#find(boxes, undefined, {}, 0);
     }
@@ -45,14 +48,14 @@ export class Pairs {
     if (boxes instanceof Float32Array && options.filters === undefined &&
         (options.algorithm === undefined || options.algorithm === "brute_force" || options.algorithm === this.#forFew)) {
       if (options.dimension === 3) {
-        if (boxes.length <= 6 * few3 && boxes.length % 6 === 0) {
-          const few = fewPairs3(boxes);
-          if (few !== undefined) return few;
+        if (boxes.length <= 6 * few.most3 && boxes.length % 6 === 0) {
+          const found = few.pairs3(boxes);
+          if (found !== undefined) return found;
         }
-      } else if (boxes.length <= 4 * few2 && boxes.length % 4 === 0 &&
+      } else if (boxes.length <= 4 * few.most2 && boxes.length % 4 === 0 &&
           (options.dimension === 2 || options.dimension === undefined)) {
-        const few = fewPairs2(boxes);
-        if (few !== undefined) return few;
+        const found = few.pairs2(boxes);
+        if (found !== undefined) return found;
       }
     }
     return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
