@@ -28,7 +28,8 @@ std::vector<Array> arrays_of(const ZipArchive& archive) {
   std::vector<Array> arrays;
   for (std::size_t i = 0; i < archive.members().size(); ++i) {
     const std::string& member = archive.members()[i];
-    if (member.ends_with(array_suffix)) arrays.push_back({member.substr(0, member.size() - array_suffix.size()), i});
+    if (member.ends_with(array_suffix))
+      arrays.push_back({member.substr(0, member.size() - array_suffix.size()), i});
   }
   return arrays;
 }
