@@ -1,0 +1,156 @@
+// Space cut into parts that can be joined apart from each other: by one machine one after the other, or by
+// many at the same time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/export.hpp"
+#include "broadside/pair.hpp"
+
+namespace broadside {
+
+/// Space cut into parts, each a box that has its lower bounds and not its upper ones. Every place is in
+/// exactly one part.
+///
+/// Each part is given the boxes that touch it. A pair of overlapping boxes belongs to the part that owns the
+/// greater of their two minima on every axis; both boxes touch that part. So if each part is joined by itself
+/// and keeps the pairs that belong to it, every pair is found once, and a part can be joined again without
+/// the others. Whether a pair belongs is told by begins_before() of its boxes: see PartPairs.
+///
+/// Copying copies the cuts. Const functions can be called by several threads at once.
+template <int D, typename Real = float>
+class BROADSIDE_PUBLIC Partition {
+ public:
+  /// A cut at right angles to an axis: what lies below `at` is on one side, and what lies at it or above on
+  /// the other.
+  struct Cut {
+    static constexpr std::uint32_t part = UINT32_MAX;
+
+    std::uint32_t axis = part;  ///< `part` for what is not cut further
+    std::uint32_t below = 0;    ///< the place of what lies below in cuts(), or the number of the part
+    std::uint32_t above = 0;    ///< the place of what lies above
+    Real at = 0;
+
+    friend bool operator==(const Cut&, const Cut&) = default;
+  };
+
+  /// The bounds of a part; infinite where nothing was cut.
+  struct Region {
+    Point<D, Real> low;
+    Point<D, Real> high;
+
+    friend bool operator==(const Region&, const Region&) = default;
+
+    /// Whether a present box touches the part.
+    bool touches(const Box<D, Real>& box) const noexcept {
+      bool is_touching = true;
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        is_touching &= box.max[axis] >= low[axis];
+        is_touching &= box.min[axis] < high[axis] || high[axis] == std::numeric_limits<Real>::infinity();
+      }
+      return is_touching;
+    }
+
+    /// A bit for each axis on which the box begins before the part.
+    unsigned begins_before(const Box<D, Real>& box) const noexcept {
+      unsigned axes = 0;
+      for (std::size_t axis = 0; axis < D; ++axis) axes |= unsigned{box.min[axis] < low[axis]} << axis;
+      return axes;
+    }
+  };
+
+  static constexpr Region everything() noexcept {
+    Region region;
+    region.low.fill(-std::numeric_limits<Real>::infinity());
+    region.high.fill(std::numeric_limits<Real>::infinity());
+    return region;
+  }
+
+  /// One part: all of space.
+  Partition() : Partition({}, 1) {}
+
+  /// Cuts `space` into at most `parts` parts of about equal cost, from a sample of the boxes; into fewer
+  /// where boxes cannot be told apart by cuts. A part costs what it has of boxes and, where `boxes` says how
+  /// many the sample stands for, of pairs. The same for the same arguments. Absent boxes count for nothing.
+  ///
+  /// Cost: O(s log s) for each doubling of the parts, with a sample of s boxes.
+  Partition(std::span<const Box<D, Real>> sample, std::size_t parts, std::uint64_t boxes = 0,
+            const Region& space = everything());
+
+  /// From cuts() of another one. Throws std::invalid_argument if they are no such list.
+  explicit Partition(std::vector<Cut> cuts, const Region& space = everything());
+
+  /// The number of parts, at least 1.
+  std::size_t size() const noexcept { return regions_.size(); }
+
+  const Region& region(std::size_t part) const noexcept { return regions_[part]; }
+
+  /// The cuts as a tree, whose root is the first: enough to make the same partition elsewhere.
+  std::span<const Cut> cuts() const noexcept { return cuts_; }
+
+  /// The part that a place lies in.
+  std::size_t owner(const Point<D, Real>& place) const noexcept {
+    std::uint32_t at = 0;
+    while (cuts_[at].axis != Cut::part) {
+      const Cut& cut = cuts_[at];
+      at = place[cut.axis] < cut.at ? cut.below : cut.above;
+    }
+    return cuts_[at].below;
+  }
+
+  /// Calls visit(part) for each part that a present box touches, ascending.
+  template <typename Visit>
+  void for_each_part(const Box<D, Real>& box, const Visit& visit) const {
+    // As deep as the tree: each level leaves at most one side for later.
+    std::array<std::uint32_t, max_depth> later;
+    std::size_t waiting = 0;
+    std::uint32_t at = 0;
+    while (true) {
+      const Cut& cut = cuts_[at];
+      if (cut.axis == Cut::part) {
+        visit(std::size_t{cut.below});
+        if (waiting == 0) return;
+        at = later[--waiting];
+        continue;
+      }
+      const bool is_above = box.max[cut.axis] >= cut.at;
+      if (!(box.min[cut.axis] < cut.at)) {
+        at = cut.above;
+      } else {
+        if (is_above) later[waiting++] = cut.above;
+        at = cut.below;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t max_depth = 64;
+
+  std::vector<Cut> cuts_;
+  std::vector<Region> regions_;
+};
+
+/// Passes on the pairs of a part's boxes that belong to the part. One thread at a time; a search by several
+/// threads passes them on in the order of the search.
+class BROADSIDE_PUBLIC PartPairs final : public PairSink {
+ public:
+  /// `left` has begins_before() of each box of one set, and `right` of the other; the same where there is one
+  /// set. All of these must outlive the sink.
+  PartPairs(std::span<const std::uint8_t> left, std::span<const std::uint8_t> right, PairSink& pairs)
+      : left_(left), right_(right), pairs_(&pairs) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override;
+
+  std::span<const std::uint8_t> left_;
+  std::span<const std::uint8_t> right_;
+  PairSink* pairs_;
+};
+
+}  // namespace broadside

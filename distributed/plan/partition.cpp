@@ -1,0 +1,211 @@
+// Space cut into parts of about equal cost, by a tree of cuts that is made from a sample of the boxes.
+#include "broadside/partition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "broadside/finder.hpp"
+
+namespace broadside {
+namespace {
+
+/// What a pair costs beside a box that is read, sorted and swept: lab-notes.md has the measurements.
+constexpr double cost_of_pair = 0.15;
+
+/// The most boxes of a sample that are joined to see where the pairs are.
+constexpr std::size_t most_joined = 4096;
+
+/// What is spread along the axes: a box from its minimum to its maximum, a pair at its place.
+template <int D, typename Real>
+struct Weighted {
+  Box<D, Real> box;
+  double cost;
+};
+
+template <int D, typename Real>
+class Cutter {
+ public:
+  using Cut = typename Partition<D, Real>::Cut;
+  using Items = std::vector<Weighted<D, Real>>;
+
+  std::vector<Cut> take_cuts() { return std::move(cuts_); }
+
+  void cut(Items items, std::size_t parts, std::size_t depth_left) {
+    const std::size_t place = cuts_.size();
+    cuts_.emplace_back();
+    const std::size_t parts_below = parts / 2;
+    const std::optional<Choice> choice =
+        parts > 1 && depth_left > 0 ? choose(items, parts_below, parts - parts_below) : std::nullopt;
+    if (!choice) {
+      cuts_[place].below = parts_++;
+      return;
+    }
+    Items below;
+    Items above;
+    for (const Weighted<D, Real>& item : items) {
+      if (item.box.min[choice->axis] < choice->at) below.push_back(item);
+      if (item.box.max[choice->axis] >= choice->at) above.push_back(item);
+    }
+    Items().swap(items);
+    const auto place_below = static_cast<std::uint32_t>(cuts_.size());
+    cut(std::move(below), parts_below, depth_left - 1);
+    const auto place_above = static_cast<std::uint32_t>(cuts_.size());
+    cut(std::move(above), parts - parts_below, depth_left - 1);
+    cuts_[place] = {static_cast<std::uint32_t>(choice->axis), place_below, place_above, choice->at};
+  }
+
+ private:
+  struct Choice {
+    std::size_t axis;
+    Real at;
+    double cost;  // of the costlier side's parts
+  };
+
+  /// The cut after which the costlier side costs least; nothing if none makes both sides cheaper than all.
+  std::optional<Choice> choose(const Items& items, std::size_t parts_below, std::size_t parts_above) {
+    double all = 0;
+    for (const Weighted<D, Real>& item : items) all += item.cost;
+    std::optional<Choice> best;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const std::optional<Choice> choice = choose_on(axis, items, all, parts_below, parts_above);
+      if (choice && (!best || choice->cost < best->cost)) best = choice;
+    }
+    return best;
+  }
+
+  std::optional<Choice> choose_on(std::size_t axis, const Items& items, double all, std::size_t parts_below,
+                                  std::size_t parts_above) {
+    minima_.clear();
+    maxima_.clear();
+    for (const Weighted<D, Real>& item : items) {
+      minima_.emplace_back(item.box.min[axis], item.cost);
+      maxima_.emplace_back(item.box.max[axis], item.cost);
+    }
+    const auto by_place = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::sort(minima_.begin(), minima_.end(), by_place);
+    std::sort(maxima_.begin(), maxima_.end(), by_place);
+    std::optional<Choice> best;
+    double below = 0;    // the cost of what begins below the cut
+    double above = all;  // and of what ends at it or above
+    std::size_t end = 0;
+    for (std::size_t begin = 0; begin < minima_.size();) {
+      const Real at = minima_[begin].first;
+      while (end < maxima_.size() && maxima_[end].first < at) above -= maxima_[end++].second;
+      if (below > 0 && std::isfinite(at)) {
+        const double cost =
+            std::max(below / static_cast<double>(parts_below), above / static_cast<double>(parts_above));
+        const bool is_gain = below < all && above < all;
+        if (is_gain && (!best || cost < best->cost)) best = Choice{axis, at, cost};
+      }
+      while (begin < minima_.size() && minima_[begin].first == at) below += minima_[begin++].second;
+    }
+    return best;
+  }
+
+  std::vector<Cut> cuts_;
+  std::uint32_t parts_ = 0;
+  std::vector<std::pair<Real, double>> minima_;
+  std::vector<std::pair<Real, double>> maxima_;
+};
+
+/// The pairs of a sample as what they cost, each at the greater of its two minima.
+template <int D, typename Real>
+void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
+  std::vector<Box<D, Real>> joined;
+  const std::size_t step = std::max<std::size_t>(1, items.size() / most_joined);
+  for (std::size_t place = 0; place < items.size(); place += step) joined.push_back(items[place].box);
+  // With a box in `step`, a pair in its square is seen; and one in boxes / items of these is all there is.
+  const double pair_cost = cost_of_pair * static_cast<double>(step) * static_cast<double>(step) *
+                           static_cast<double>(boxes) / static_cast<double>(items.size());
+  std::vector<Pair> pairs = find_pairs(joined);
+  // Some of very many pairs tell as much.
+  const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * most_joined));
+  for (std::size_t place = 0; place < pairs.size(); place += pair_step) {
+    const Box<D, Real>& first = joined[index(pairs[place].first)];
+    const Box<D, Real>& second = joined[index(pairs[place].second)];
+    Weighted<D, Real> item{{}, pair_cost * static_cast<double>(pair_step)};
+    for (std::size_t axis = 0; axis < D; ++axis)
+      item.box.min[axis] = item.box.max[axis] = std::max(first.min[axis], second.min[axis]);
+    items.push_back(item);
+  }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t parts, std::uint64_t boxes,
+                              const Region& space) {
+  if (parts == 0 || parts >= Cut::part / 2)
+    throw std::invalid_argument("Partition: 0 or too many parts; expected 1 or more, and less than 2^31");
+  std::vector<Weighted<D, Real>> items;
+  if (parts > 1) {
+    items.reserve(sample.size());
+    for (const Box<D, Real>& box : sample)
+      if (is_present(box) && space.touches(box)) items.push_back({box, 1});
+    if (boxes > 0 && items.size() > 1) add_pairs(items, boxes);
+  }
+  Cutter<D, Real> cutter;
+  cutter.cut(std::move(items), parts, max_depth - 1);
+  *this = Partition(cutter.take_cuts(), space);
+}
+
+template <int D, typename Real>
+Partition<D, Real>::Partition(std::vector<Cut> cuts, const Region& space) : cuts_(std::move(cuts)) {
+  // What a cut leads to lies behind it, and parts are numbered as they are met.
+  struct Waiting {
+    std::size_t place;
+    Region region;
+  };
+  std::vector<Waiting> waiting{{0, space}};
+  std::size_t met = 0;
+  const auto refuse = [](std::size_t place) {
+    throw std::invalid_argument("Partition: cut " + std::to_string(place) +
+                                " leads out of the list or backwards; expected the list that cuts() gave");
+  };
+  while (!waiting.empty()) {
+    const Waiting next = waiting.back();
+    waiting.pop_back();
+    if (next.place != met || next.place >= cuts_.size() || waiting.size() + 1 >= max_depth)
+      refuse(next.place);
+    ++met;
+    const Cut& cut = cuts_[next.place];
+    if (cut.axis == Cut::part) {
+      if (cut.below != regions_.size()) refuse(next.place);
+      regions_.push_back(next.region);
+      continue;
+    }
+    if (cut.axis >= D || std::isnan(cut.at)) refuse(next.place);
+    Waiting above{cut.above, next.region};
+    above.region.low[cut.axis] = cut.at;
+    Waiting below{cut.below, next.region};
+    below.region.high[cut.axis] = cut.at;
+    waiting.push_back(above);
+    waiting.push_back(below);
+  }
+  if (met != cuts_.size()) refuse(met);
+}
+
+void PartPairs::consume(std::span<const Pair> pairs) {
+  while (!pairs.empty()) {
+    const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), max_room));
+    Pair* const room = pairs_->room(chunk.size());
+    std::size_t count = 0;
+    for (const Pair pair : chunk) {
+      room[count] = pair;
+      count += std::size_t{(left_[index(pair.first)] & right_[index(pair.second)]) == 0};
+    }
+    pairs_->commit(count);
+    pairs = pairs.subspan(chunk.size());
+  }
+}
+
+template class Partition<2, float>;
+template class Partition<3, float>;
+template class Partition<2, double>;
+template class Partition<3, double>;
+
+}  // namespace broadside
