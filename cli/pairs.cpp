@@ -18,6 +18,7 @@
 #include "cli/help.hpp"
 #include "cli/message.hpp"
 #include "cli/options.hpp"
+#include "cli/out_of_core.hpp"
 #include "cli/pairs_arguments.hpp"
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
@@ -188,6 +189,7 @@ void write_all(std::span<const Pair> pairs, lab::PairFile& file) {
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check(arguments, catalogue);
+  if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   Join join(arguments, catalogue);
   if (arguments.counts) {
     PairCounter counter;
@@ -267,6 +269,16 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "pair); found: written as they are found, in an order fixed by boxes and algorithm")
       ->capture_default_str();
   verb->add_flag("--count", arguments->counts, "Only count the pairs, and keep none");
+  verb->add_option(
+          "--memory", arguments->memory,
+          "Take no more memory than this, such as 2G: boxes and pairs are kept in a work folder and joined "
+          "part after part. If that ends early, by whatever cause, the same command goes on where it was")
+      ->type_name("SIZE");
+  verb->add_option(
+          "--work", arguments->work,
+          "With --memory: the work folder (default: the output's name, or the first file's, with .work), "
+          "which is removed in the end")
+      ->type_name("FOLDER");
   verb->add_flag("--swept", arguments->is_swept,
                  "The two files are one mesh at two times: join the boxes that its parts sweep in between");
   verb->add_option("--left", arguments->left, "With --swept: vertices, edges or faces")->type_name("PART");
@@ -277,7 +289,9 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                  "With --swept: leave out pairs that have a vertex in common");
   add_examples(*verb, {{"pairs boxes.csv -o pairs.csv", "which boxes of a file overlap"},
                        {"pairs buildings.geojson roads.csv --count",
-                        "how many boxes of one file overlap one of the other"}});
+                        "how many boxes of one file overlap one of the other"},
+                       {"pairs boxes.npy --memory 2G --threads 0 -o pairs.npy",
+                        "the same for more boxes than memory holds"}});
   return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 

@@ -2,12 +2,14 @@
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "cli/message.hpp"
+#include "cli/out_of_core.hpp"
 #include "cli/values.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/formats/csv/text.hpp"
@@ -69,6 +71,51 @@ double read_distance(const std::string& text) {
   return distance;
 }
 
+std::uint64_t read_memory(const std::string& text) {
+  const auto refuse = [&text](std::string_view found) {
+    throw Unusable(
+        fmt::format("--memory is '{}'{}; expected 32M or more, such as 500M or 2G, in bytes, K, M, "
+                    "G or T of 1,024 each",
+                    text, found));
+  };
+  constexpr std::string_view units = "KMGT";
+  std::string number = text;
+  std::uint64_t unit = 1;
+  if (!number.empty()) {
+    const std::size_t place =
+        units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(number.back()))));
+    if (place != std::string_view::npos) {
+      unit <<= 10 * (place + 1);
+      number.pop_back();
+    }
+  }
+  double value = 0;
+  if (!lab::readers::parse_number(number, value) || !(value > 0) || !(value < 1e15)) refuse("");
+  const double bytes = value * static_cast<double>(unit);
+  if (!(bytes < 9e18)) refuse("");
+  if (bytes < static_cast<double>(std::uint64_t{32} << 20)) refuse(", which is too little");
+  return static_cast<std::uint64_t>(bytes);
+}
+
+namespace {
+
+void check_memory(const PairsArguments& arguments) {
+  if (arguments.memory.empty()) {
+    if (!arguments.work.empty())
+      throw Unusable("--work without --memory; expected a limit, without which nothing is kept on disk");
+    return;
+  }
+  read_memory(arguments.memory);
+  if (!has_out_of_core())
+    throw Unusable(
+        "--memory in a build without Broadside::out_of_core; expected a POSIX system, and libxxhash-dev "
+        "when the program was built");
+  if (arguments.is_swept || !arguments.within.empty() || !arguments.ids.empty() || !arguments.frame.empty())
+    throw Unusable("--swept, --within, --ids or --frame with --memory; expected none of them");
+}
+
+}  // namespace
+
 lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   const std::vector<lab::Entry> selected = catalogue.select(arguments.algorithm);
   if (selected.size() != 1)
@@ -93,6 +140,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   check_swept(arguments);
+  check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));

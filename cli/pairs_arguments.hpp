@@ -1,6 +1,7 @@
 // The arguments of `broadside pairs`, and whether they go together.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct PairsArguments {
   std::string to;
   std::string order = "sorted";
   bool counts = false;
+  std::string memory;  // a limit, with which the join works on disk
+  std::string work;    // the folder for that
   bool is_swept = false;
   std::string left;  // parts of a swept mesh
   std::string right;
@@ -35,6 +38,9 @@ lab::MeshPart read_part(const std::string& option, const std::string& text);
 
 /// The distance of --within. Throws Unusable if it is invalid.
 double read_distance(const std::string& text);
+
+/// The bytes of --memory. Throws Unusable if it is invalid or too little.
+std::uint64_t read_memory(const std::string& text);
 
 /// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.
 lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);

@@ -19,6 +19,20 @@ install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/broadside.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT development)
 
+# Parts of space, and what joins them.
+set(distributed broadside_partition)
+if(BROADSIDE_HAS_OUT_OF_CORE)
+  list(APPEND distributed broadside_out_of_core)
+endif()
+foreach(target IN LISTS distributed)
+  string(REPLACE "broadside_" "" name ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  install(FILES ${PROJECT_SOURCE_DIR}/distributed/include/broadside/${name}.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/broadside COMPONENT development)
+endforeach()
+install(TARGETS ${distributed} EXPORT BroadsideTargets ARCHIVE COMPONENT development
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
 # The config file makes the target itself: Bullet is wherever it is found there.
 if(BROADSIDE_HAS_BULLET)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet/include/broadside

@@ -13,14 +13,17 @@
 namespace broadside::lab {
 namespace {
 
-void append(std::string& text, BoxId id, const std::vector<std::string>* ids, char end) {
+constexpr std::size_t bytes_a_piece = std::size_t{1} << 16;
+
+template <typename Number>
+void append(std::string& text, Number number, const std::vector<std::string>* ids, char end) {
   if (ids != nullptr) {
-    readers::append_csv_field(text, (*ids)[index(id)]);
+    readers::append_csv_field(text, (*ids)[number]);
     text += end;
     return;
   }
-  std::array<char, 11> digits;
-  char* const after = std::to_chars(digits.data(), digits.data() + 10, index(id)).ptr;
+  std::array<char, 21> digits;
+  char* const after = std::to_chars(digits.data(), digits.data() + 20, number).ptr;
   *after = end;
   text.append(digits.data(), after + 1);
 }
@@ -39,28 +42,49 @@ PairFormat pair_format_of(const std::filesystem::path& path, std::string_view na
                               path.string(), extension));
 }
 
-PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids)
+PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids,
+                   bool has_large_numbers)
     : stream_(stream), ids_(ids) {
-  if (format == PairFormat::npy)
+  if (format == PairFormat::npy && has_large_numbers)
+    large_array_.emplace(stream, 2);
+  else if (format == PairFormat::npy)
     array_.emplace(stream, 2);
   else
     text_ = is_between ? "left,right\n" : "first,second\n";
 }
 
 void PairFile::write(std::span<const Pair> pairs) {
-  constexpr std::size_t bytes_a_piece = std::size_t{1} << 16;
   for (const Pair pair : pairs) {
     if (array_) {
       array_->write(std::array{index(pair.first), index(pair.second)});
       continue;
     }
-    append(text_, pair.first, ids_.left, ',');
-    append(text_, pair.second, ids_.right, '\n');
+    append(text_, index(pair.first), ids_.left, ',');
+    append(text_, index(pair.second), ids_.right, '\n');
     if (text_.size() >= bytes_a_piece) write_text();
   }
 }
 
-void PairFile::finish() { array_ ? array_->finish() : write_text(); }
+void PairFile::write(std::span<const std::array<std::uint64_t, 2>> pairs) {
+  for (const std::array<std::uint64_t, 2>& pair : pairs) {
+    if (large_array_) {
+      large_array_->write(pair);
+      continue;
+    }
+    append(text_, pair[0], ids_.left, ',');
+    append(text_, pair[1], ids_.right, '\n');
+    if (text_.size() >= bytes_a_piece) write_text();
+  }
+}
+
+void PairFile::finish() {
+  if (array_)
+    array_->finish();
+  else if (large_array_)
+    large_array_->finish();
+  else
+    write_text();
+}
 
 void PairFile::write_text() {
   stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));

@@ -1,6 +1,7 @@
 // Pairs as files: CSV, or a NumPy array of n x 2 numbers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -36,9 +37,13 @@ class PairFile {
   /// Begins the file. The stream outlives this object; the caller checks it. `is_between`
   /// says that pairs are of a left and a right set, which the columns are then called. Ids, which outlive
   /// this object, are for CSV alone.
-  PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {});
+  PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {},
+           bool has_large_numbers = false);
 
   void write(std::span<const Pair> pairs);
+
+  /// Pairs of numbers beyond 32 bits: all that a file with `has_large_numbers` takes, and no other.
+  void write(std::span<const std::array<std::uint64_t, 2>> pairs);
 
   /// After the last pair.
   void finish();
@@ -50,6 +55,7 @@ class PairFile {
   PairIds ids_;
   std::string text_;  // CSV that is not yet written
   std::optional<NpyArrayWriter<std::uint32_t>> array_;
+  std::optional<NpyArrayWriter<std::uint64_t>> large_array_;
 };
 
 }  // namespace broadside::lab

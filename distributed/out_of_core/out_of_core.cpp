@@ -292,7 +292,11 @@ class OutOfCoreJoin<D, Real>::Work {
 
   template <typename P>
   void hand_on(bool is_sorted, const std::function<void(std::span<const P>)>& take) {
-    check_runs<P>();
+    if (manifest_.has_large_ids != std::is_same_v<P, LargePair>)
+      throw InvalidFrame(
+          "OutOfCoreJoin: pairs of boxes of " + std::string(manifest_.has_large_ids ? "64" : "32") +
+          " bits; expected a function that takes " + (manifest_.has_large_ids ? "LargePair" : "Pair"));
+    check_runs();
     std::vector<Run> runs;
     for (const Part& part : manifest_.parts)
       for (std::size_t run = 0; run < part.runs.size(); ++run)
@@ -356,9 +360,7 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   /// More would have blocks too small for a disk.
-  std::uint64_t most_parts() const {
-    return std::min<std::uint64_t>(1024, options_.memory / (std::uint64_t{1} << 18));
-  }
+  std::uint64_t most_parts() const { return std::clamp<std::uint64_t>(options_.memory >> 18, 4, 1024); }
 
   std::vector<BoxFile<D, Real>> files_for(const std::vector<Part>& parts, std::size_t side) const {
     const std::size_t bytes_a_box = sizeof(Box<D, Real>) + sizeof(std::uint32_t);
@@ -657,7 +659,6 @@ class OutOfCoreJoin<D, Real>::Work {
 
   /// Reads all pairs once where a checksum may be wrong, so that none is handed on before a part that must be
   /// made again.
-  template <typename P>
   void check_runs() {
     for (std::size_t place = 0; place < manifest_.parts.size(); ++place) {
       try {

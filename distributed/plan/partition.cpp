@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/finder.hpp"
 
 namespace broadside {
@@ -121,7 +122,7 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
   // With a box in `step`, a pair in its square is seen; and one in boxes / items of these is all there is.
   const double pair_cost = cost_of_pair * static_cast<double>(step) * static_cast<double>(step) *
                            static_cast<double>(boxes) / static_cast<double>(items.size());
-  std::vector<Pair> pairs = find_pairs(joined);
+  std::vector<Pair> pairs = find_pairs(joined, algorithms().front().name);
   // Some of very many pairs tell as much.
   const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * most_joined));
   for (std::size_t place = 0; place < pairs.size(); place += pair_step) {

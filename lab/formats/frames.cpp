@@ -31,6 +31,16 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
   std::vector<Box<D, Real>> first() override { return converted_boxes(frames_->first()); }
 
+  bool first_piece(std::vector<Box<D, Real>>& boxes) override {
+    if (!frames_->first_piece(old_piece_)) return false;
+    boxes = converted_boxes(old_piece_);
+    return true;
+  }
+
+  bool has_pieces() const override { return frames_->has_pieces(); }
+
+  std::uint64_t estimated_boxes() const override { return frames_->estimated_boxes(); }
+
   bool next(Step<D, Real>& step) override {
     if (!frames_->next(old_)) return false;
     step = {old_.size, std::move(old_.changed), converted_boxes(old_.boxes)};
@@ -74,6 +84,7 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   std::string name_;  // the file's
   Rounding rounding_;
   Step<OldD, OldReal> old_;
+  std::vector<Box<OldD, OldReal>> old_piece_;
 };
 
 template <typename Real, int D, typename OldReal>

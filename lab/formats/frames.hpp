@@ -83,6 +83,20 @@ class FrameReader {
   /// The boxes of the first frame. Called once, before next().
   virtual std::vector<Box<D, Real>> first() = 0;
 
+  /// In the stead of first(), for more boxes than memory holds: puts the next ones into `boxes`, however
+  /// many, instead of those of the last call; false where there are no more. All at once unless has_pieces().
+  virtual bool first_piece(std::vector<Box<D, Real>>& boxes) {
+    if (std::exchange(has_given_first_, true)) return false;
+    boxes = first();
+    return true;
+  }
+
+  /// Whether first_piece() gives a few boxes at a time, and memory is needed for no others.
+  virtual bool has_pieces() const { return false; }
+
+  /// About how many boxes the first frame has; 0 where that is not known before it is read.
+  virtual std::uint64_t estimated_boxes() const { return 0; }
+
   /// Whether there was another frame; `step` then leads to it from the one before.
   virtual bool next(Step<D, Real>& step) = 0;
 
@@ -104,6 +118,9 @@ class FrameReader {
   /// Whether bounds are computed, in double, from a centre and a size: pairs of these boxes are not exact
   /// either.
   virtual bool is_computed() const { return false; }
+
+ private:
+  bool has_given_first_ = false;
 };
 
 /// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.

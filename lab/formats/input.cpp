@@ -21,6 +21,7 @@ namespace broadside::lab {
 namespace {
 
 constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
+constexpr std::uint64_t bytes_a_release = std::uint64_t{1} << 24;  // of whole pages, whatever the machine's
 
 /// How much is copied of what cannot be mapped. Nothing useful comes from a device but a terminal, and what
 /// the others give, such as /dev/zero, has no end. A pipe may have none either; its readers need memory as
@@ -175,6 +176,13 @@ void Input::copy() {
       "{}: goes on after {} bytes{}; expected {}", name_, used,
       is_device_ ? ", and is a device" : ", more than memory can hold beside its boxes",
       is_device_ ? "a file or a pipe, which have an end" : "an end, or a file, which is not copied"));
+}
+
+void Input::release(std::uint64_t byte) {
+  if (mapped_ == nullptr || byte < released_ + bytes_a_release) return;
+  const std::uint64_t end = byte / bytes_a_release * bytes_a_release;  // whole pages
+  platform::release(static_cast<char*>(mapped_) + released_, end - released_);
+  released_ = end;
 }
 
 std::istream& Input::stream() {

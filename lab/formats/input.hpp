@@ -68,6 +68,10 @@ class Input {
   /// it throws FileError where the bytes cannot be read.
   std::istream& stream();
 
+  /// Says that the bytes before `byte` will not be looked at again: those of a mapped file then take no
+  /// memory.
+  void release(std::uint64_t byte);
+
   /// Says that all bytes before `byte` have been dealt with. Cheap.
   void passed(std::uint64_t byte) {
     if (byte >= next_report_) report(byte);
@@ -91,6 +95,7 @@ class Input {
   std::string_view all_;  // once bytes() was called, or from the start in memory
   bool has_all_ = false;
   void* mapped_ = nullptr;
+  std::uint64_t released_ = 0;
   std::string kept_;  // all bytes of what cannot be mapped, or was given to keep
   std::unique_ptr<Buffer> buffer_;
   std::unique_ptr<std::istream> stream_;

@@ -47,6 +47,9 @@ OpenFile open_file(int descriptor);
 void* map(int descriptor, std::uint64_t bytes);
 void unmap(void* mapped, std::uint64_t bytes) noexcept;
 
+/// Gives back the memory of whole pages that stay mapped, where the system can.
+void release(void* mapped, std::uint64_t bytes) noexcept;
+
 /// Whether this process may write a file, or in a folder.
 bool may_write(const std::filesystem::path& path);
 

@@ -60,7 +60,7 @@ struct OutOfCoreOptions {
 
   /// How much memory the join may take, in bytes, beside the program itself; at least min_memory.
   std::uint64_t memory = std::uint64_t{1} << 30;
-  static constexpr std::uint64_t min_memory = std::uint64_t{32} << 20;
+  static constexpr std::uint64_t min_memory = std::uint64_t{1} << 18;
 
   std::string algorithm{default_algorithm};  ///< the spec by which parts are joined
   std::size_t threads = 0;                   ///< as in Workers; the standard executor's

@@ -40,6 +40,19 @@ class PlainCsv final : public FrameReader<D, Real> {
     return boxes;
   }
 
+  bool first_piece(std::vector<Box<D, Real>>& boxes) override {
+    constexpr std::size_t rows_a_piece = std::size_t{1} << 16;
+    boxes.clear();
+    while (boxes.size() < rows_a_piece && rows_.next()) {
+      rows_.read();
+      boxes.push_back(rows_.box());
+    }
+    rows_.release();
+    return !boxes.empty();
+  }
+
+  bool has_pieces() const override { return true; }
+
   bool next(Step<D, Real>&) override { return false; }
 
   std::string warning() const override { return rows_.warning(); }

@@ -56,6 +56,9 @@ class CsvRows {
 
   const CsvLines& lines() const noexcept { return table_.lines; }
 
+  /// Says that the rows up to here will not be looked at again.
+  void release() { table_.input->release(table_.input->bytes().size() - table_.lines.bytes_left()); }
+
   /// Whether bounds are computed from other numbers.
   bool is_computed() const noexcept { return is_computed_; }
 

@@ -63,6 +63,7 @@ void NpyArrayWriter<Value>::flush() {
 }
 
 template class NpyArrayWriter<std::uint32_t>;
+template class NpyArrayWriter<std::uint64_t>;
 template class NpyArrayWriter<float>;
 template class NpyArrayWriter<double>;
 

@@ -19,7 +19,7 @@ namespace broadside::lab {
 ///
 /// Memory: a small buffer; the whole array where the stream cannot go back, as in a pipe or standard output,
 /// because its header comes first and says how many rows there are. The caller checks the
-/// stream. One thread at a time. For Value = std::uint32_t, float and double.
+/// stream. One thread at a time. For Value = std::uint32_t, std::uint64_t, float and double.
 template <typename Value>
 class NpyArrayWriter {
  public:

@@ -1,6 +1,8 @@
 // Boxes as a NumPy array: a row a box, with the minima on all axes and then the maxima, or with named fields.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstring>
 #include <memory>
 #include <ostream>
 #include <string_view>
@@ -21,22 +23,24 @@ template <int D, typename Real>
 class NpyFrame final : public FrameReader<D, Real> {
  public:
   NpyFrame(std::unique_ptr<Input> input, std::size_t begin, const NpyLayout& layout)
-      : input_(std::move(input)), begin_(begin), layout_(layout) {}
+      : input_(std::move(input)), begin_(begin), layout_(layout), is_plain_(is_plain(layout)) {}
 
   std::vector<Box<D, Real>> first() override {
-    std::vector<Box<D, Real>> boxes(layout_.rows);
-    for (std::size_t row = 0; row < layout_.rows; ++row) {
-      for (std::size_t axis = 0; axis < D; ++axis) {
-        const auto [min, max] = bounds_of(layout_.forms[axis], number(row, layout_.first[axis]),
-                                          number(row, layout_.second[axis]));
-        boxes[row].min[axis] = static_cast<Real>(min);
-        boxes[row].max[axis] = static_cast<Real>(max);
-      }
-      if (!is_present(boxes[row]) && !is_absent(boxes[row])) refuse_box(row, boxes[row]);
-      input_->passed(begin_ + row * layout_.row_step);
-    }
+    std::vector<Box<D, Real>> boxes;
+    read(layout_.rows, boxes);
     return boxes;
   }
+
+  bool first_piece(std::vector<Box<D, Real>>& boxes) override {
+    constexpr std::size_t rows_a_piece = std::size_t{1} << 18;
+    input_->release(begin_ + next_row_ * layout_.row_step);
+    read(std::min(rows_a_piece, layout_.rows - next_row_), boxes);
+    return !boxes.empty();
+  }
+
+  bool has_pieces() const override { return true; }
+
+  std::uint64_t estimated_boxes() const override { return layout_.rows; }
 
   bool next(Step<D, Real>&) override { return false; }
 
@@ -52,6 +56,45 @@ class NpyFrame final : public FrameReader<D, Real> {
   }
 
  private:
+  /// Reads the next `count` rows.
+  void read(std::size_t count, std::vector<Box<D, Real>>& boxes) {
+    boxes.resize(count);
+    const std::size_t first = std::exchange(next_row_, next_row_ + count);
+    if (is_plain_ && count > 0)
+      std::memcpy(boxes.data(), input_->bytes().data() + begin_ + first * layout_.row_step,
+                  count * layout_.row_step);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_plain_) boxes[i] = box_of(first + i);
+      if (!is_present(boxes[i]) && !is_absent(boxes[i])) refuse_box(first + i, boxes[i]);
+      input_->passed(begin_ + (first + i) * layout_.row_step);
+    }
+  }
+
+  Box<D, Real> box_of(std::size_t row) const {
+    Box<D, Real> box;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const auto [min, max] =
+          bounds_of(layout_.forms[axis], number(row, layout_.first[axis]), number(row, layout_.second[axis]));
+      box.min[axis] = static_cast<Real>(min);
+      box.max[axis] = static_cast<Real>(max);
+    }
+    return box;
+  }
+
+  /// Whether the rows are boxes as they are in memory.
+  static bool is_plain(const NpyLayout& layout) {
+    if constexpr (std::endian::native != std::endian::little) return false;
+    const auto load = npy_type_of(sizeof(Real) == sizeof(float) ? "<f4" : "<f8")->load;
+    const auto is_at = [load](const NpyColumn& column, std::size_t place) {
+      return column.offset == place * sizeof(Real) && column.type.load == load;
+    };
+    bool is_plain = layout.row_step == sizeof(Box<D, Real>);
+    for (std::size_t axis = 0; axis < D; ++axis)
+      is_plain = is_plain && layout.forms[axis] == BoundsForm::min_max && is_at(layout.first[axis], axis) &&
+                 is_at(layout.second[axis], D + axis);
+    return is_plain;
+  }
+
   double number(std::size_t row, const NpyColumn& column) const {
     const char* const bytes = input_->bytes().data() + begin_ + row * layout_.row_step + column.offset;
     double value = 0;
@@ -71,6 +114,8 @@ class NpyFrame final : public FrameReader<D, Real> {
   std::unique_ptr<Input> input_;
   std::size_t begin_;
   NpyLayout layout_;
+  bool is_plain_;
+  std::size_t next_row_ = 0;
 };
 
 AnyFrameReader open_npy(std::unique_ptr<Input> input, const ReadOptions&) {

@@ -56,6 +56,8 @@ void* map(int descriptor, std::uint64_t bytes) {
 
 void unmap(void* mapped, std::uint64_t bytes) noexcept { ::munmap(mapped, bytes); }
 
+void release(void* mapped, std::uint64_t bytes) noexcept { ::madvise(mapped, bytes, MADV_DONTNEED); }
+
 bool may_write(const std::filesystem::path& path) { return ::access(path.c_str(), W_OK) == 0; }
 
 }  // namespace broadside::lab::platform

@@ -68,6 +68,9 @@ void* map(int descriptor, std::uint64_t) {
 
 void unmap(void* mapped, std::uint64_t) noexcept { UnmapViewOfFile(mapped); }
 
+// The system takes them where it needs them.
+void release(void*, std::uint64_t) noexcept {}
+
 bool may_write(const std::filesystem::path& path) {
   constexpr int to_write = 2;
   return _waccess(path.c_str(), to_write) == 0;

@@ -1,0 +1,13 @@
+// broadside pairs --memory, where the library for it is missing.
+#include "cli/message.hpp"
+#include "cli/out_of_core.hpp"
+
+namespace broadside::cli {
+
+bool has_out_of_core() noexcept { return false; }
+
+Exit join_out_of_core(const PairsArguments&, const lab::Entry&) {
+  throw Unusable("--memory in a build without Broadside::out_of_core; expected one with it");
+}
+
+}  // namespace broadside::cli

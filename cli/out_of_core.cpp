@@ -1,0 +1,231 @@
+// broadside pairs --memory: a join that keeps boxes and pairs on disk.
+#include "cli/out_of_core.hpp"
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "broadside/out_of_core.hpp"
+
+#include "cli/message.hpp"
+#include "cli/options.hpp"
+#include "lab/formats/format.hpp"
+#include "lab/formats/write_file.hpp"
+#include "lab/measure/benchmark.hpp"
+#include "lab/numbers.hpp"
+#include "lab/pair_file.hpp"
+
+namespace broadside::cli {
+namespace {
+
+/// How a file is read, each time it is.
+struct FileToRead {
+  std::string path;
+  lab::ReadOptions options;
+};
+
+lab::BoxFile open(const FileToRead& file) { return lab::open_file(file.path, file.options); }
+
+/// The boxes of a file's first frame, piece by piece.
+template <int D, typename Real>
+class FileBoxes final : public BoxSource<D, Real> {
+ public:
+  explicit FileBoxes(FileToRead file) : file_(std::move(file)) {
+    open_again();
+    estimated_ = reader().estimated_boxes();
+  }
+
+  void begin() override {
+    // The reader is as new until a piece is read.
+    if (std::exchange(has_begun_, false)) open_again();
+  }
+
+  bool next(std::vector<Box<D, Real>>& boxes) override {
+    has_begun_ = true;
+    if (reader().first_piece(boxes)) return true;
+    if (const std::string warning = reader().warning(); !warning.empty() && !std::exchange(has_warned_, true))
+      say(warning);
+    Step<D, Real> step;
+    if (!is_moving_ && reader().next(step)) {
+      is_moving_ = true;
+      say(fmt::format("{}: holds several frames; these are the pairs of the first", file_.path));
+    }
+    return false;
+  }
+
+  std::uint64_t estimated_size() const override { return estimated_; }
+
+ private:
+  lab::FrameReader<D, Real>& reader() {
+    return *std::get<std::unique_ptr<lab::FrameReader<D, Real>>>(*frames_);
+  }
+
+  void open_again() {
+    frames_.reset();
+    frames_.emplace(open(file_).frames);
+  }
+
+  FileToRead file_;
+  std::optional<lab::AnyFrameReader> frames_;
+  std::uint64_t estimated_ = 0;
+  bool has_begun_ = false;
+  bool has_warned_ = false;
+  bool is_moving_ = false;
+};
+
+/// A file that can be read again, and that does not need more memory than there may be.
+void check_file(const std::string& path, const lab::BoxFile& file, std::uint64_t memory) {
+  const bool is_regular = path != "-" && std::filesystem::is_regular_file(path);
+  if (!is_regular || !lab::compression_extension_of(path).empty())
+    throw Unusable(
+        fmt::format("{}: is {} and --memory is given; expected a file that can be read again, and in "
+                    "pieces",
+                    file.name, is_regular ? "compressed" : "no regular file"));
+  const bool has_pieces = std::visit([](const auto& frames) { return frames->has_pieces(); }, file.frames);
+  const std::uint64_t bytes = std::filesystem::file_size(path);
+  if (!has_pieces && bytes > memory / 4)
+    throw Unusable(
+        fmt::format("{}: has {} bytes in format {}, which is read as a whole; expected at most a quarter of "
+                    "--memory, or .npy or .csv, which are read in pieces (broadside convert)",
+                    file.name, lab::grouped(bytes), file.format->name));
+}
+
+/// What tells a file and how it is read from others. Dates are compared for being the same alone.
+std::string identity_of(const FileToRead& file, const InputOptions& input) {
+  const auto date = std::filesystem::last_write_time(file.path).time_since_epoch().count();
+  return fmt::format("{} ({} bytes, date {}, read as {}:{}:{}:{}:{}:{}:{})",
+                     std::filesystem::absolute(file.path).string(), std::filesystem::file_size(file.path),
+                     date, input.format, input.boxes, input.layer, input.columns, file.options.dimension,
+                     file.options.precision ? lab::name(*file.options.precision) : "", input.skips_invalid);
+}
+
+/// Beside the output, or the first file.
+std::filesystem::path work_folder_of(const PairsArguments& arguments) {
+  if (!arguments.work.empty()) return arguments.work;
+  const bool has_output = !arguments.counts && !lab::is_written_directly(arguments.output);
+  return (has_output ? arguments.output : arguments.files[0]) + ".work";
+}
+
+class Progress {
+ public:
+  void operator()(OutOfCoreStage stage, std::uint64_t done, std::uint64_t total) {
+    if (stage != stage_ || !line_) line_.emplace();
+    stage_ = stage;
+    constexpr std::array<std::string_view, 3> texts = {"reading boxes", "joining parts", "writing pairs"};
+    const std::string_view text = texts[static_cast<std::size_t>(stage)];
+    if (total == 0 || done > total)
+      line_->show(fmt::format("{}: {}", text, lab::grouped(done)));
+    else
+      line_->show(text, static_cast<double>(done) / static_cast<double>(total));
+  }
+
+  void clear() { line_.reset(); }
+
+ private:
+  std::optional<ProgressLine> line_{std::in_place};
+  OutOfCoreStage stage_ = OutOfCoreStage::reading;
+};
+
+template <int D, typename Real>
+Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const OutOfCoreOptions& options,
+          Progress& progress) {
+  const lab::Stopwatch watch;
+  std::vector<std::unique_ptr<FileBoxes<D, Real>>> sources;
+  for (FileToRead& file : files) sources.push_back(std::make_unique<FileBoxes<D, Real>>(std::move(file)));
+  const bool is_between = sources.size() == 2;
+  std::optional<OutOfCoreJoin<D, Real>> join;
+  if (is_between)
+    join.emplace(*sources[0], *sources[1], options);
+  else
+    join.emplace(*sources[0], options);
+  join->run();
+  if (arguments.counts) {
+    progress.clear();
+    print(fmt::format("{}\n", join->pairs()));
+    flush_output();
+  } else {
+    lab::write_file(arguments.output, [&](std::ostream& stream) {
+      lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), is_between, {},
+                         join->has_large_ids());
+      const auto hand_on = [&]<typename P>(const std::function<void(std::span<const P>)>& take) {
+        arguments.order == "sorted" ? join->sorted(take) : join->unsorted(take);
+      };
+      if (join->has_large_ids()) {
+        std::vector<std::array<std::uint64_t, 2>> numbers;
+        hand_on(std::function<void(std::span<const LargePair>)>([&](std::span<const LargePair> pairs) {
+          numbers.clear();
+          for (const LargePair pair : pairs) numbers.push_back({pair.first, pair.second});
+          file.write(numbers);
+        }));
+      } else {
+        hand_on(std::function<void(std::span<const Pair>)>(
+            [&](std::span<const Pair> pairs) { file.write(pairs); }));
+      }
+      file.finish();
+    });
+    progress.clear();
+  }
+  const auto text = [](const std::string& path, std::uint64_t boxes) {
+    return fmt::format("{} ({})", path, lab::counted(boxes, "box", "boxes"));
+  };
+  say(fmt::format("{}{} in {}D: {}, in {}; joined by {} in {} of memory in {}",
+                  text(arguments.files[0], join->boxes()),
+                  is_between ? " with " + text(arguments.files[1], join->right_boxes()) : "", D,
+                  lab::counted(join->pairs(), "pair", "pairs"), lab::name(lab::precision_of<Real>),
+                  options.algorithm, arguments.memory, lab::duration(watch.milliseconds() / 1e3)));
+  join->remove_folder();
+  return Exit::fine;
+}
+
+}  // namespace
+
+bool has_out_of_core() noexcept { return true; }
+
+Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) {
+  OutOfCoreOptions options;
+  options.folder = work_folder_of(arguments);
+  options.memory = read_memory(arguments.memory);
+  options.algorithm = entry.spec.text();
+  options.threads = make_finder<2>(options.algorithm)->workers().threads;
+  std::vector<FileToRead> files;
+  std::vector<int> dimensions;
+  std::vector<lab::Precision> precisions;
+  for (const std::string& path : arguments.files) {
+    files.push_back({path, read_options(arguments.input, path)});
+    files.back().options.progress = {};  // the join says what it is at
+    const lab::BoxFile file = open(files.back());
+    check_file(path, file, options.memory);
+    dimensions.push_back(lab::dimension_of(file.frames));
+    precisions.push_back(lab::precision_of_frames(file.frames));
+  }
+  if (dimensions.front() != dimensions.back())
+    throw Unusable(
+        fmt::format("{} holds boxes in {}D and {} in {}D; expected both in the same, as --dimension 2 makes "
+                    "them",
+                    arguments.files[0], dimensions[0], arguments.files[1], dimensions[1]));
+  if (precisions.front() != precisions.back())
+    for (FileToRead& file : files) file.options.precision = lab::Precision::float64;
+  for (const FileToRead& file : files)
+    options.identity += (options.identity.empty() ? "" : " with ") + identity_of(file, arguments.input);
+  Progress progress;
+  options.progress = std::ref(progress);
+  options.say = [&progress](std::string_view text) {
+    progress.clear();
+    say(text);
+  };
+  const lab::Precision precision =
+      precisions.front() == precisions.back() ? precisions[0] : lab::Precision::float64;
+  return lab::for_boxes_of(dimensions[0], precision, [&]<int D, typename Real>() {
+    return join<D, Real>(arguments, std::move(files), options, progress);
+  });
+}
+
+}  // namespace broadside::cli
