@@ -33,7 +33,7 @@ using out_of_core::WorkFolder;
 /// How much memory a part's box takes while it is joined, beside itself and its place: docs/lab-notes.md has
 /// the measurements.
 template <int D, typename Real>
-constexpr std::uint64_t join_bytes_a_box = 4 * sizeof(Box<D, float>) + sizeof(Box<D, Real>) + 16;
+constexpr std::uint64_t join_bytes_a_box = 2 * sizeof(Box<D, float>) + sizeof(Box<D, Real>) + 16;
 
 /// Boxes of a part on disk: a block is the place of the first one, the boxes, and how far behind the first
 /// the place of each is.

@@ -54,6 +54,10 @@ const std::vector<Rule>& rules() {
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
+      {"distributed/out_of_core/", library +
+                                       R"(|"(blocks|pair_runs|work_folder)\.hpp"|"core/sort_pairs\.hpp")" +
+                                       R"(|<nlohmann/json\.hpp>|<xxhash\.h>|<(sys/)?[a-z]+\.h>)"},
+      {"distributed/", library},
       {"web/playground/engine/", library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
                                      R"(|"(lab/scenes|paper/listings)/descriptions\.hpp")"},
       {"lab/recordings/", lab + engines},

@@ -55,6 +55,72 @@ TEST(PairsVerb, WritesAnArrayIntoAPipe) {
   EXPECT_EQ(shell("$BROADSIDE pairs " + file + " --to npy | cat").output, text_of(folder.file("pairs.npy")));
 }
 
+std::string many_boxes(int count) {
+  std::string rows = "min_x,min_y,max_x,max_y\n";
+  for (int i = 0; i < count; ++i) {
+    const int x = i * 7919 % 400;
+    const int y = i * 104729 % 397;
+    rows += fmt::format("{},{},{},{}\n", x, y, x + 1 + i % 3, y + 1);
+  }
+  return rows;
+}
+
+TEST(PairsVerb, WritesTheSamePairsWithinALimitOfMemory) {
+  const TemporaryFolder folder;
+  const std::string csv = folder.put("boxes.csv", many_boxes(200'000));
+  const std::string npy = folder.file("boxes.npy");
+  ASSERT_EQ(run({"convert", csv, "-o", npy}).status, 0);
+  const std::string expected = run({"pairs", csv}).output;
+  for (const std::string& file : {csv, npy}) {
+    const Ended ended = run({"pairs", file, "--memory", "32M", "--threads", "0"});
+    EXPECT_EQ(ended.output, expected);
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("(200,000 boxes) in 2D"), HasSubstr("in 32M of memory")));
+    EXPECT_FALSE(std::filesystem::exists(file + ".work"));
+    EXPECT_EQ(run({"pairs", file, "--memory", "32M", "--count"}).output,
+              fmt::format("{}\n", std::ranges::count(expected, '\n') - 1));
+  }
+  const std::string few = folder.put("few.csv", many_boxes(3000));
+  EXPECT_EQ(run({"pairs", npy, few, "--memory", "0.05G"}).output, run({"pairs", npy, few}).output);
+}
+
+TEST(PairsVerb, GoesOnWithAJoinThatWasKilled) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", many_boxes(300'000));
+  const std::string expected = run({"pairs", file}).output;
+  const std::string work = folder.file("here");
+  const std::vector<std::string> join = {"pairs", file, "--memory", "32M", "--work", work};
+  {
+    Process process(join);
+    while (!std::filesystem::exists(work + "/manifest.json"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.signal(SIGKILL);
+    process.wait();
+  }
+  EXPECT_EQ(run(join).output, expected);
+  EXPECT_FALSE(std::filesystem::exists(work));
+}
+
+TEST(PairsVerb, SaysWhatALimitOfMemoryDoesNotGoWith) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  expect_refused("pairs", {
+                              {{file, "--memory", "many"}, {"--memory is 'many'", "such as 500M or 2G"}},
+                              {{file, "--memory", "1M"}, {"--memory is '1M'", "too little", "32M or more"}},
+                              {{file, "--work", folder.file("w")}, {"--work without --memory"}},
+                              {{file, "--memory", "1G", "--within", "2"}, {"--within", "with --memory"}},
+                              {{file, "--memory", "1G", "--work", file}, {"boxes.csv: is no folder"}},
+                          });
+  ASSERT_EQ(shell("gzip -k " + file).status, 0);
+  expect_refused("pairs", {{{file + ".gz", "--memory", "1G"}, {"is compressed", "read again"}}});
+  const std::string work = folder.file("w");
+  std::filesystem::create_directory(work);
+  EXPECT_EQ(shell("cd " + work + " && flock lock sh -c 'touch held; sleep 100' & while ! test -e " + work +
+                  "/held; do sleep 0.01; done; $BROADSIDE pairs " + file + " --memory 1G --work " + work +
+                  "; status=$?; kill $!; exit $status")
+                .status,
+            2);
+}
+
 TEST(PairsVerb, LeavesItsInputAlone) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);
