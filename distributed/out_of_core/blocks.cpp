@@ -43,7 +43,7 @@ bool write(std::FILE* file, const void* bytes, std::size_t count) {
 void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::byte> more) {
   const auto refuse = [this] {
     throw OutOfCoreError(path_.string() + ": cannot be written: " + std::strerror(errno) +
-                         "; what was done before is kept, so run the same again once it can");
+                         "; the parts that are finished are kept: run the same again once it can");
   };
   const File file(std::fopen(path_.c_str(), blocks_ == 0 ? "wb" : "ab"));
   if (file == nullptr) refuse();

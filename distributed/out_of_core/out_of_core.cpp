@@ -265,7 +265,15 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   void run() {
-    if (!is_read_) read_all();
+    if (!is_read_) {
+      try {
+        read_all();
+      } catch (...) {
+        // Nothing can be gone on with, and the disk may be full of it.
+        folder_.remove_others(manifest_);
+        throw;
+      }
+    }
     std::uint64_t done = 0;
     for (std::size_t place = 0; place < manifest_.parts.size();) {
       const Part& part = manifest_.parts[place];
