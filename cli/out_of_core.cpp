@@ -43,7 +43,7 @@ class FileBoxes final : public BoxSource<D, Real> {
     estimated_ = reader().estimated_boxes();
   }
 
-  void begin() override {
+  void rewind() override {
     // The reader is as new until a piece is read.
     if (std::exchange(has_begun_, false)) open_again();
   }
@@ -155,18 +155,18 @@ Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const 
     lab::write_file(arguments.output, [&](std::ostream& stream) {
       lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), is_between, {},
                          join->has_large_ids());
-      const auto hand_on = [&]<typename P>(const std::function<void(std::span<const P>)>& take) {
-        arguments.order == "sorted" ? join->sorted(take) : join->unsorted(take);
+      const auto visit_pairs = [&]<typename P>(const std::function<void(std::span<const P>)>& visit) {
+        arguments.order == "sorted" ? join->visit_sorted(visit) : join->visit_unsorted(visit);
       };
       if (join->has_large_ids()) {
         std::vector<std::array<std::uint64_t, 2>> numbers;
-        hand_on(std::function<void(std::span<const LargePair>)>([&](std::span<const LargePair> pairs) {
+        visit_pairs(std::function<void(std::span<const LargePair>)>([&](std::span<const LargePair> pairs) {
           numbers.clear();
           for (const LargePair pair : pairs) numbers.push_back({pair.first, pair.second});
           file.write(numbers);
         }));
       } else {
-        hand_on(std::function<void(std::span<const Pair>)>(
+        visit_pairs(std::function<void(std::span<const Pair>)>(
             [&](std::span<const Pair> pairs) { file.write(pairs); }));
       }
       file.finish();
@@ -217,7 +217,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
     options.identity += (options.identity.empty() ? "" : " with ") + identity_of(file, arguments.input);
   Progress progress;
   options.progress = std::ref(progress);
-  options.say = [&progress](std::string_view text) {
+  options.warn = [&progress](std::string_view text) {
     progress.clear();
     say(text);
   };

@@ -1,4 +1,4 @@
-// Files of blocks with a checksum each.
+// Files of blocks, each with a checksum.
 #include "blocks.hpp"
 
 #include <cerrno>
@@ -18,8 +18,8 @@ struct Header {
   std::uint64_t checksum;
 };
 
-/// No block is written with more; a header that claims it is damaged, and must not take the memory.
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+/// No block is larger. A header that says otherwise is damaged, and must not make us allocate that much.
+constexpr std::uint64_t max_block_bytes = std::uint64_t{1} << 30;
 
 std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std::byte> more) {
   XXH3_state_t state;
@@ -43,7 +43,7 @@ bool write(std::FILE* file, const void* bytes, std::size_t count) {
 void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::byte> more) {
   const auto refuse = [this] {
     throw OutOfCoreError(path_.string() + ": cannot be written: " + std::strerror(errno) +
-                         "; the parts that are finished are kept: run the same again once it can");
+                         "; finished parts are kept: make room, then run the same command again to resume");
   };
   const File file(std::fopen(path_.c_str(), blocks_ == 0 ? "wb" : "ab"));
   if (file == nullptr) refuse();
@@ -58,7 +58,7 @@ void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::
 bool BlockReader::next(std::vector<std::byte>& bytes) {
   if (left_ == 0) return false;
   const auto refuse = [this](const char* found) {
-    throw Damaged(path_.string() + ": " + found + " at byte " + std::to_string(offset_));
+    throw CorruptFile(path_.string() + ": " + found + " at byte " + std::to_string(offset_));
   };
   const File file(std::fopen(path_.c_str(), "rb"));
   if (file == nullptr) refuse("cannot be opened");
@@ -67,7 +67,7 @@ bool BlockReader::next(std::vector<std::byte>& bytes) {
   if (fseeko(file.get(), static_cast<off_t>(offset_), SEEK_SET) != 0 ||
       std::fread(&header, 1, sizeof(header), file.get()) != sizeof(header))
     refuse("ends early");
-  if (header.bytes > most_bytes) refuse("has a damaged block");
+  if (header.bytes > max_block_bytes) refuse("has a damaged block");
   bytes.resize(header.bytes);
   if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) refuse("ends early");
   if (checksum_of(bytes, {}) != header.checksum) refuse("has a damaged block");

@@ -1,4 +1,4 @@
-// Files of blocks with a checksum each: what is damaged or cut off is noticed when it is read.
+// Files of blocks, each with a checksum, so that reading notices damage and truncation.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@
 
 namespace broadside::out_of_core {
 
-/// A file that is not what was written.
-class Damaged : public std::runtime_error {
+/// A file does not hold what was written to it.
+class CorruptFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Appends blocks to a file, which is closed in between, so that there can be any number of them. Throws
-/// OutOfCoreError where the disk does not take them.
+/// Appends blocks to a file. The file is closed between blocks, so any number of writers can exist at once.
+/// Throws OutOfCoreError if writing fails.
 class BlockWriter {
  public:
-  /// Nothing is done to the file before the first block, which replaces what is there.
+  /// The first block replaces what the file held; until then the file is not touched.
   explicit BlockWriter(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// Writes one block of the two halves, one behind the other.
+  /// Writes `bytes` and then `more` as one block.
   void append(std::span<const std::byte> bytes, std::span<const std::byte> more = {});
 
-  /// How many blocks have been written.
+  /// Number of blocks written.
   std::uint64_t blocks() const noexcept { return blocks_; }
 
  private:
@@ -35,13 +35,14 @@ class BlockWriter {
   std::uint64_t blocks_ = 0;
 };
 
-/// Reads the blocks of a file one after the other; closes it in between, too.
+/// Reads the blocks of a file in order. The file is closed between blocks. A copy reads on from the same
+/// block.
 class BlockReader {
  public:
-  /// `blocks` is how many there must be.
+  /// `blocks` is the number of blocks that the file must have.
   BlockReader(std::filesystem::path path, std::uint64_t blocks) : path_(std::move(path)), left_(blocks) {}
 
-  /// Puts the next block into `bytes`; false at the end. Throws Damaged.
+  /// Replaces `bytes` by the next block; false at the end. Throws CorruptFile.
   bool next(std::vector<std::byte>& bytes);
 
  private:

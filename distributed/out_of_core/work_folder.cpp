@@ -1,4 +1,4 @@
-// The folder of a join: a manifest in JSON, a lock, and a file for each part's boxes and pairs.
+// The work folder of a join: a manifest in JSON, a lock, and files for each part's boxes and pairs.
 #include "work_folder.hpp"
 
 #include <cerrno>
@@ -47,16 +47,17 @@ WorkFolder::WorkFolder(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
   std::filesystem::create_directories(path_, error);
   if (!std::filesystem::is_directory(path_, error))
-    throw OutOfCoreError(path_.string() + ": is no folder and cannot be made one; expected one to work in");
+    throw OutOfCoreError(path_.string() +
+                         ": is no folder and cannot be created as one; expected a folder to work in");
   const std::filesystem::path lock = path_ / lock_name;
   lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw OutOfCoreError(lock.string() + ": cannot be written: " + std::strerror(errno));
-  // Held by the process, whatever its host is called; a process that is killed lets go.
+  // The kernel releases the lock when the process ends, however it ends. Host names and clocks play no part.
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   const int why = errno;
   ::close(lock_);
   throw OutOfCoreError(path_.string() + (why == EWOULDBLOCK
-                                             ? ": another join works in this folder; expected one at a time"
+                                             ? ": another join is using this folder; expected one at a time"
                                              : std::string(": cannot be locked: ") + std::strerror(why)));
 }
 

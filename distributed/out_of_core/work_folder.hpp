@@ -1,4 +1,4 @@
-// The folder of a join: what has been done, written down, and one join at a time.
+// The work folder of a join: its manifest, which records what is finished, and the files of its parts.
 #pragma once
 
 #include <array>
@@ -11,20 +11,20 @@
 
 namespace broadside::out_of_core {
 
-/// A part as it is written down.
+/// A part, as the manifest records it.
 struct Part {
-  std::string name;                       ///< such as "12", or "12.3" for a part of that one
-  std::vector<double> low;                ///< its region
+  std::string name;                       ///< such as "12"; "12.3" came of cutting part 12
+  std::vector<double> low;                ///< bounds of its region
   std::vector<double> high;               ///<
-  std::array<std::uint64_t, 2> boxes{};   ///< that touch it, of each side
-  std::array<std::uint64_t, 2> blocks{};  ///< of their files
-  bool is_whole = false;                  ///< it has too many boxes, and cuts do not help
-  bool is_joined = false;                 ///< its pairs are there, and its boxes are not any more
+  std::array<std::uint64_t, 2> boxes{};   ///< number of boxes that touch it, of each source
+  std::array<std::uint64_t, 2> blocks{};  ///< number of blocks of each source's file
+  bool is_whole = false;                  ///< it is too large, and cutting does not help
+  bool is_joined = false;                 ///< its pairs are on disk, and its boxes are removed
   std::uint64_t pairs = 0;
-  std::vector<std::uint64_t> runs{};  ///< the blocks of each file of sorted pairs
+  std::vector<std::uint64_t> runs{};  ///< number of blocks of each sorted run
 };
 
-/// What has been done. It is written down whole after each step.
+/// Records what is finished. It is replaced as a whole after each step.
 struct Manifest {
   std::string kind;      ///< dimension, precision and number of sources
   std::string identity;  ///< OutOfCoreOptions::identity
@@ -33,10 +33,10 @@ struct Manifest {
   std::vector<Part> parts;
 };
 
-/// One thread at a time. All throw OutOfCoreError.
+/// For one thread at a time. All members throw OutOfCoreError.
 class WorkFolder {
  public:
-  /// Makes the folder where it is not there, and holds it against other processes until the end.
+  /// Creates the folder if there is none, and locks it against other processes until destruction.
   explicit WorkFolder(std::filesystem::path path);
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
@@ -44,19 +44,19 @@ class WorkFolder {
 
   const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// What was written down; nothing in a new folder.
+  /// Reads the manifest; empty in a new folder.
   std::optional<Manifest> read() const;
 
-  /// Writes it down in the stead of what was, at once or not at all.
+  /// Replaces the manifest atomically.
   void write(const Manifest& manifest) const;
 
   std::filesystem::path box_file(const Part& part, std::size_t side) const;
   std::filesystem::path pair_file(const Part& part, std::size_t run) const;
 
-  /// Removes the files of parts that `manifest` does not name or need: what a join that was killed left.
+  /// Removes the files that `manifest` does not need: what a killed join left unfinished.
   void remove_others(const Manifest& manifest) const;
 
-  /// Removes everything that is a join's, and the folder if that leaves it empty.
+  /// Removes all files of the join, and the folder if it is then empty.
   void remove();
 
  private:

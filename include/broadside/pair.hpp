@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "broadside/export.hpp"
 
@@ -36,6 +37,10 @@ struct Pair {
 constexpr std::uint64_t key(Pair pair) noexcept {
   return std::uint64_t{index(pair.first)} << 32 | index(pair.second);
 }
+
+/// Sorts pairs by first, then by second id. O(n) for many pairs: a radix sort over the bits in which they
+/// differ. `scratch` is memory to keep between calls; what it holds afterwards is unspecified.
+BROADSIDE_PUBLIC void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
 ///

@@ -16,6 +16,7 @@ Scene one_line();
 Scene lattice();
 Scene integers();
 Scene thin();
+Scene walls();
 Scene terdiman();
 Scene join_table();
 Scene churn();

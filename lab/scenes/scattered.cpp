@@ -1,4 +1,6 @@
 // Scenes of boxes scattered at random, each with another spread of sizes or places.
+#include <algorithm>
+
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/scatter.hpp"
 
@@ -93,6 +95,31 @@ std::vector<Box<D>> make_thin(const Settings& settings, std::size_t count, std::
     size[random.below(D)] *= aspect;
   }
   return scatter<D>(sizes, settings.number("neighbours"), random);
+}
+
+/// A few boxes as long as the world among many small ones, as walls, rivers and power lines are: what a plan
+/// that gives each part of space its boxes fears.
+template <int D>
+std::vector<Box<D>> make_walls(const Settings& settings, std::size_t count, std::uint64_t seed) {
+  const auto one_in = std::min<std::size_t>(static_cast<std::size_t>(settings.integer("one_in")), count);
+  constexpr double thickness = 0.01;
+  Random random(seed);
+  std::vector<Size<D>> sizes(count);
+  for (Size<D>& size : sizes) size = modest_size<D>(random);
+  const double neighbours = settings.number("neighbours");
+  const double side = world_side<D>(sizes, neighbours);
+  std::vector<Box<D>> boxes = scatter<D>(sizes, neighbours, random);
+  for (std::size_t i = one_in / 2; i < count; i += one_in) {
+    std::array<double, D> centre;
+    Size<D> size;
+    for (double& coordinate : centre) coordinate = random.between(0, side);
+    size.fill(thickness);
+    const auto along = random.below(D);
+    centre[along] = side / 2;
+    size[along] = side;
+    boxes[i] = box_around<D>(centre, size);
+  }
+  return boxes;
 }
 
 /// Boxes with one and the same interval on the x axis: a sweep along x prunes nothing.
@@ -214,6 +241,24 @@ Scene thin() {
                     .most = 1e6}},
       .boxes_2d = make_thin<2>,
       .boxes_3d = make_thin<3>,
+  };
+}
+
+Scene walls() {
+  return {
+      .name = "walls",
+      .summary = "a few thin boxes as long as the world, the others are small",
+      .source = "Broadside",
+      .tunables = {neighbours_tunable(),
+                   {.name = "one_in",
+                    .summary = "how many boxes there are for each long one",
+                    .standard = "10000",
+                    .type = Tunable::Type::integer,
+                    .least = 1,
+                    .most = 1e9}},
+      .boxes_2d = make_walls<2>,
+      .boxes_3d = make_walls<3>,
+      .hard = true,
   };
 }
 

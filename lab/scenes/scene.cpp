@@ -28,7 +28,7 @@ struct SceneList {
       generated::uniform(),   generated::power_law(),  generated::mixed(),   generated::clustered(),
       generated::one_point(), generated::one_line(),   generated::lattice(), generated::integers(),
       generated::thin(),      generated::terdiman(),   generated::churn(),   generated::jumps(),
-      generated::pile(),      generated::join_table(),
+      generated::pile(),      generated::join_table(), generated::walls(),
   };
   std::size_t there = 0;  // how many are not missing
 

@@ -9,7 +9,8 @@
 #include <numeric>
 #include <span>
 
-namespace broadside::core {
+namespace broadside {
+namespace core {
 namespace {
 
 /// The most bits that are sorted by at once.
@@ -82,18 +83,20 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 
 }  // namespace
 
-void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
-  // Counts of 2^32 or more would not fit, and never occur.
-  if (pairs.size() <= few || pairs.size() > 0xffffffffU) {
-    std::sort(pairs.begin(), pairs.end());
-  } else {
-    radix_sort(pairs, scratch);
-  }
-}
-
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
-  sort(pairs, scratch);
+  sort_pairs(pairs, scratch);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-}  // namespace broadside::core
+}  // namespace core
+
+void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+  // Counts of 2^32 or more would not fit, and never occur.
+  if (pairs.size() <= core::few || pairs.size() > 0xffffffffU) {
+    std::sort(pairs.begin(), pairs.end());
+  } else {
+    core::radix_sort(pairs, scratch);
+  }
+}
+
+}  // namespace broadside

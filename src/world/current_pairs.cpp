@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/sort_pairs.hpp"
 
 namespace broadside::core {
 namespace {
@@ -56,7 +55,7 @@ void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended,
 void CurrentPairs::merge(Generations generations) {
   if (log_.empty()) return;
   // Everything that can throw comes first.
-  if (!std::ranges::is_sorted(log_)) sort(log_, scratch_);
+  if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
   if (pairs_.capacity() < size_) pairs_.reserve(std::max(size_, pairs_.capacity() + pairs_.capacity() / 2));
   insert_begun(drop_and_refresh(generations), generations);
   log_.clear();

@@ -54,9 +54,9 @@ const std::vector<Rule>& rules() {
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
-      {"distributed/out_of_core/", library +
-                                       R"(|"(blocks|pair_runs|work_folder)\.hpp"|"core/sort_pairs\.hpp")" +
-                                       R"(|<nlohmann/json\.hpp>|<xxhash\.h>|<(sys/)?[a-z]+\.h>)"},
+      {"distributed/out_of_core/",
+       library + R"(|"(blocks|box_file|distributor|pair_runs|part_join|work_folder)\.hpp")" +
+           R"(|<nlohmann/json\.hpp>|<xxhash\.h>|<(sys/)?[a-z]+\.h>)"},
       {"distributed/", library},
       {"web/playground/engine/", library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
                                      R"(|"(lab/scenes|paper/listings)/descriptions\.hpp")"},
@@ -66,6 +66,7 @@ const std::vector<Rule>& rules() {
       {"lab/formats/", lab + R"(|<assimp/.*>|<(cpl_error|ogr_api)\.h>)"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/engines/",
        lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},

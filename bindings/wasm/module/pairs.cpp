@@ -9,7 +9,6 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-#include "core/sort_pairs.hpp"
 #include "module/calls.hpp"
 
 namespace broadside::wasm {
@@ -51,7 +50,7 @@ class KeptFinder final : public Finder {
     pairs_.clear();
     PairCollector collector(pairs_);
     find(search, collector);
-    if ((search.mode & sorts) != 0) core::sort(pairs_, scratch_);
+    if ((search.mode & sorts) != 0) sort_pairs(pairs_, scratch_);
     answer(std::span<const Pair>(pairs_));
   }
 

@@ -1,8 +1,7 @@
-// Joins boxes that do not fit into memory: they are filed by parts of space in a work folder, and one part
-// after the other is joined.
+// Joins boxes that do not fit into memory: partitions them into files in a work folder, then joins one part
+// after the other.
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,118 +16,112 @@
 #include "broadside/box.hpp"
 #include "broadside/export.hpp"
 #include "broadside/finder.hpp"
+#include "broadside/large_pair.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside {
 
-/// Two boxes of more than 2^32: their places in the order in which they were read.
-struct LargePair {
-  std::uint64_t first;
-  std::uint64_t second;
-
-  friend constexpr auto operator<=>(const LargePair&, const LargePair&) = default;
-};
-
-/// Boxes that are read piece by piece, and once more where that is asked for.
+/// A source of boxes that is read in pieces, once or several times. A box's id is its index in the source.
 template <int D, typename Real = float>
 class BoxSource {
  public:
   virtual ~BoxSource() = default;
 
-  /// The first piece comes next, again.
-  virtual void begin() = 0;
+  /// Makes next() start at the first box again.
+  virtual void rewind() = 0;
 
-  /// Puts the next boxes into `boxes`, however many, in the stead of what it holds; false where there are no
-  /// more. The boxes are the same each time.
+  /// Replaces `boxes` by the next boxes, any number of them; false if none are left. Every pass must give
+  /// the same boxes.
   virtual bool next(std::vector<Box<D, Real>>& boxes) = 0;
 
-  /// About how many boxes there are; 0 where that is not known.
+  /// The approximate number of boxes; 0 if unknown.
   virtual std::uint64_t estimated_size() const { return 0; }
 };
 
-/// What a join is doing.
+/// The stages of a join.
 enum class OutOfCoreStage : std::uint8_t {
-  reading,  ///< and filing the boxes; counted in boxes
-  joining,  ///< parts; counted in boxes of parts
-  sorting   ///< and handing on the pairs; counted in pairs
+  reading,  ///< reads and partitions the boxes; progress counts boxes
+  joining,  ///< joins the parts; progress counts boxes of parts
+  sorting   ///< delivers the pairs; progress counts pairs
 };
 
 struct OutOfCoreOptions {
-  /// Where parts and pairs are kept, made where it is not there. It takes up to the size of the boxes and 4
-  /// bytes for each, a few percent more for those on cuts, and 8 bytes a pair (16 with large ids).
+  /// Work folder for parts and pairs; created if missing. It needs the size of the boxes and 4 bytes a box, a
+  /// few percent more for boxes on cuts, and 8 bytes a pair (16 with large ids).
   std::filesystem::path folder;
 
-  /// How much memory the join may take, in bytes, beside the program itself; at least min_memory.
+  /// Limit of the memory that the join allocates, in bytes; at least min_memory.
   std::uint64_t memory = std::uint64_t{1} << 30;
   static constexpr std::uint64_t min_memory = std::uint64_t{1} << 18;
 
-  std::string algorithm{default_algorithm};  ///< the spec by which parts are joined
-  std::size_t threads = 0;                   ///< as in Workers; the standard executor's
+  std::string algorithm{default_algorithm};  ///< spec of the algorithm that joins the parts
+  std::size_t threads = 0;                   ///< as in Workers; uses the standard executor
 
-  /// What tells these boxes from others: a work folder is only gone on with for the same. A path with its
-  /// size and date, say.
+  /// Identifies the boxes, for example by path, size and date of their file. A work folder is resumed only
+  /// for the same identity.
   std::string identity{};
 
-  /// Whether places are kept in 64 bits although 32 would do. Where there are more boxes they always are.
+  /// Use 64-bit ids even if 32 bits suffice. They are always used above 2^32 boxes.
   bool has_large_ids = false;
 
-  /// Called now and then with what is done of how much; `total` is 0 where that is not known. What it throws
-  /// ends the join, which can be gone on with.
+  /// Called now and then with the work done and the total, which is 0 if unknown. An exception from it ends
+  /// the join, which can be resumed.
   std::function<void(OutOfCoreStage, std::uint64_t done, std::uint64_t total)> progress{};
 
-  /// Called with what the user should know and what stops nothing: that a part was damaged and is made again.
-  std::function<void(std::string_view)> say{};
+  /// Called with a message when the join recovers from something, such as a corrupt part.
+  std::function<void(std::string_view)> warn{};
 };
 
-/// A work folder that cannot be used, or a disk that is full. The text names the file, what was found and
-/// what was expected. What had been done is kept.
+/// The work folder cannot be used, or the disk is full. The message names the file, what was found and what
+/// was expected. Finished work is kept.
 class BROADSIDE_PUBLIC OutOfCoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Finds every pair of overlapping boxes of one source, or of a box of one and a box of another, within a
-/// limit of memory.
+/// Finds all overlapping pairs of boxes within one source, or between two, within a limit of memory.
 ///
-/// Each step that is finished is written down in the work folder. A join that ended early, by whatever cause,
-/// goes on where it was when it is made again with the same folder and the same boxes: the boxes are read
-/// once more only if they had not been read to the end. Everything in the folder has a checksum; what is
-/// damaged is made again from the source. Two joins cannot use one folder at the same time: the second one
-/// throws.
+/// The work folder's manifest records each finished step. A join that ended early, for whatever reason,
+/// resumes when it is constructed again with the same folder and identity. It reads the boxes again only if
+/// it had not read all of them. All files have checksums; a corrupt part is made again from the source. A
+/// second join that uses the same folder at the same time throws.
 ///
-/// Pairs do not depend on the limit, on threads or on how often the join was ended.
+/// The pairs do not depend on the memory limit, on threads, or on how often the join was interrupted.
+/// One thread at a time may use a join.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC OutOfCoreJoin {
  public:
-  /// The sources must outlive the join. Throws OutOfCoreError if the folder cannot be used, is in use, or
-  /// belongs to other boxes; std::invalid_argument for too little memory; InvalidSpec.
+  /// The sources must outlive the join. Throws OutOfCoreError if the folder is unusable, in use, or holds a
+  /// join of other boxes; std::invalid_argument for too little memory; InvalidSpec.
   OutOfCoreJoin(BoxSource<D, Real>& boxes, OutOfCoreOptions options);
   OutOfCoreJoin(BoxSource<D, Real>& left, BoxSource<D, Real>& right, OutOfCoreOptions options);
   ~OutOfCoreJoin();
   OutOfCoreJoin(const OutOfCoreJoin&) = delete;
   OutOfCoreJoin& operator=(const OutOfCoreJoin&) = delete;
 
-  /// Reads the boxes and joins them, as far as that has not been done. Throws OutOfCoreError, InvalidInput
-  /// with the place of a box among all of its source, and what a source or `progress` throws.
+  /// Reads and joins the boxes, as far as that is not done yet. Throws OutOfCoreError, InvalidInput with the
+  /// box's id, and whatever a source or `progress` throws.
   void run();
 
-  /// After run(): the number of pairs, of boxes in the one source and in the other, and whether places need
-  /// 64 bits.
+  /// After run(): the number of pairs, and of boxes in either source.
   std::uint64_t pairs() const;
   std::uint64_t boxes() const;
   std::uint64_t right_boxes() const;
+
+  /// After run(): whether ids have 64 bits.
   bool has_large_ids() const;
 
-  /// After run(): hands on all pairs, sorted by first and second place; a pair of one source has first <
-  /// second. The first throws InvalidFrame where ids are large. May be called again. Throws as run() does.
-  void sorted(const std::function<void(std::span<const Pair>)>& take);
-  void sorted(const std::function<void(std::span<const LargePair>)>& take);
+  /// After run(): visits all pairs, sorted by first and second id. Within one source first < second. Takes a
+  /// visitor of LargePair if ids have 64 bits and of Pair otherwise, else throws InvalidFrame. May be
+  /// called repeatedly. Throws as run() does; a corrupt part is made again before the first pair is visited.
+  void visit_sorted(const std::function<void(std::span<const Pair>)>& visit);
+  void visit_sorted(const std::function<void(std::span<const LargePair>)>& visit);
 
-  /// Likewise, in the order in which parts were joined: sorted within pieces alone.
-  void unsorted(const std::function<void(std::span<const Pair>)>& take);
-  void unsorted(const std::function<void(std::span<const LargePair>)>& take);
+  /// Likewise in the order in which parts were joined, which is faster.
+  void visit_unsorted(const std::function<void(std::span<const Pair>)>& visit);
+  void visit_unsorted(const std::function<void(std::span<const LargePair>)>& visit);
 
-  /// Removes what the join has put into the folder, and the folder if it is then empty. Nothing but the
-  /// destructor may be called afterwards.
+  /// Removes the join's files from the work folder, and the folder if it is then empty. Only the destructor
+  /// may be called afterwards.
   void remove_folder();
 
  private:

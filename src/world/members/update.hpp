@@ -16,7 +16,6 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
-#include "core/sort_pairs.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "world/state.hpp"
 
@@ -25,8 +24,8 @@ namespace {
 
 /// Takes from both what is in both: events that were undone before they were delivered.
 void cancel(std::vector<Pair>& begun, std::vector<Pair>& ended, std::vector<Pair>& scratch) {
-  core::sort(begun, scratch);
-  core::sort(ended, scratch);
+  sort_pairs(begun, scratch);
+  sort_pairs(ended, scratch);
   std::size_t kept_begun = 0;
   std::size_t kept_ended = 0;
   std::size_t j = 0;
@@ -167,8 +166,8 @@ void World<D, Real>::State::refine() {
     if (held != holds) (holds ? refined.begun : refined.ended).push_back(graph.pair(now.edge));
   }
   fresh.clear();
-  core::sort(refined.begun, sorting);
-  core::sort(refined.ended, sorting);
+  sort_pairs(refined.begun, sorting);
+  sort_pairs(refined.ended, sorting);
 }
 
 /// Looks at an edge that may have been looked at in this update already.

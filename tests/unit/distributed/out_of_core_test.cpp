@@ -30,7 +30,7 @@ class Given final : public BoxSource<D, Real> {
   explicit Given(std::vector<Box<D, Real>> boxes, bool says_size = false)
       : boxes_(std::move(boxes)), says_size_(says_size) {}
 
-  void begin() override { next_ = 0; }
+  void rewind() override { next_ = 0; }
   bool next(std::vector<Box<D, Real>>& boxes) override {
     constexpr std::size_t most = 700;
     const std::size_t count = std::min(most, boxes_.size() - next_);
@@ -69,7 +69,7 @@ template <int D, typename Real>
 std::vector<Pair> sorted_pairs(OutOfCoreJoin<D, Real>& join) {
   join.run();
   std::vector<Pair> pairs;
-  join.sorted(std::function<void(std::span<const Pair>)>(
+  join.visit_sorted(std::function<void(std::span<const Pair>)>(
       [&](std::span<const Pair> some) { pairs.insert(pairs.end(), some.begin(), some.end()); }));
   EXPECT_THAT(pairs, SizeIs(join.pairs()));
   return pairs;
@@ -89,7 +89,7 @@ class OutOfCore : public lab::Files {
     options.folder = path("work");
     options.memory = small_memory;
     options.identity = "test";
-    options.say = [this](std::string_view text) { said_.emplace_back(text); };
+    options.warn = [this](std::string_view text) { said_.emplace_back(text); };
     return options;
   }
 
@@ -189,7 +189,7 @@ TEST_F(OutOfCore, GivesUnsortedPairsToo) {
   OutOfCoreJoin<2, float> join(source, options());
   join.run();
   std::vector<Pair> pairs;
-  join.unsorted(std::function<void(std::span<const Pair>)>(
+  join.visit_unsorted(std::function<void(std::span<const Pair>)>(
       [&](std::span<const Pair> some) { pairs.insert(pairs.end(), some.begin(), some.end()); }));
   std::sort(pairs.begin(), pairs.end());
   EXPECT_EQ(pairs, expected(boxes));
@@ -204,13 +204,13 @@ TEST_F(OutOfCore, KeepsPlacesIn64BitsWhereThatIsAskedFor) {
   join.run();
   ASSERT_TRUE(join.has_large_ids());
   std::vector<Pair> pairs;
-  join.sorted(std::function<void(std::span<const LargePair>)>([&](std::span<const LargePair> some) {
+  join.visit_sorted(std::function<void(std::span<const LargePair>)>([&](std::span<const LargePair> some) {
     for (const LargePair found : some)
       pairs.push_back(
           pair(static_cast<std::uint32_t>(found.first), static_cast<std::uint32_t>(found.second)));
   }));
   EXPECT_EQ(pairs, expected(boxes));
-  EXPECT_THROW(join.sorted(std::function<void(std::span<const Pair>)>([](std::span<const Pair>) {})),
+  EXPECT_THROW(join.visit_sorted(std::function<void(std::span<const Pair>)>([](std::span<const Pair>) {})),
                InvalidFrame);
 }
 

@@ -1,0 +1,63 @@
+// Writes each box to the files of the parts that it touches.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/executor.hpp"
+#include "broadside/partition.hpp"
+
+#include "box_file.hpp"
+
+namespace broadside::out_of_core {
+
+/// Several threads look up the parts; one writes, so that the ids in each file ascend.
+template <int D, typename Real>
+class Distributor {
+ public:
+  /// `threads` is as in Workers: 0 means all of the standard executor's.
+  Distributor(const Partition<D, Real>& partition, std::vector<BoxFileWriter<D, Real>>& files,
+              std::size_t threads)
+      : partition_(partition), files_(files), executor_(standard_executor()) {
+    const std::size_t available = executor_ == nullptr ? 1 : executor_->threads();
+    tasks_.resize(threads == 0 ? available : std::min(threads, available));
+  }
+
+  /// `id(i)` is that of boxes[i]. Absent boxes touch nothing.
+  template <typename Id>
+  void add(std::span<const Box<D, Real>> boxes, const Id& id) {
+    const auto find_parts = [&](std::size_t task) {
+      std::vector<Touch>& touches = tasks_[task];
+      touches.clear();
+      const std::size_t end = boxes.size() * (task + 1) / tasks_.size();
+      for (std::size_t i = boxes.size() * task / tasks_.size(); i < end; ++i)
+        if (is_present(boxes[i]))
+          partition_.for_each_part(boxes[i], [&](std::size_t part) {
+            touches.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(i)});
+          });
+    };
+    if (tasks_.size() == 1)
+      find_parts(0);
+    else
+      executor_->run(tasks_.size(), find_parts);
+    for (const std::vector<Touch>& touches : tasks_)
+      for (const Touch touch : touches) files_[touch.part].add(boxes[touch.box], id(touch.box));
+  }
+
+ private:
+  struct Touch {
+    std::uint32_t part;
+    std::uint32_t box;
+  };
+
+  const Partition<D, Real>& partition_;
+  std::vector<BoxFileWriter<D, Real>>& files_;
+  Executor* executor_;
+  std::vector<std::vector<Touch>> tasks_;
+};
+
+}  // namespace broadside::out_of_core

@@ -1,0 +1,174 @@
+// Joins the boxes of one part, and writes the pairs that belong to it as sorted runs.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/out_of_core.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/partition.hpp"
+
+#include "blocks.hpp"
+#include "box_file.hpp"
+#include "pair_runs.hpp"
+#include "work_folder.hpp"
+
+namespace broadside::out_of_core {
+
+/// Boxes of a part, in memory.
+template <int D, typename Real>
+struct PartBoxes {
+  std::vector<Box<D, Real>> boxes;
+  std::vector<std::uint64_t> ids;
+  std::vector<std::uint8_t> begins_before;  ///< Region::begins_before() of each box
+
+  void reserve(std::size_t count) {
+    boxes.reserve(count);
+    ids.reserve(count);
+    begins_before.reserve(count);
+  }
+  void clear() {
+    boxes.clear();
+    ids.clear();
+    begins_before.clear();
+  }
+};
+
+/// Memory that a search takes for each box of a part, beside the box and its id, in bytes:
+/// docs/lab-notes.md has the measurements.
+template <int D, typename Real>
+constexpr std::uint64_t search_bytes_per_box = 2 * sizeof(Box<D, float>) + sizeof(Box<D, Real>) + 16;
+
+/// Keeps the pairs that belong to the part, and adds them to the runs as pairs of ids.
+template <typename P>
+class PairsOfIds final : public PairSink {
+ public:
+  struct Sides {
+    const std::uint64_t* left_ids;
+    const std::uint64_t* right_ids;
+    const std::uint8_t* left_begins_before;
+    const std::uint8_t* right_begins_before;
+    bool is_ordered;  ///< pairs within one source: the lower id comes first
+  };
+
+  PairsOfIds(const Sides& sides, RunWriter<P>& runs) : sides_(sides), runs_(&runs) {
+    pairs_.reserve(2 * max_room);
+  }
+
+  std::unique_ptr<PairSink> empty_clone() const override {
+    return std::make_unique<PairsOfIds>(sides_, *runs_);
+  }
+  void merge(PairSink&) override {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    pairs_.clear();
+    for (const Pair pair : pairs) {
+      const std::size_t left = index(pair.first);
+      const std::size_t right = index(pair.second);
+      if ((sides_.left_begins_before[left] & sides_.right_begins_before[right]) != 0) continue;
+      std::uint64_t first = sides_.left_ids[left];
+      std::uint64_t second = sides_.right_ids[right];
+      if (sides_.is_ordered && second < first) std::swap(first, second);
+      if constexpr (std::is_same_v<P, Pair>)
+        pairs_.push_back(
+            {BoxId(static_cast<std::uint32_t>(first)), BoxId(static_cast<std::uint32_t>(second))});
+      else
+        pairs_.push_back({first, second});
+    }
+    runs_->add(pairs_);
+  }
+
+  Sides sides_;
+  RunWriter<P>* runs_;
+  std::vector<P> pairs_;
+};
+
+/// Joins one part after the other within a limit of memory.
+template <int D, typename Real>
+class PartJoin {
+ public:
+  using Region = typename Partition<D, Real>::Region;
+
+  /// `memory` in bytes. Boxes come from one source or from two.
+  PartJoin(const WorkFolder& folder, PairFinder<D, Real>& finder, std::uint64_t memory, std::size_t sources)
+      : folder_(folder), finder_(finder), memory_(memory), is_between_(sources == 2) {}
+
+  /// How many boxes a part may have to be joined in one search. Half of the memory is for the boxes and
+  /// their search; a quarter is for pairs.
+  std::uint64_t max_boxes() const {
+    constexpr std::uint64_t bytes =
+        search_bytes_per_box<D, Real> + sizeof(Box<D, Real>) + sizeof(std::uint64_t) + sizeof(std::uint8_t);
+    return memory_ / 2 / bytes;
+  }
+
+  bool is_too_large(const Part& part) const { return part.boxes[0] + part.boxes[1] > max_boxes(); }
+
+  /// Fills in the runs of `part`, pairs of type P. A part that is too large is joined piece by piece.
+  /// Throws CorruptFile and OutOfCoreError.
+  template <typename P>
+  void join(Part& part, const Region& region) {
+    RunWriter<P> runs(folder_, part, memory_ / 4);
+    const bool is_in_pieces = is_too_large(part);
+    const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
+    const auto room = [&](std::size_t side) {
+      return static_cast<std::size_t>(std::min(part.boxes[side], most + (std::uint64_t{1} << 15)));
+    };
+    PartBoxes<D, Real> left;
+    PartBoxes<D, Real> right;
+    left.reserve(room(0));
+    if (is_between_ || is_in_pieces) right.reserve(room(is_between_ ? 1 : 0));
+    for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]); load(reader, region, most, left);) {
+      if (!is_between_) join_one(left, runs);
+      // Within one source: the pieces that follow this one. Between two: all pieces of the other.
+      BlockReader others = is_between_ ? BlockReader(folder_.box_file(part, 1), part.blocks[1]) : reader;
+      while ((is_between_ || is_in_pieces) && load(others, region, most, right)) join_two(left, right, runs);
+    }
+    runs.flush();
+  }
+
+ private:
+  /// Loads blocks until there are `most` boxes; false where none are left.
+  static bool load(BlockReader& reader, const Region& region, std::uint64_t most,
+                   PartBoxes<D, Real>& loaded) {
+    std::vector<std::byte> block;
+    loaded.clear();
+    while (loaded.boxes.size() < most && reader.next(block))
+      for_each_box<D, Real>(block, [&](const Box<D, Real>& box, std::uint64_t id) {
+        loaded.boxes.push_back(box);
+        loaded.ids.push_back(id);
+        loaded.begins_before.push_back(static_cast<std::uint8_t>(region.begins_before(box)));
+      });
+    return !loaded.boxes.empty();
+  }
+
+  template <typename P>
+  void join_one(const PartBoxes<D, Real>& set, RunWriter<P>& runs) {
+    PairsOfIds<P> pairs(
+        {set.ids.data(), set.ids.data(), set.begins_before.data(), set.begins_before.data(), true}, runs);
+    finder_.find(set.boxes, pairs);
+  }
+
+  template <typename P>
+  void join_two(const PartBoxes<D, Real>& left, const PartBoxes<D, Real>& right, RunWriter<P>& runs) {
+    PairsOfIds<P> pairs({left.ids.data(), right.ids.data(), left.begins_before.data(),
+                         right.begins_before.data(), !is_between_},
+                        runs);
+    finder_.find_between(left.boxes, right.boxes, pairs);
+  }
+
+  const WorkFolder& folder_;
+  PairFinder<D, Real>& finder_;
+  std::uint64_t memory_;
+  bool is_between_;
+};
+
+}  // namespace broadside::out_of_core
