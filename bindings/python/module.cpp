@@ -83,5 +83,6 @@ NB_MODULE(_core, module) {
   add_world(module);
   add_tracker(module);
   add_index(module);
+  add_partition(module);
   add_lab(module);
 }

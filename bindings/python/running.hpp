@@ -163,6 +163,7 @@ void add_pairs(nb::module_& module);
 void add_world(nb::module_& module);
 void add_tracker(nb::module_& module);
 void add_index(nb::module_& module);
+void add_partition(nb::module_& module);
 void add_arrow(nb::module_& module);
 void add_lab(nb::module_& module);
 

@@ -18,11 +18,13 @@ from broadside._errors import (
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
 from broadside._motion import Events, Tracker, World
 from broadside._pairs import PairTable, count, filters, invalid_rows, pairs
+from broadside._partition import Assignment, Partition
 from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
 
 __all__ = [
     "Advice",
     "Algorithm",
+    "Assignment",
     "Drawing",
     "Events",
     "FileError",
@@ -37,6 +39,7 @@ __all__ = [
     "InvalidSnapshotError",
     "Neighbours",
     "PairTable",
+    "Partition",
     "Tracker",
     "World",
     "__version__",

@@ -7,6 +7,7 @@ one piece it never hands here.
 from __future__ import annotations
 
 import sys
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -162,10 +163,15 @@ def _of_chunks(chunks: list[list[tuple[str, Rows]]], name: str) -> Rows:
 
 
 def _of_columns(columns: dict[str, Rows], name: str) -> Rows:
+    return np.column_stack([columns[column] for column in columns_of_bounds(columns, name)])
+
+
+def columns_of_bounds(columns: Collection[str], name: str) -> tuple[str, ...]:
+    """Which of these columns are the bounds of boxes, minima first."""
     for names in _COLUMN_NAMES:
         # Names that tell nothing must be all there are.
         if all(column in columns for column in names) and (names[0][-1:] != "0" or len(columns) == len(names)):
-            return np.column_stack([columns[column] for column in names])
+            return names
     expected = ", ".join(_COLUMN_NAMES[1])
     raise ValueError(
         f"{name} has the columns {', '.join(columns) or 'none'}; expected {expected}, in 3D zmin and zmax as well"

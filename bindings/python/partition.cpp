@@ -1,0 +1,213 @@
+// Partition: space cut into parts, which boxes touch which part, and the pairs that belong to a part.
+#include "broadside/partition.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+#include <nanobind/stl/string.h>
+
+#include "broadside/sinks.hpp"
+
+#include "bindings/python/search.hpp"
+
+namespace broadside::python {
+namespace {
+
+/// A partition for any kind of boxes.
+class AnyPartition {
+ public:
+  virtual ~AnyPartition() = default;
+  virtual std::size_t size() const noexcept = 0;
+  virtual int dimension() const noexcept = 0;
+  virtual bool has_doubles() const noexcept = 0;
+  virtual nb::object regions() const = 0;
+  virtual nb::object cuts() const = 0;
+  virtual nb::object assign(nb::handle boxes, bool quarantine) const = 0;
+  virtual nb::object pairs(std::size_t part, nb::handle boxes, nb::handle other, nb::handle algorithm,
+                           nb::handle sort, nb::handle threads) const = 0;
+};
+
+template <int D, typename Real>
+class PartitionOf final : public AnyPartition {
+  using Of = broadside::Partition<D, Real>;
+  using Region = typename Of::Region;
+  using Cut = typename Of::Cut;
+
+  static constexpr bool are_doubles = std::is_same_v<Real, double>;
+
+ public:
+  explicit PartitionOf(Of partition) : partition_(std::move(partition)) {}
+
+  static PartitionOf of_sample(const Rows& sample, std::size_t parts, std::uint64_t boxes) {
+    std::vector<Box<D, Real>> memory;
+    const std::span<const Box<D, Real>> all = sample.array<Box<D, Real>>(memory);
+    return PartitionOf(without_gil([&](WithoutGil&) {
+      check(all, "sample");
+      return Of(all, parts, boxes);
+    }));
+  }
+
+  /// From what cuts() gave, its first array in one dimension.
+  static PartitionOf of_cuts(std::span<const std::uint64_t> links, const Rows& places) {
+    std::vector<std::array<Real, 1>> memory;
+    const auto at = places.array<std::array<Real, 1>>(memory);
+    if (links.size() != 3 * at.size())
+      throw std::invalid_argument("Partition: " + std::to_string(links.size()) + " links of " +
+                                  std::to_string(at.size()) + " cuts; expected three for each");
+    std::vector<Cut> cuts(at.size());
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      const auto link = [&](std::size_t place) { return static_cast<std::uint32_t>(links[3 * i + place]); };
+      cuts[i] = {link(0), link(1), link(2), at[i][0]};
+    }
+    return PartitionOf(Of(std::move(cuts)));
+  }
+
+  std::size_t size() const noexcept override { return partition_.size(); }
+  int dimension() const noexcept override { return D; }
+  bool has_doubles() const noexcept override { return are_doubles; }
+
+  nb::object regions() const override {
+    std::vector<Region> regions;
+    for (std::size_t part = 0; part < size(); ++part) regions.push_back(partition_.region(part));
+    return array_of<Real>(std::move(regions), {size(), std::size_t{2 * D}});
+  }
+
+  nb::object cuts() const override {
+    std::vector<std::uint32_t> links;
+    std::vector<Real> places;
+    for (const Cut& cut : partition_.cuts()) {
+      links.insert(links.end(), {cut.axis, cut.below, cut.above});
+      places.push_back(cut.at);
+    }
+    const std::size_t count = places.size();
+    return nb::make_tuple(array_of(std::move(links), {count, 3}), array_of(std::move(places), {count, 1}));
+  }
+
+  /// The rows of the boxes that touch each part, ascending, part after part; and where each part's begin.
+  nb::object assign(nb::handle boxes, bool quarantine) const override {
+    const Rows rows = Rows::of(boxes, "boxes", 2 * D, are_doubles);
+    std::vector<Box<D, Real>> memory;
+    const std::span<const Box<D, Real>> all = rows.array<Box<D, Real>>(memory);
+    std::vector<std::int64_t> starts(size() + 1);
+    std::vector<std::uint32_t> touching;
+    without_gil([&](WithoutGil& released) {
+      if (!quarantine) check(all, "boxes");
+      for_each_touched(all, released, [&](std::size_t part, std::size_t) { ++starts[part + 1]; });
+      std::partial_sum(starts.begin(), starts.end(), starts.begin());
+      touching.resize(static_cast<std::size_t>(starts.back()));
+      std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
+      for_each_touched(all, released, [&](std::size_t part, std::size_t row) {
+        touching[static_cast<std::size_t>(next[part]++)] = static_cast<std::uint32_t>(row);
+      });
+    });
+    const std::size_t count = touching.size();
+    return nb::make_tuple(array_of(std::move(starts), {size() + 1}), array_of(std::move(touching), {count}));
+  }
+
+  nb::object pairs(std::size_t part, nb::handle boxes, nb::handle other, nb::handle algorithm,
+                   nb::handle sort, nb::handle threads) const override {
+    std::optional<Rows> second;
+    if (!other.is_none()) second.emplace(Rows::of(other, "other", 2 * D, are_doubles));
+    const Search search(Rows::of(boxes, "boxes", 2 * D, are_doubles), std::move(second),
+                        text(algorithm, "algorithm"), threads);
+    const bool sorts = truth(sort);
+    std::vector<Pair> pairs =
+        without_gil([&](WithoutGil& released) { return pairs_of(part, search, sorts, released); });
+    const std::size_t count = pairs.size();
+    return array_of<std::uint32_t>(std::move(pairs), {count, 2});
+  }
+
+ private:
+  /// Boxes between two looks at signals.
+  static constexpr std::size_t boxes_at_once = std::size_t{1} << 16;
+
+  /// Throws what a search does, which looks at all boxes before it begins.
+  static void check(std::span<const Box<D, Real>> boxes, const char* name) {
+    if (std::ranges::none_of(boxes, [](const auto& box) { return is_invalid(box); })) return;
+    try {
+      PairCounter none;
+      make_finder<D, Real>(default_algorithm)->find(boxes, none);
+    } catch (const InvalidInput& error) {
+      throw InvalidBoxOf(name, error);
+    }
+  }
+
+  /// Calls visit(part, row) for each part that each present box touches.
+  template <typename Visit>
+  void for_each_touched(std::span<const Box<D, Real>> boxes, WithoutGil& released, const Visit& visit) const {
+    for (std::size_t row = 0; row < boxes.size(); ++row) {
+      if (row % boxes_at_once == 0) released.check_signals();
+      if (!is_present(boxes[row])) continue;
+      partition_.for_each_part(boxes[row], [&](std::size_t part) { visit(part, row); });
+    }
+  }
+
+  std::vector<Pair> pairs_of(std::size_t part, const Search& search, bool sorts, WithoutGil& released) const {
+    const std::vector<std::uint8_t> left = begins_before(part, search.boxes, "boxes");
+    std::vector<std::uint8_t> right;
+    if (search.other) right = begins_before(part, *search.other, "other");
+    std::vector<Pair> pairs;
+    Collector collector(pairs, released);
+    PartPairs part_pairs(left, search.other ? right : left, collector);
+    search.run(part_pairs, released);
+    collector.flush();
+    if (sorts) std::ranges::sort(pairs);
+    return pairs;
+  }
+
+  /// Of boxes that do not touch the part, wrong pairs would be found.
+  std::vector<std::uint8_t> begins_before(std::size_t part, const Rows& rows, const char* name) const {
+    const Region& region = partition_.region(part);
+    const BoxView<D, Real> boxes = rows.boxes<D, Real>();
+    std::vector<std::uint8_t> bits(boxes.size());
+    for (std::size_t row = 0; row < boxes.size(); ++row) {
+      const Box<D, Real> box = boxes[row];
+      if (is_present(box) && !region.touches(box))
+        throw std::invalid_argument(std::string(name) + ": row " + std::to_string(row) +
+                                    " does not touch part " + std::to_string(part) +
+                                    "; expected the boxes that assign() gives this part");
+      bits[row] = static_cast<std::uint8_t>(region.begins_before(box));
+    }
+    return bits;
+  }
+
+  Of partition_;
+};
+
+std::unique_ptr<AnyPartition> make_partition(nb::handle sample, std::size_t parts, std::uint64_t boxes) {
+  const Rows rows = Rows::of_boxes(sample, "sample");
+  return with_kind(rows.dimension(), rows.are_doubles(),
+                   [&]<int D, typename Real>() -> std::unique_ptr<AnyPartition> {
+                     using Made = PartitionOf<D, Real>;
+                     return std::make_unique<Made>(Made::of_sample(rows, parts, boxes));
+                   });
+}
+
+std::unique_ptr<AnyPartition> partition_of_cuts(int dimension, bool has_doubles, nb::handle links,
+                                                nb::handle places) {
+  const std::vector<std::uint64_t> numbers = integers(links, "links", UINT32_MAX);
+  const Rows rows = Rows::of(places, "places", 1, has_doubles);
+  return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyPartition> {
+    using Made = PartitionOf<D, Real>;
+    return std::make_unique<Made>(Made::of_cuts(numbers, rows));
+  });
+}
+
+}  // namespace
+
+void add_partition(nb::module_& module) {
+  nb::class_<AnyPartition>(module, "Partition")
+      .def("__len__", &AnyPartition::size)
+      .def("dimension", &AnyPartition::dimension)
+      .def("has_doubles", &AnyPartition::has_doubles)
+      .def("regions", &AnyPartition::regions)
+      .def("cuts", &AnyPartition::cuts)
+      .def("assign", &AnyPartition::assign, nb::arg("boxes").none(), nb::arg("quarantine"))
+      .def("pairs", &AnyPartition::pairs, nb::arg("part"), nb::arg("boxes").none(), nb::arg("other").none(),
+           nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none());
+  module.def("make_partition", &make_partition, nb::arg("sample").none(), nb::arg("parts"), nb::arg("boxes"));
+  module.def("partition_of_cuts", &partition_of_cuts);
+}
+
+}  // namespace broadside::python

@@ -1,0 +1,120 @@
+// What a search is asked for, and running it: for pairs(), count() and the pairs of a part.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "broadside/finder.hpp"
+
+#include "bindings/python/input.hpp"
+#include "bindings/python/running.hpp"
+
+namespace broadside::python {
+
+/// Searches of fewer boxes end before anyone could press a key.
+inline constexpr std::size_t long_search = 4096;
+
+/// Appends pairs to a vector, and asks for signals now and then.
+class Collector final : public PairSink {
+ public:
+  Collector(std::vector<Pair>& pairs, WithoutGil& released) : pairs_(pairs), released_(released) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+    if (++chunks_ % 64 == 0) released_.check_signals();
+  }
+
+  std::vector<Pair>& pairs_;
+  WithoutGil& released_;
+  unsigned chunks_ = 0;
+};
+
+/// What is searched, and how.
+struct Search {
+  Rows boxes;
+  std::optional<Rows> other;
+  std::string algorithm;
+  std::size_t threads;
+  std::vector<Filter> filters;
+  std::vector<Filter> other_filters;
+  IgnoredPairs ignored;
+  bool quarantine = false;
+
+  /// Of boxes that are of one kind already.
+  Search(Rows first, std::optional<Rows> second, std::string spec, nb::handle most_threads)
+      : boxes(std::move(first)),
+        other(std::move(second)),
+        algorithm(std::move(spec)),
+        threads(threads_of(most_threads, algorithm)) {}
+
+  Search(nb::handle first, nb::handle second, std::string spec, nb::handle most_threads,
+         nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs, bool quarantines)
+      : boxes(Rows::of_boxes_or_empty(first, "boxes")),
+        algorithm(std::move(spec)),
+        threads(threads_of(most_threads, algorithm)),
+        filters(python::filters(first_filters, boxes.size(), "filters")),
+        quarantine(quarantines) {
+    if (!second.is_none()) take_other(first, second, second_filters);
+    if (other && !ignored_pairs.is_none())
+      throw std::invalid_argument("ignored pairs are given with two sets; expected them with one set alone");
+    if (!other && !second_filters.is_none())
+      throw std::invalid_argument("other_filters are given without other boxes; expected both or neither");
+    if (ignored_pairs.is_none()) return;
+    const std::uint64_t most = boxes.size() == 0 ? 0 : boxes.size() - 1;
+    const std::vector<std::uint64_t> places = pairs_of_integers(ignored_pairs, "ignored", most);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2)
+      ignored.insert({static_cast<BoxId>(places[i]), static_cast<BoxId>(places[i + 1])});
+  }
+
+  /// With the GIL given away.
+  void run(PairSink& pairs, WithoutGil& released) const {
+    with_kind(boxes.dimension(), boxes.are_doubles(), [&]<int D, typename Real>() {
+      const auto finder = make_finder<D, Real>(algorithm);
+      std::optional<ScopedWorkers<PairFinder<D, Real>>> use;
+      if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(*finder, threads, released);
+      if (quarantine) finder->set_bad_input(BadInput::quarantine);
+      const PairFilters which{filters, other_filters, &ignored};
+      if (other)
+        find_between(*finder, pairs, which);
+      else
+        finder->find(boxes.boxes<D, Real>(), pairs, which);
+    });
+  }
+
+ private:
+  template <int D, typename Real>
+  void find_between(PairFinder<D, Real>& finder, PairSink& pairs, const PairFilters& which) const {
+    const BoxView<D, Real> left = boxes.boxes<D, Real>();
+    try {
+      finder.find_between(left, other->boxes<D, Real>(), pairs, which);
+    } catch (const InvalidInput& error) {
+      // The sets are looked at in their order; the library calls them left and right.
+      const bool is_left = error.index() < left.size() && is_invalid(left[error.index()]);
+      const char* const argument = is_left ? "boxes" : "other";
+      const std::string_view message = error.what();
+      throw InvalidBoxOf(argument, error.index(),
+                         std::string(argument) + ":" + std::string(message.substr(message.find(' '))));
+    }
+  }
+
+  void take_other(nb::handle first, nb::handle second, nb::handle second_filters) {
+    other.emplace(Rows::of_boxes_or_empty(second, "other", boxes.columns()));
+    if (is_empty_sequence(first)) boxes = Rows::of(first, "boxes", other->columns(), other->are_doubles());
+    if (other->columns() != boxes.columns())
+      throw std::invalid_argument("boxes are in " + std::to_string(boxes.dimension()) + "D and other in " +
+                                  std::to_string(other->dimension()) +
+                                  "D; expected two sets of the same dimension");
+    // Doubles hold all floats.
+    if (boxes.are_doubles() && !other->are_doubles()) other = other->widened("other");
+    if (!boxes.are_doubles() && other->are_doubles()) boxes = boxes.widened("boxes");
+    other_filters = python::filters(second_filters, other->size(), "other_filters");
+  }
+};
+
+}  // namespace broadside::python
