@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import broadside
+import broadside.dask
 
 HEAD = """\
 # Python reference
@@ -63,6 +64,10 @@ def reference() -> str:
         function = getattr(broadside, name)
         parts += [f"## {name}{signature_of(function)}", text_of(function)]
     parts += [described(getattr(broadside, name)) for name in sorted(classes)]
+    parts += ["## broadside.dask", text_of(broadside.dask)]
+    for name in broadside.dask.__all__:
+        function = getattr(broadside.dask, name)
+        parts += [f"### dask.{name}{signature_of(function)}", text_of(function)]
     return fenced("\n\n".join(parts)) + "\n"
 
 
