@@ -6,6 +6,7 @@ Import it by name, ``import broadside.dask``; it needs Dask (``pip install "broa
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -169,7 +170,9 @@ def _chunks_of(found: Any, name: str, columns: tuple[str, ...] | None) -> tuple[
             raise ValueError(
                 f"{name} has shape {found.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
             )
-        return _tasks_of(found.rechunk({1: -1}).to_delayed().ravel())
+        array = found.rechunk({1: -1})
+        tasks, keys = _tasks_of(array.to_delayed().ravel())
+        return tasks | _futures_in(array.__dask_graph__()), keys
     if isinstance(found, (dask_frame.DataFrame, dask_frame.Series)):
         return _tasks_of(_bounds_of(found, name, columns).to_delayed())
     if isinstance(found, dask_delayed.Delayed):
@@ -220,7 +223,18 @@ def _tasks_of(delayed: Iterable[Any]) -> tuple[Tasks, list[Key]]:
     tasks: Tasks = {}
     for graph in graphs.values():
         tasks.update(dict(graph))
-    return tasks, [chunk.key for chunk in chunks]
+    keys = [chunk.key for chunk in chunks]
+    for key in keys:
+        tasks.setdefault(key, key)  # one without a task is known to the cluster, which holds it already
+    return tasks, keys
+
+
+def _futures_in(graph: Any) -> Tasks:
+    """What a cluster has computed already, which Dask leaves out when it optimises the graph of an array."""
+    distributed = sys.modules.get("distributed")
+    if distributed is None:
+        return {}
+    return {key: task for key, task in dict(graph).items() if isinstance(task, distributed.Future)}
 
 
 def _with_data(tasks: Tasks, chunks: Iterable[Any]) -> tuple[Tasks, list[Key]]:

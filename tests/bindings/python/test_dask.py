@@ -265,6 +265,18 @@ def test_runs_on_a_cluster_whose_errors_arrive(client):
     assert (caught.value.row, caught.value.argument) == (3210, "boxes")
 
 
+def test_takes_what_a_cluster_holds_already(client):
+    boxes = scattered(5000)
+    array = da.from_array(boxes, chunks=(500, -1))
+    frame = dd.from_pandas(frame_of(boxes), npartitions=3)
+    for chunks in (array.persist(), array.persist() + np.float32(0), frame.persist(), [dask.delayed(boxes).persist()]):
+        found = broadside.dask.pairs(chunks)
+        del chunks  # the result holds them
+        assert is_same(found.persist(), boxes)
+    held = array.persist()
+    assert is_same(broadside.dask.pairs(list(held.to_delayed()[:2, 0])), boxes[:1000])
+
+
 def test_a_killed_worker_costs_its_parts_only(cluster, client):
     from distributed.diagnostics.plugin import SchedulerPlugin
 
