@@ -144,10 +144,10 @@ def compare(client: distributed.Client, n: int, options: argparse.Namespace) -> 
             # Ratios of the same round, where there are several.
             pairs = zip(times[name], times["broadside.dask, arrays"]) if name not in notes else [(times[name][0], base)]
             ratio = statistics.median(one / other for one, other in pairs)
-            lines.append(f"| {n:,} | {name} | {statistics.median(times[name]):,.2f} | {ratio:,.1f} | {notes.get(name, '')} |")
+            lines.append(f"| {n:,} | {name} | {statistics.median(times[name]):,.3f} | {ratio:,.2f} | {notes.get(name, '')} |")
         else:
             lines.append(f"| {n:,} | {name} | | | {notes[name]} |")
-    return [*lines, f"| {n:,} | spatial order of both, by dask-geopandas | {order_seconds:,.2f} | {order_seconds / base:,.1f} | once |"]
+    return [*lines, f"| {n:,} | spatial order of both, by dask-geopandas | {order_seconds:,.3f} | {order_seconds / base:,.2f} | once |"]
 
 
 def main() -> None:

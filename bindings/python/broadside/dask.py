@@ -6,37 +6,29 @@ Import it by name, ``import broadside.dask``; it needs Dask (``pip install "broa
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from broadside import _arguments, _convert, _core
+from broadside import _arguments
 from broadside._errors import InvalidBoxError
-from broadside._pairs import count, invalid_rows
+from broadside._pairs import count
 from broadside._partition import Partition
 
 try:
     dask = import_module("dask")
-    pandas = import_module("pandas")
-    dask_array = import_module("dask.array")
     dask_frame = import_module("dask.dataframe")
     dask_delayed = import_module("dask.delayed")
 except ImportError as error:
     raise ImportError(f'broadside.dask: {error}; expected Dask: pip install "broadside[dask]"') from error
 
+from broadside import _dask_tasks as work
+from broadside._dask_chunks import ChunkedSet, Key, Tasks, chunked_set
+from broadside._dask_tasks import Look, LookOptions, Plan, Side
+
 __all__ = ["pairs"]
-
-Rows = NDArray[Any]
-Key = Any  # of a task: a str, or a tuple that begins with one
-Tasks = dict[Key, Any]
-
-# Boxes in memory are cut into chunks of so many rows.
-_ROWS_OF_CHUNK = 2**17
 
 # How many boxes the cuts are made from: of all, for each part, and at least of each chunk.
 _SAMPLE, _SAMPLE_OF_PART, _SAMPLE_OF_CHUNK = 2**15, 128, 256
@@ -105,9 +97,9 @@ def pairs(
     chunks lie apart in space, and where there would be more than 16384, about ``chunks * sqrt(parts) + parts *
     sqrt(chunks)``.
     """
-    sets = [_set_of(boxes, "boxes", columns, ids)]
+    sets = [chunked_set(boxes, "boxes", columns, ids)]
     if other is not None:
-        sets.append(_set_of(other, "other", other_columns, ids))
+        sets.append(chunked_set(other, "other", other_columns, ids))
     elif other_columns is not None:
         raise ValueError("other_columns are given without other boxes; expected both or neither")
     if ids not in ("row", "index"):
@@ -122,170 +114,23 @@ def pairs(
     width, dtype = _kind(sets, looks)
     partition = _partition_of(looks, width, dtype, wanted)
     sides = tuple(_side(one, its, ids) for one, its in zip(sets, looks, strict=True))
-    plan = _Plan(partition, sides, width, dtype, algorithm, threads, bool(sort), bool(quarantine))
+    plan = Plan(partition, sides, width, dtype, algorithm, threads, bool(sort), bool(quarantine))
     return _frame(sets, looks, plan)
 
 
-# What a chunk is, and what it holds
-
-
-@dataclass(frozen=True)
-class _Set:
-    """One set of boxes as chunks that tasks make."""
-
-    name: str
-    columns: tuple[str, ...] | None
-    has_index: bool  # whether the index is asked for
-    tasks: Tasks
-    chunks: list[Key]
-
-
-class _Look(NamedTuple):
-    """What is known of a chunk before anything is joined."""
-
-    rows: int
-    width: int
-    dtype: np.dtype[Any]
-    present: int
-    bounds: Rows  # one box around all, or none where no box is present
-    sample: Rows  # in random order
-    index: Any  # the dtype of the index, where it is asked for
-    fault: tuple[int, str] | None  # the first invalid row and what is wrong with it
-
-
-def _set_of(found: Any, name: str, columns: Sequence[str] | None, ids: str) -> _Set:
-    if isinstance(columns, str) or (columns is not None and not all(isinstance(column, str) for column in columns)):
-        raise TypeError(f"the columns of {name} are {columns!r}; expected a list of names")
-    if columns is not None and len(columns) not in (4, 6):
-        raise ValueError(f"the columns of {name} are {len(columns)}; expected 4 or 6: the minima, then the maxima")
-    names = None if columns is None else tuple(columns)
-    tasks, chunks = _chunks_of(found, name, names)
-    return _Set(name, names, ids == "index", tasks, chunks)
-
-
-def _chunks_of(found: Any, name: str, columns: tuple[str, ...] | None) -> tuple[Tasks, list[Key]]:
-    """Tasks that make the chunks, and their keys."""
-    if isinstance(found, dask_array.Array):
-        if found.ndim != 2 or found.shape[1] not in (4, 6):
-            raise ValueError(
-                f"{name} has shape {found.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
-            )
-        array = found.rechunk({1: -1})
-        tasks, keys = _tasks_of(array.to_delayed().ravel())
-        return tasks | _futures_in(array.__dask_graph__()), keys
-    if isinstance(found, (dask_frame.DataFrame, dask_frame.Series)):
-        return _tasks_of(_bounds_of(found, name, columns).to_delayed())
-    if isinstance(found, dask_delayed.Delayed):
-        return _tasks_of([found])
-    if dask.is_dask_collection(found):
-        raise TypeError(f"{name} is of {type(found).__name__}; expected a Dask array, a Dask DataFrame or delayed objects")
-    if _convert.is_empty_sequence(found):
-        return {}, []
-    if isinstance(found, (list, tuple)) and all(map(_is_chunk, found)):
-        tasks, keys = _tasks_of(chunk for chunk in found if isinstance(chunk, dask_delayed.Delayed))
-        of_delayed = iter(keys)
-        return _with_data(tasks, [next(of_delayed) if isinstance(chunk, dask_delayed.Delayed) else [chunk] for chunk in found])
-    if isinstance(found, (pandas.DataFrame, pandas.Series)):
-        cut = [found.iloc[row : row + _ROWS_OF_CHUNK] for row in range(0, max(len(found), 1), _ROWS_OF_CHUNK)]
-    else:
-        array = _convert.boxes(found, name)
-        cut = [array[row : row + _ROWS_OF_CHUNK] for row in range(0, max(len(array), 1), _ROWS_OF_CHUNK)]
-    return _with_data({}, [[chunk] for chunk in cut])
-
-
-def _is_chunk(found: Any) -> bool:
-    """Whether an element of a list is a chunk of boxes, not a box."""
-    is_frame = isinstance(found, (dask_delayed.Delayed, pandas.DataFrame, pandas.Series))
-    return is_frame or (isinstance(found, np.ndarray) and found.ndim == 2)
-
-
-def _bounds_of(frame: Any, name: str, columns: tuple[str, ...] | None) -> Any:
-    """What the bounds are computed from, so that no other columns are read."""
-    if columns is not None:
-        missing = [column for column in columns if column not in frame.columns]
-        if missing:
-            raise ValueError(
-                f"{name} has the columns {', '.join(map(str, frame.columns)) or 'none'}; expected {', '.join(missing)} as well"
-            )
-        return frame[list(columns)]
-    geometry = getattr(frame._meta, "geometry", None)
-    if str(getattr(geometry, "dtype", "")) == "geometry":
-        return frame.geometry
-    if isinstance(frame, dask_frame.Series):
-        raise TypeError(f"{name} is a Series of {frame.dtype}; expected a DataFrame of bounds, or geometries")
-    by_text = {str(column): column for column in frame.columns}
-    return frame[[by_text[column] for column in _convert.columns_of_bounds(by_text, name)]]
-
-
-def _tasks_of(delayed: Iterable[Any]) -> tuple[Tasks, list[Key]]:
-    chunks = list(delayed)
-    graphs = {id(graph): graph for graph in (chunk.dask for chunk in chunks)}  # those of a collection share one
-    tasks: Tasks = {}
-    for graph in graphs.values():
-        tasks.update(dict(graph))
-    keys = [chunk.key for chunk in chunks]
-    for key in keys:
-        tasks.setdefault(key, key)  # one without a task is known to the cluster, which holds it already
-    return tasks, keys
-
-
-def _futures_in(graph: Any) -> Tasks:
-    """What a cluster has computed already, which Dask leaves out when it optimises the graph of an array."""
-    distributed = sys.modules.get("distributed")
-    if distributed is None:
-        return {}
-    return {key: task for key, task in dict(graph).items() if isinstance(task, distributed.Future)}
-
-
-def _with_data(tasks: Tasks, chunks: Iterable[Any]) -> tuple[Tasks, list[Key]]:
-    """Keys of chunks, of which those in a list are data that have none yet."""
-    keys: list[Key] = []
-    for chunk in chunks:
-        if isinstance(chunk, list):
-            key = f"broadside-chunk-{dask.base.tokenize(chunk[0])}"
-            tasks[key] = chunk[0]
-            keys.append(key)
-        else:
-            keys.append(chunk)
-    return tasks, keys
-
-
-def _rows_of(chunk: Any, columns: tuple[str, ...] | None, where: str) -> Rows:
-    """The boxes of a chunk as an array."""
-    if columns is None:
-        return _convert.boxes(chunk, where)
-    if not isinstance(chunk, pandas.DataFrame):
-        raise TypeError(f"{where} is of {type(chunk).__name__}; expected a DataFrame, since columns are given")
-    missing = [column for column in columns if column not in chunk.columns]
-    if missing:
-        raise ValueError(f"{where} has the columns {', '.join(map(str, chunk.columns))}; expected {', '.join(missing)} as well")
-    return _convert.boxes(np.column_stack([chunk[column].to_numpy() for column in columns]), where)
-
-
-def _index_of(chunk: Any, where: str) -> Any:
-    if not isinstance(chunk, (pandas.DataFrame, pandas.Series)):
-        raise TypeError(f"{where} is of {type(chunk).__name__}; expected a DataFrame, since ids is 'index'")
-    if chunk.index.nlevels > 1:
-        raise TypeError(f"{where} has an index of {chunk.index.nlevels} levels; expected one level, since ids is 'index'")
-    return chunk.index
-
-
-# Before the join: all chunks are looked at, and space is cut
-
-
-def _look_at(sets: list[_Set], parts: int, quarantine: bool) -> list[list[_Look]]:
+def _look_at(sets: list[ChunkedSet], parts: int, quarantine: bool) -> list[list[Look]]:
     """Computes all chunks once. Raises InvalidBoxError about the first invalid box, unless it is quarantined."""
     chunks = sum(len(one.chunks) for one in sets)
     most = max(_SAMPLE_OF_CHUNK, math.ceil(max(_SAMPLE, _SAMPLE_OF_PART * parts) / max(chunks, 1)))
-    name = f"broadside-look-{dask.base.tokenize([one.chunks for one in sets])}"
+    name = f"broadside-look-{dask.base.tokenize([(one.chunks, one.columns, one.has_index) for one in sets], most)}"
     tasks: Tasks = {}
     keys: list[list[Key]] = []
     for side, one in enumerate(sets):
         tasks.update(one.tasks)
         keys.append([(name, side, number) for number in range(len(one.chunks))])
         for number, chunk in enumerate(one.chunks):
-            options = _Options(one.name, number, one.columns, one.has_index, most)
-            tasks[name, side, number] = (_look, chunk, options)
+            options = LookOptions(one.name, number, one.columns, one.has_index, most)
+            tasks[name, side, number] = (work.look, chunk, options)
     tasks[name] = (_as_lists, keys)
     (looks,) = dask.compute(dask_delayed.Delayed(name, tasks))
     for one, its in zip(sets, looks, strict=True):
@@ -296,53 +141,15 @@ def _look_at(sets: list[_Set], parts: int, quarantine: bool) -> list[list[_Look]
                 text = f"box {rows + row} of {one.name}, row {row} of chunk {number}, has {fault}"
                 raise InvalidBoxError(text, rows + row, one.name)
             rows += look.rows
-    found: list[list[_Look]] = looks
+    found: list[list[Look]] = looks
     return found
 
 
-@dataclass(frozen=True)
-class _Options:
-    """How a chunk is looked at."""
-
-    name: str
-    number: int
-    columns: tuple[str, ...] | None
-    has_index: bool
-    most_sampled: int
-
-
-def _as_lists(lists: list[list[_Look]]) -> list[list[_Look]]:
+def _as_lists(lists: list[list[Look]]) -> list[list[Look]]:
     return lists
 
 
-def _look(chunk: Any, options: _Options) -> _Look:
-    where = f"chunk {options.number} of {options.name}"
-    rows = _rows_of(chunk, options.columns, where)
-    half = rows.shape[1] // 2
-    present = rows[(rows[:, :half] <= rows[:, half:]).all(axis=1)]
-    if len(present):
-        bounds = np.concatenate([present[:, :half].min(axis=0), present[:, half:].max(axis=0)])[None, :]
-    else:
-        bounds = present
-    rng = np.random.default_rng(options.number)
-    sample = present[rng.choice(len(present), min(options.most_sampled, len(present)), replace=False)]
-    index = _index_of(chunk, where).dtype if options.has_index else None
-    return _Look(len(rows), rows.shape[1], rows.dtype, len(present), bounds, sample, index, _fault_of(rows))
-
-
-def _fault_of(rows: Rows) -> tuple[int, str] | None:
-    invalid = invalid_rows(rows)
-    if not invalid.size:
-        return None
-    row = int(invalid[0])
-    try:
-        count(rows[row : row + 1])
-    except InvalidBoxError as error:
-        return row, str(error).partition(" has ")[2]
-    raise AssertionError(f"row {row} is invalid and was not refused")
-
-
-def _kind(sets: list[_Set], looks: list[list[_Look]]) -> tuple[int, np.dtype[Any]]:
+def _kind(sets: list[ChunkedSet], looks: list[list[Look]]) -> tuple[int, np.dtype[Any]]:
     """How many columns all boxes have, and their dtype. Float64 holds all float32."""
     all_looks = [(one.name, number, look) for one, its in zip(sets, looks, strict=True) for number, look in enumerate(its)]
     if not all_looks:
@@ -357,7 +164,7 @@ def _kind(sets: list[_Set], looks: list[list[_Look]]) -> tuple[int, np.dtype[Any
     return first.width, np.result_type(*(look.dtype for _, _, look in all_looks))
 
 
-def _partition_of(looks: list[list[_Look]], width: int, dtype: np.dtype[Any], parts: int) -> Partition:
+def _partition_of(looks: list[list[Look]], width: int, dtype: np.dtype[Any], parts: int) -> Partition:
     """From a sample in which chunks count by their boxes, however many were drawn of each."""
     present = [look for its in looks for look in its if look.present]
     if not present:
@@ -367,47 +174,10 @@ def _partition_of(looks: list[list[_Look]], width: int, dtype: np.dtype[Any], pa
     return Partition(sample.astype(dtype, copy=False), parts, boxes=sum(look.present for look in present))
 
 
-# The join: what tasks do
-
-
-@dataclass(frozen=True)
-class _Side:
-    """What tasks know of a set of boxes."""
-
-    name: str
-    columns: tuple[str, ...] | None
-    starts: tuple[int, ...]  # the first row of each chunk, and the number of rows
-    index: Any  # the dtype of its index; None where boxes are called by rows
-
-    def ids_of(self, chunk: Any, number: int) -> NDArray[Any]:
-        where = f"chunk {number} of {self.name}"
-        if self.index is not None:
-            ids: NDArray[Any] = _index_of(chunk, where).to_numpy()
-            return ids
-        return np.arange(self.starts[number], self.starts[number + 1], dtype=np.int64)
-
-    def labels(self, ids: NDArray[Any]) -> Any:
-        return pandas.Index(ids, dtype=np.int64 if self.index is None else self.index)
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """What all tasks share."""
-
-    partition: Partition
-    sides: tuple[_Side, ...]
-    width: int
-    dtype: np.dtype[Any]
-    algorithm: str
-    threads: int | None
-    sort: bool
-    quarantine: bool
-
-
-def _side(one: _Set, looks: list[_Look], ids: str) -> _Side:
+def _side(one: ChunkedSet, looks: list[Look], ids: str) -> Side:
     starts = (0, *np.cumsum([look.rows for look in looks], dtype=np.int64).tolist())
     if ids == "row":
-        return _Side(one.name, one.columns, starts, None)
+        return Side(one.name, one.columns, starts, None)
     dtypes = {number: look.index for number, look in enumerate(looks) if look.rows}
     first = next(iter(dtypes.items()), (0, np.dtype(np.int64)))
     for number, dtype in dtypes.items():
@@ -416,86 +186,10 @@ def _side(one: _Set, looks: list[_Look], ids: str) -> _Side:
                 f"the index of chunk {first[0]} of {one.name} is of {first[1]} and that of chunk {number} of {dtype}; expected "
                 "one dtype, since ids is 'index'"
             )
-    return _Side(one.name, one.columns, starts, first[1])
+    return Side(one.name, one.columns, starts, first[1])
 
 
-class _Pieces(NamedTuple):
-    """Arrays of equal length, cut for targets that follow each other: the parts of space or, later, the chunks."""
-
-    target: int  # the first
-    start: NDArray[np.int64]  # where each target's begin, and the end
-    arrays: tuple[NDArray[Any], ...]
-
-
-def _take(pieces: _Pieces, begin: int, end: int) -> _Pieces:
-    """What the targets from `begin` to `end` get: a copy, which does not keep the rest alive."""
-    start = pieces.start[begin - pieces.target : end - pieces.target + 1]
-    arrays = tuple(array[start[0] : start[-1]].copy() for array in pieces.arrays)
-    return _Pieces(begin, start - start[0], arrays)
-
-
-def _merge(several: list[_Pieces]) -> _Pieces:
-    """For each target what all have for it, in their order."""
-    lengths = np.array([np.diff(pieces.start) for pieces in several])
-    start = np.concatenate([[0], np.cumsum(lengths.sum(axis=0))])
-    targets = range(lengths.shape[1])
-    arrays = tuple(
-        np.concatenate([several[i].arrays[k][several[i].start[t] : several[i].start[t + 1]] for t in targets for i in range(len(several))])
-        for k in range(len(several[0].arrays))
-    )
-    return _Pieces(several[0].target, start, arrays)
-
-
-def _split(chunk: Any, plan: _Plan, side: int, number: int, touched: NDArray[np.int64]) -> _Pieces:
-    """The boxes of a chunk and their ids, by the parts that they touch; a box on a cut several times."""
-    this = plan.sides[side]
-    where = f"chunk {number} of {this.name}"
-    rows = _rows_of(chunk, this.columns, where)
-    expected = this.starts[number + 1] - this.starts[number]
-    if len(rows) != expected or rows.shape[1] != plan.width:
-        raise ValueError(f"{where} has shape {rows.shape}; expected ({expected}, {plan.width}), as it had when it was looked at")
-    ids = this.ids_of(chunk, number)
-    start, row = plan.partition.assign(rows.astype(plan.dtype, copy=False), quarantine=plan.quarantine)
-    if np.diff(start)[touched].sum() != len(row):
-        raise ValueError(f"{where} has boxes where it had none when it was looked at; expected the same boxes")
-    return _Pieces(0, start, (rows.astype(plan.dtype, copy=False)[row], ids[row]))
-
-
-def _join(plan: _Plan, part: int, sides: list[list[_Pieces]]) -> Any:
-    """The pairs that belong to a part: a frame, or where all are to be sorted, arrays cut by the chunk of the first box."""
-    boxes, ids = zip(*(_gathered(plan, side, pieces) for side, pieces in enumerate(sides)), strict=True)
-    other = boxes[1] if len(boxes) == 2 else None
-    # Ids ascend, so sorted rows are sorted ids.
-    rows = plan.partition.pairs(part, boxes[0], other, algorithm=plan.algorithm, sort=plan.sort, threads=plan.threads)
-    found = (ids[0][rows[:, 0]], ids[-1][rows[:, 1]])
-    if plan.sort:
-        return _Pieces(0, np.searchsorted(found[0], plan.sides[0].starts), found)
-    return _as_frame(plan, *found)
-
-
-def _gathered(plan: _Plan, side: int, several: list[_Pieces]) -> tuple[Rows, NDArray[Any]]:
-    boxes = np.concatenate([np.empty((0, plan.width), plan.dtype), *(pieces.arrays[0] for pieces in several)])
-    if not several:
-        return boxes, plan.sides[side].labels(np.empty(0, np.int64)).to_numpy()
-    return boxes, np.concatenate([pieces.arrays[1] for pieces in several])
-
-
-def _sorted(plan: _Plan, several: list[_Pieces]) -> Any:
-    """All pairs whose first box is in one chunk."""
-    empty = np.empty(0, np.int64)
-    first, second = (np.concatenate([empty, *(pieces.arrays[k] for pieces in several)]) for k in (0, 1))
-    order = np.lexsort((second, first))
-    return _as_frame(plan, first[order], second[order])
-
-
-def _as_frame(plan: _Plan, first: NDArray[Any], second: NDArray[Any]) -> Any:
-    return pandas.DataFrame({"first": plan.sides[0].labels(first), "second": plan.sides[-1].labels(second)})
-
-
-# The join: which tasks there are
-
-
-def _frame(sets: list[_Set], looks: list[list[_Look]], plan: _Plan) -> Any:
+def _frame(sets: list[ChunkedSet], looks: list[list[Look]], plan: Plan) -> Any:
     token = dask.base.tokenize([one.chunks for one in sets], looks, plan)
     names = {name: f"broadside-{name}-{token}" for name in ("plan", "split", "piece", "join", "run", "sort")}
     tasks: Tasks = {names["plan"]: plan}
@@ -510,18 +204,18 @@ def _frame(sets: list[_Set], looks: list[list[_Look]], plan: _Plan) -> Any:
         pieces.append(_add_routes(tasks, f"{names['piece']}-{side}", splits, links))
     parts = range(len(plan.partition))
     for part in parts:
-        tasks[names["join"], part] = (_join, names["plan"], part, [its.get(part, []) for its in pieces])
+        tasks[names["join"], part] = (work.join, names["plan"], part, [its.get(part, []) for its in pieces])
     keys = [(names["join"], part) for part in parts]
     if plan.sort:
         runs = _add_routes(tasks, names["run"], dict(enumerate(keys)), sorted((part, chunk) for chunk, part in links_of_first))
         keys = [(names["sort"], chunk) for chunk in range(max(len(sets[0].chunks), 1))]
         for chunk, key in enumerate(keys):
-            tasks[key] = (_sorted, names["plan"], runs.get(chunk, []))
-    empty = _as_frame(plan, *(side.labels(np.empty(0, np.int64)).to_numpy() for side in (plan.sides[0], plan.sides[-1])))
+            tasks[key] = (work.sort, names["plan"], runs.get(chunk, []))
+    empty = work.as_frame(plan, *(side.labels(np.empty(0, np.int64)).to_numpy() for side in (plan.sides[0], plan.sides[-1])))
     return dask_frame.from_graph(tasks, empty, (None,) * (len(keys) + 1), keys, "broadside-pairs")
 
 
-def _links(plan: _Plan, looks: list[_Look]) -> list[tuple[int, int]]:
+def _links(plan: Plan, looks: list[Look]) -> list[tuple[int, int]]:
     """The chunks, each with the parts that its bounds touch: others get nothing of it."""
     there = [number for number, look in enumerate(looks) if look.present]
     if not there:
@@ -532,12 +226,12 @@ def _links(plan: _Plan, looks: list[_Look]) -> list[tuple[int, int]]:
     return sorted(zip(np.array(there)[row].tolist(), part.tolist(), strict=True))
 
 
-def _add_splits(tasks: Tasks, name: str, plan: Key, one: _Set, side: int, links: list[tuple[int, int]]) -> dict[int, Key]:
+def _add_splits(tasks: Tasks, name: str, plan: Key, one: ChunkedSet, side: int, links: list[tuple[int, int]]) -> dict[int, Key]:
     touched: dict[int, list[int]] = {}
     for chunk, part in links:
         touched.setdefault(chunk, []).append(part)
     for chunk, parts in touched.items():
-        tasks[name, side, chunk] = (_split, one.chunks[chunk], plan, side, chunk, np.array(parts))
+        tasks[name, side, chunk] = (work.split, one.chunks[chunk], plan, side, chunk, np.array(parts))
     return {chunk: (name, side, chunk) for chunk in touched}
 
 
@@ -549,18 +243,18 @@ def _add_routes(tasks: Tasks, name: str, sources: dict[int, Key], links: list[tu
     ends: dict[int, list[Key]] = {}
     if len(links) <= _MOST_DIRECT_LINKS:
         for source, target in links:
-            tasks[name, source, target] = (_take, sources[source], target, target + 1)
+            tasks[name, source, target] = (work.take, sources[source], target, target + 1)
             ends.setdefault(target, []).append((name, source, target))
         return ends
     source_count, target_count = (1 + max(numbers) for numbers in zip(*links, strict=True))
     batch, group = math.isqrt(source_count), math.isqrt(target_count)
     merged: dict[tuple[int, int], list[Key]] = {}
     for source, there in sorted({(source, target // group) for source, target in links}):
-        tasks[f"{name}-group", source, there] = (_take, sources[source], there * group, min((there + 1) * group, target_count))
+        tasks[f"{name}-group", source, there] = (work.take, sources[source], there * group, min((there + 1) * group, target_count))
         merged.setdefault((source // batch, there), []).append((f"{name}-group", source, there))
     for (some, there), keys in merged.items():
-        tasks[f"{name}-batch", some, there] = (_merge, keys)
+        tasks[f"{name}-batch", some, there] = (work.merge, keys)
     for some, target in sorted({(source // batch, target) for source, target in links}):
-        tasks[name, some, target] = (_take, (f"{name}-batch", some, target // group), target, target + 1)
+        tasks[name, some, target] = (work.take, (f"{name}-batch", some, target // group), target, target + 1)
         ends.setdefault(target, []).append((name, some, target))
     return ends

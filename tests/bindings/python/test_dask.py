@@ -89,7 +89,7 @@ def test_takes_chunks_in_a_list_and_arrays_in_memory(monkeypatch):
     delayed = [dask.delayed(pieces[0]), pieces[1], dask.delayed(frame_of)(pieces[2])]
     assert is_same(broadside.dask.pairs(delayed), boxes)
     assert is_same(broadside.dask.pairs(dask.delayed(boxes)), boxes)
-    monkeypatch.setattr(broadside.dask, "_ROWS_OF_CHUNK", 700)
+    monkeypatch.setattr(broadside._dask_chunks, "ROWS_OF_CHUNK", 700)
     for whole in (boxes, frame_of(boxes)):
         found = broadside.dask.pairs(whole, sort=True)
         assert found.npartitions == 5 and is_same(found, boxes)
@@ -203,6 +203,7 @@ def test_refuses_what_does_not_fit():
         (lambda: pairs(da.zeros((10, 4), dtype=bool)), TypeError, "chunk 0 of boxes has dtype bool"),
         (lambda: pairs([dask.delayed("a")]), TypeError, "chunk 0 of boxes is of str"),
         (lambda: pairs(frame.xmin), TypeError, "boxes is a Series of float32; expected a DataFrame"),
+        (lambda: pairs(frame.xmin, columns=list("abcd")), TypeError, "boxes is a Series; expected a DataFrame"),
         (lambda: pairs(frame, columns=["xmin", "ymin", "a", "b"]), ValueError, "the columns xmin, .*; expected a, b as well"),
         (lambda: pairs([frame_of(boxes)], columns=["xmin", "ymin", "a", "b"]), ValueError, "chunk 0 of boxes .* a, b as well"),
         (lambda: pairs(boxes, columns=list("abcd")), TypeError, "chunk 0 of boxes is of ndarray; expected a DataFrame"),
