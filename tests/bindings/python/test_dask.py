@@ -1,5 +1,6 @@
 """broadside.dask.pairs: the pairs of broadside.pairs, whatever the chunks, the parts and the workers that die."""
 
+import gc
 import os
 import runpy
 import signal
@@ -270,9 +271,14 @@ def test_takes_what_a_cluster_holds_already(client):
     boxes = scattered(5000)
     array = da.from_array(boxes, chunks=(500, -1))
     frame = dd.from_pandas(frame_of(boxes), npartitions=3)
-    for chunks in (array.persist(), array.persist() + np.float32(0), frame.persist(), [dask.delayed(boxes).persist()]):
-        found = broadside.dask.pairs(chunks)
-        del chunks  # the result holds them
+    for held in (
+        lambda: array.persist(),
+        lambda: array.persist() + np.float32(0),
+        lambda: frame.persist(),
+        lambda: [dask.delayed(boxes).persist()],
+    ):
+        found = broadside.dask.pairs(held())  # which alone refers to them from now on
+        gc.collect()
         assert is_same(found.persist(), boxes)
     held = array.persist()
     assert is_same(broadside.dask.pairs(list(held.to_delayed()[:2, 0])), boxes[:1000])
