@@ -18,6 +18,7 @@
 #include "broadside/box.hpp"
 
 #include "kernels/block.hpp"
+#include "kernels/mask.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -40,11 +41,7 @@ HWY_INLINE FloatVector load(const std::array<float, block_size>& values, std::si
 HWY_INLINE FloatVector load(const float* values, std::size_t at) { return hn::LoadU(Floats(), values + at); }
 
 /// Bit i is lane i.
-HWY_INLINE std::uint32_t bits_of(FloatMask mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
-}
+HWY_INLINE std::uint32_t bits_of(FloatMask mask) { return bits_of(Floats(), mask); }
 
 /// A box in every lane.
 template <int D>

@@ -90,7 +90,7 @@ struct Cast {
       FloatVector enter;
       FloatMask hits = may_meet(node, at, limit, enter);
       if (cast_.exact) {
-        if (hn::AllFalse(Floats(), hits)) continue;
+        if (all_false(Floats(), hits)) continue;
         hits = meets(node, at, t_max, enter);
       }
       // Makes -0.0 0.0.

@@ -83,7 +83,7 @@ class Follow {
       if (HWY_UNLIKELY(box.filter_changed)) {
         begun_.room();
         begun_.write_of(id, ids, hn::Or(did, does));
-      } else if (!hn::AllFalse(numbers, hn::Xor(did, does))) {
+      } else if (!all_false(numbers, hn::Xor(did, does))) {
         begun_.room();
         begun_.write_of(id, ids, hn::AndNot(did, does));
         ended_.room();

@@ -98,7 +98,7 @@ class Join {
           const NumberVector numbers = numbers_from(at);
           const Hits hits = hn::AndNot(hn::Gt(first, numbers), touching(query, children, at));
           hn::StoreU(compress(Numbers(), numbers, hits), Numbers(), touched + touched_count);
-          touched_count += hn::CountTrue(Numbers(), hits);
+          touched_count += count_true(Numbers(), hits);
         }
       }
       bounds_ += count;
@@ -126,7 +126,7 @@ class Join {
       for (std::size_t at = 0; at < fan_out; at += lanes) {
         const Hits hits = touching(bounds, boxes, begin + at);
         hn::StoreU(compress(Numbers(), numbers_from(other + at), hits), Numbers(), queries_ + queried);
-        queried += hn::CountTrue(Numbers(), hits);
+        queried += count_true(Numbers(), hits);
       }
       if (HWY_UNLIKELY(list[i] >= tree_.first_with_gap)) unused_ += (queried - before) * gap_of(list[i]);
       if (HWY_UNLIKELY(queried > most_queries)) {

@@ -39,7 +39,7 @@ template <int D>
 HWY_INLINE std::size_t append(const Block<D>& node, std::size_t at, FloatMask mask, std::uint32_t* to) {
   const auto hits = hn::RebindMask(Numbers(), mask);
   hn::StoreU(compress(Numbers(), hn::Load(Numbers(), node.id.data() + at), hits), Numbers(), to);
-  return hn::CountTrue(Floats(), mask);
+  return count_true(Floats(), mask);
 }
 
 /// A depth-first traversal: goes on to the children that `may_hold(node, at)` lets through, a mask of those

@@ -17,6 +17,8 @@
 
 #include <hwy/highway.h>
 
+#include "kernels/mask.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 
@@ -54,15 +56,11 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<Tag> compress(Tag tag, hwy::HWY_NAMESPACE::Ve
 #endif
   if constexpr (vector_size == 8) {
     const hn::Rebind<std::uint8_t, Tag> bytes;
-    std::array<std::uint8_t, 8> set{};
-    hn::StoreMaskBits(tag, mask, set.data());
-    const auto order = hn::PromoteTo(tag, hn::Load(bytes, lanes_of_8.places[set[0]].data()));
+    const auto order = hn::PromoteTo(tag, hn::Load(bytes, lanes_of_8.places[bits_of(tag, mask)].data()));
     return hn::TableLookupLanes(numbers, hn::IndicesFromVec(tag, order));
   } else if constexpr (vector_size == 4) {
     const hn::Repartition<std::uint8_t, Tag> bytes;
-    std::array<std::uint8_t, 8> set{};
-    hn::StoreMaskBits(tag, mask, set.data());
-    const auto order = hn::Load(bytes, bytes_of_4.places[set[0]].data());
+    const auto order = hn::Load(bytes, bytes_of_4.places[bits_of(tag, mask)].data());
     return hn::BitCast(tag, hn::TableLookupBytes(hn::BitCast(bytes, numbers), order));
   } else {
     return hn::Compress(numbers, mask);

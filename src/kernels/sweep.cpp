@@ -83,11 +83,11 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
   std::size_t tests = 0;
   for (std::size_t at = begin; run.min[0][at] <= last; at += lanes) {
     const FloatMask tested = hn::Le(hn::LoadU(floats, run.min[0] + at), query.bounds.max[0]);
-    tests += hn::CountTrue(floats, tested);
+    tests += count_true(floats, tested);
     if constexpr (is_observing) observe_tests(query.box_id(), run.id + at, bits_of(tested));
     const Hits hits = overlaps(query, run, at);
     // Where candidates are many, most vectors of them hold no hit.
-    if (hn::AllFalse(Ids(), hits)) continue;
+    if (all_false(Ids(), hits)) continue;
     pairs.room();
     pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);
   }
@@ -123,9 +123,9 @@ HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::si
         const LoadedBoxes<D>& group = groups[part];
         const std::size_t at = begin + part * lanes + distance;
         const LoadedBoxes<D> other(run, at);
-        open += hn::CountTrue(floats, hn::Le(other.min[0], hn::Add(group.max[0], slack)));
+        open += count_true(floats, hn::Le(other.min[0], hn::Add(group.max[0], slack)));
         const auto candidates = hn::Le(other.min[0], group.max[0]);
-        tests += hn::CountTrue(floats, candidates);
+        tests += count_true(floats, candidates);
         if constexpr (is_observing)
           observe_tests(run.id + begin + part * lanes, run.id + at, bits_of(candidates));
         auto hits = hn::And(candidates, hn::Le(group.min[0], other.max[0]));
@@ -185,7 +185,7 @@ HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size
     const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
     if constexpr (is_observing)
       observe_tests(query.box_id(), run.id + at, (1U << std::min(lanes, run.size - at)) - 1);
-    if (hn::AllFalse(Ids(), hits)) continue;
+    if (all_false(Ids(), hits)) continue;
     pairs.room();
     pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);
   }
