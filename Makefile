@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python wasm test-wasm compare-web playground bench test sanitize systems windows clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -85,14 +85,14 @@ $(python_folder)/%/ready: | setup
 	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
 
-# CMake's build folders: the modules with SIMD and without.
+# CMake's build folders: the modules for each dimension, with SIMD and without.
 wasm_folder := build/wasm
+wasm_flavours := 2d 3d 2d-scalar 3d-scalar
 
-wasm: $(wasm_folder)/simd/build.ninja $(wasm_folder)/scalar/build.ninja ## Build the npm package for JavaScript: build/wasm/package/
-	@test -f $(wasm_folder)/simd/build.ninja || emcmake cmake --preset wasm
-	@test -f $(wasm_folder)/scalar/build.ninja || emcmake cmake --preset wasm-scalar
-	cmake --build --preset wasm
-	cmake --build --preset wasm-scalar
+wasm: $(wasm_flavours:%=$(wasm_folder)/%/build.ninja) ## Build the npm package for JavaScript: build/wasm/package/
+	for flavour in $(wasm_flavours); do \
+	  test -f $(wasm_folder)/$$flavour/build.ninja || emcmake cmake --preset wasm-$$flavour || exit 1; \
+	  cmake --build --preset wasm-$$flavour || exit 1; done
 	node bindings/wasm/build.mjs $(wasm_folder) $(wasm_folder)/package
 
 test-wasm: wasm ## Run the tests of the npm package
@@ -100,10 +100,11 @@ test-wasm: wasm ## Run the tests of the npm package
 	BROADSIDE_PACKAGE=$(CURDIR)/$(wasm_folder)/package BROADSIDE_WEB=$(CURDIR)/web \
 	  node --test $(wasm_folder)/tests/
 
-$(wasm_folder)/simd/build.ninja: CMakePresets.json | setup
-	emcmake cmake --preset wasm
-$(wasm_folder)/scalar/build.ninja: CMakePresets.json | setup
-	emcmake cmake --preset wasm-scalar
+test-installed: test-wasm ## Install the npm package in an empty project, build it by Vite, test it in Node 18; takes the network
+	node tests/bindings/wasm/installed.mjs $(wasm_folder)/package $(wasm_folder)/tests
+
+$(wasm_flavours:%=$(wasm_folder)/%/build.ninja): $(wasm_folder)/%/build.ninja: CMakePresets.json | setup
+	emcmake cmake --preset wasm-$*
 
 compare-web: wasm ## Compare the npm package with other libraries of JavaScript, in Node and in Chromium
 	cd bench/web && npm ci --silent --ignore-scripts --no-audit --no-fund
@@ -120,7 +121,7 @@ $(wasm_folder)/playground/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset playground
 
 # Debian's Emscripten does not find Debian's acorn by itself.
-wasm test-wasm compare-web playground: export NODE_PATH := /usr/share/nodejs
+wasm test-wasm test-installed compare-web playground: export NODE_PATH := /usr/share/nodejs
 
 test: tests-release ## Build everything and run all tests
 
@@ -164,7 +165,7 @@ deb: setup_options := --deb
 
 systems windows: setup_options := --systems
 python test-python: setup_options := --python
-wasm test-wasm compare-web playground: setup_options := --web
+wasm test-wasm test-installed compare-web playground: setup_options := --web
 
 setup:
 	@scripts/setup $(setup_options)

@@ -54,7 +54,7 @@ async function inChromium() {
           say: (text) => console.log("\\n" + text) });
         console.log("done");`,
     },
-    bundle: true, format: "esm", write: false, external: ["./scalar.js"],
+    bundle: true, format: "esm", write: false, external: ["*-scalar.js"],
     define: { global: "globalThis" }, logLevel: "warning",
   });
   const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });

@@ -1,6 +1,6 @@
 // Makes the npm package of the modules that CMake has built.
 //
-//   node build.mjs MODULES PACKAGE           MODULES/simd and MODULES/scalar are CMake's build folders; to PACKAGE
+//   node build.mjs MODULES PACKAGE           MODULES/2d and so on are CMake's build folders; to PACKAGE
 //   node build.mjs --tests FOLDER PACKAGE    the tests of a PACKAGE, to FOLDER/*.test.mjs
 import {
   cpSync, mkdirSync, readFileSync, readdirSync, rmSync, symlinkSync, writeFileSync,
@@ -20,37 +20,38 @@ function version() {
   return /define BROADSIDE_VERSION "([^"]+)"/.exec(header)[1];
 }
 
+/** CMake's build folders: a dimension, with SIMD or without. */
+const flavours = ["2d", "3d", "2d-scalar", "3d-scalar"];
+
 /** The modules by the names of their files in the package. */
 function readModules(folder) {
-  const module = (flavour, target) => readFileSync(join(folder, flavour, "bindings/wasm", `${target}.wasm`));
-  return new Map([
-    ["broadside", module("simd", "broadside_wasm")],
-    ["broadside-scalar", module("scalar", "broadside_wasm")],
-    ["broadside-pairs", module("simd", "broadside_wasm_pairs")],
-    ["broadside-pairs-scalar", module("scalar", "broadside_wasm_pairs")],
-  ]);
+  const modules = new Map();
+  for (const [name, target] of [["broadside", "broadside_wasm"], ["broadside-pairs", "broadside_wasm_pairs"]]) {
+    for (const flavour of flavours)
+      modules.set(`${name}-${flavour}`, readFileSync(join(folder, flavour, "bindings/wasm", `${target}.wasm`)));
+  }
+  return modules;
 }
 
-/** Resolves `wasm:NAME` to a module's bytes as src/inline.ts reads them. */
-const inlineBytes = (modules) => ({
-  name: "wasm",
-  setup({ onResolve, onLoad }) {
-    onResolve({ filter: /^wasm:/ }, ({ path }) => ({ path: path.slice("wasm:".length), namespace: "wasm" }));
-    onLoad({ filter: /.*/, namespace: "wasm" }, ({ path }) => ({
-      contents: `export const bytes = "${deflateSync(modules.get(path), { level: 9 }).toString("base64")}";`,
-    }));
-  },
-});
+/** A module's bytes as src/inline.ts reads them. Base64 of what is compressed is a hundredth larger when it is
+ * compressed again; a string of the bytes themselves would be a twenty-fifth larger. */
+const script = (bytes) => `export const bytes="${deflateSync(bytes, { level: 9 }).toString("base64")}";\n`;
 
-/** A file of the package for each entry, and one for each module without SIMD. */
+/** Leaves `module:NAME` to be imported from NAME.js when it is needed. */
+const modulesApart = {
+  name: "modules",
+  setup({ onResolve }) {
+    onResolve({ filter: /^module:/ }, ({ path }) => ({ path: `./${path.slice("module:".length)}.js`, external: true }));
+  },
+};
+
+/** A file of the package for each entry, and one for each module. */
 async function bundle(modules, folder) {
   await build({
     entryPoints: {
       index: join(here, "src/index.ts"),
       pairs: join(here, "src/pairs_entry.ts"),
       external: join(here, "src/external.ts"),
-      scalar: join(here, "src/scalar.ts"),
-      "pairs-scalar": join(here, "src/pairs_scalar.ts"),
     },
     outdir: folder,
     bundle: true,
@@ -59,16 +60,9 @@ async function bundle(modules, folder) {
     target: "es2022",
     charset: "utf8",
     logLevel: "warning",
-    plugins: [inlineBytes(modules), {
-      name: "apart",
-      setup({ onResolve }) {
-        // Imported when they are needed, and not bundled.
-        onResolve({ filter: /scalar\.ts$/ }, ({ path, kind }) => kind === "dynamic-import" ?
-          { path: path.replace("pairs_scalar.ts", "pairs-scalar.js").replace("scalar.ts", "scalar.js"), external: true } :
-          undefined);
-      },
-    }],
+    plugins: [modulesApart],
   });
+  for (const [name, bytes] of modules) writeFileSync(join(folder, `${name}.js`), script(bytes));
 }
 
 const entry = (name) => ({ types: `./${name}.d.ts`, default: `./${name}.js` });

@@ -78,9 +78,64 @@ constexpr auto find(Range&& range, const Value& value, Projection projection = {
                       [&](const auto& element) { return invoke(projection, element) == value; });
 }
 
+/// Heapsort, for what quicksort cuts badly.
+template <typename At, typename Before>
+constexpr void sort_by_heap(At first, ptrdiff_t count, Before before) {
+  const auto sift_down = [&](ptrdiff_t parent, ptrdiff_t last) {
+    auto sinking = std::move(first[parent]);
+    for (ptrdiff_t child; (child = 2 * parent + 1) < last; parent = child) {
+      if (child + 1 < last && before(first[child], first[child + 1])) ++child;
+      if (!before(sinking, first[child])) break;
+      first[parent] = std::move(first[child]);
+    }
+    first[parent] = std::move(sinking);
+  };
+  for (ptrdiff_t parent = count / 2; parent-- > 0;) sift_down(parent, count);
+  for (ptrdiff_t last = count; --last > 0;) {
+    std::swap(first[0], first[last]);
+    sift_down(0, last);
+  }
+}
+
+/// Introsort in a tenth of the code of libc++'s, which is made for each type anew.
+template <typename At, typename Before>
+constexpr void sort_range(At first, At last, Before before, int depth) {
+  constexpr ptrdiff_t few = 16;
+  while (last - first > few) {
+    if (depth-- == 0) return sort_by_heap(first, last - first, before);
+    // The median of three goes first; the others stand where they stop both loops.
+    At middle = first + (last - first) / 2;
+    if (before(*middle, *first)) std::swap(*middle, *first);
+    if (before(last[-1], *first)) std::swap(last[-1], *first);
+    if (before(last[-1], *middle)) std::swap(last[-1], *middle);
+    const auto pivot = *middle;
+    At low = first;
+    At high = last - 1;
+    for (;;) {
+      while (before(*low, pivot)) ++low;
+      while (before(pivot, *high)) --high;
+      if (low >= high) break;
+      std::swap(*low++, *high--);
+    }
+    sort_range(low, last, before, depth);
+    last = low;
+  }
+  for (At at = first; at != last; ++at) {
+    auto moved = std::move(*at);
+    At to = at;
+    for (; to != first && before(moved, to[-1]); --to) *to = std::move(to[-1]);
+    *to = std::move(moved);
+  }
+}
+
 template <typename Range, typename Before = less, typename Projection = identity>
 constexpr void sort(Range&& range, Before before = {}, Projection projection = {}) {
-  std::sort(begin(range), end(range), projected_order(before, projection));
+  if (begin(range) == end(range)) return;
+  auto* const first = std::addressof(*begin(range));
+  const auto count = end(range) - begin(range);
+  int depth = 2;
+  for (auto left = count; left > 1; left /= 2) depth += 2;
+  sort_range(first, first + count, projected_order(before, projection), depth);
 }
 
 template <typename Range, typename Before = less>

@@ -12,4 +12,7 @@ inline constexpr bool is_lean = true;
 inline constexpr bool is_lean = false;
 #endif
 
+/// A text about an algorithm, for people who choose one.
+constexpr const char* unless_lean(const char* text) noexcept { return is_lean ? "" : text; }
+
 }  // namespace broadside::core

@@ -15,6 +15,7 @@
 #include "core/delivery.hpp"
 #include "core/filter_sink.hpp"
 #include "core/float_environment.hpp"
+#include "core/lean.hpp"
 
 namespace broadside::core {
 namespace {
@@ -89,7 +90,7 @@ Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexce
 
 Tunable threads_tunable() {
   return {.name = "threads",
-          .summary = "most threads of a search; 0: as many as there are",
+          .summary = unless_lean("most threads of a search; 0: as many as there are"),
           .standard = "1",
           .type = Tunable::Type::integer,
           .least = 0,

@@ -47,7 +47,9 @@ class Parallel {
   /// a body throws, of several the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
-    if (workers() == 1)
+    if constexpr (is_lean)
+      body(Range{0, count}, std::size_t{0});
+    else if (workers() == 1)
       body(Range{0, count}, std::size_t{0});
     else
       share_ranges(count, [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
@@ -62,7 +64,9 @@ class Parallel {
   /// Calls body(number, range, worker) for each range of a number.
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
-    if (workers() == 1)
+    if constexpr (is_lean)
+      body(std::size_t{0}, Range{0, count}, std::size_t{0});
+    else if (workers() == 1)
       body(std::size_t{0}, Range{0, count}, std::size_t{0});
     else
       share_ranges(count, std::cref(body));

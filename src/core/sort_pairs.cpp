@@ -93,7 +93,7 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   // Counts of 2^32 or more would not fit, and never occur.
   if (pairs.size() <= core::few || pairs.size() > 0xffffffffU) {
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs);
   } else {
     core::radix_sort(pairs, scratch);
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/lean.hpp"
+
 namespace broadside::core {
 namespace {
 
@@ -27,7 +29,8 @@ constexpr std::size_t few_movers = 8;
 
 Tunable update_tunable() {
   return {.name = "update",
-          .summary = "for tracking only: follow the boxes that changed, or find all pairs anew in each frame",
+          .summary = unless_lean(
+              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
           .standard = "auto",
           .type = Tunable::Type::choice,
           .choices = {"follow", "rebuild"}};

@@ -69,6 +69,8 @@ BROADSIDE_EXPORT(version) void version() {
   answer(std::span<const char>(text));
 }
 
+BROADSIDE_EXPORT(dimension) int dimension_of_boxes() { return dimension; }
+
 BROADSIDE_EXPORT(has_simd) bool has_simd() {
 #if defined(__wasm_simd128__)
   return true;

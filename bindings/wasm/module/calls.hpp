@@ -1,5 +1,5 @@
 // What every function that JavaScript calls has: the block of memory that both sides read and write,
-// exceptions as numbers, and the kind of a box chosen by its dimension.
+// exceptions as numbers, and the dimension of the boxes.
 #pragma once
 
 #include <array>
@@ -13,6 +13,8 @@
 #include "broadside/error.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
+
+#include "core/dimensions.hpp"
 
 /// Marks a function that the module exports under its own name.
 #define BROADSIDE_EXPORT(name) extern "C" __attribute__((export_name(#name), used))
@@ -74,14 +76,16 @@ inline std::span<const Filter> filters_at(const Filter* first, std::size_t count
   return {first, first == nullptr ? 0 : count};
 }
 
-/// Makes an object that JavaScript keeps by its address: `Kept<2>` or `Kept<3>`, as a `Base`. The address is
-/// in `reply`.
-template <template <int> typename Kept, typename Base, typename... Arguments>
-Status make_kept(int dimension, const Arguments&... arguments) noexcept {
+/// The dimension of this module's boxes: each module has one.
+inline constexpr int dimension = core::has_dimension<2> ? 2 : 3;
+static_assert(core::has_dimension<2> != core::has_dimension<3>,
+              "BROADSIDE_DIMENSIONS lists one for a module");
+
+/// Makes an object that JavaScript keeps by its address, which is in `reply`.
+template <typename Kept, typename... Arguments>
+Status make_kept(const Arguments&... arguments) noexcept {
   return guarded([&] {
-    Base* const made =
-        dimension == 2 ? static_cast<Base*>(new Kept<2>(arguments...)) : new Kept<3>(arguments...);
-    reply[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(made));
+    reply[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(new Kept(arguments...)));
   });
 }
 

@@ -28,18 +28,11 @@ struct Search {
   std::uint32_t mode;
 };
 
-class Finder {
+class KeptFinder {
  public:
-  virtual ~Finder() = default;
-  virtual void find(const Search& search) = 0;
-};
+  explicit KeptFinder(std::string_view spec) : finder_(make_finder<dimension>(spec)) {}
 
-template <int D>
-class KeptFinder final : public Finder {
- public:
-  explicit KeptFinder(std::string_view spec) : finder_(make_finder<D>(spec)) {}
-
-  void find(const Search& search) override {
+  void find(const Search& search) {
     if ((search.mode & counts) != 0) {
       PairCounter counter;
       find(search, counter);
@@ -56,40 +49,31 @@ class KeptFinder final : public Finder {
 
  private:
   void find(const Search& search, PairSink& pairs) {
-    const auto boxes = boxes_at<D>(search.boxes, search.count);
+    const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     const PairFilters filters{filters_at(search.filters, search.count),
                               filters_at(search.right_filters, search.right_count)};
     if ((search.mode & joins) == 0)
       finder_->find(boxes, pairs, filters);
     else
-      finder_->find_between(boxes, boxes_at<D>(search.right, search.right_count), pairs, filters);
+      finder_->find_between(boxes, boxes_at<dimension>(search.right, search.right_count), pairs, filters);
   }
 
-  std::unique_ptr<PairFinder<D>> finder_;
+  std::unique_ptr<PairFinder<dimension>> finder_;
   std::vector<Pair> pairs_;
   std::vector<Pair> scratch_;
 };
 
-class Tracker {
+class KeptTracker {
  public:
-  virtual ~Tracker() = default;
+  explicit KeptTracker(std::string_view spec) : tracker_(make_tracker<dimension>(spec)) {}
 
   /// Takes the next frame. `changed` lists places whose boxes or filters may differ from the frame before;
   /// null where the tracker is to see for itself.
-  virtual void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
-                      const Filter* filters) = 0;
-};
-
-template <int D>
-class KeptTracker final : public Tracker {
- public:
-  explicit KeptTracker(std::string_view spec) : tracker_(make_tracker<D>(spec)) {}
-
   void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
-              const Filter* filters) override {
-    Frame<D> frame{.boxes = boxes_at<D>(boxes, count),
-                   .changed = {changed, changed_count},
-                   .filters = filters_at(filters, count)};
+              const Filter* filters) {
+    Frame<dimension> frame{.boxes = boxes_at<dimension>(boxes, count),
+                           .changed = {changed, changed_count},
+                           .filters = filters_at(filters, count)};
     if (changed == nullptr) {
       list_changed(frame);
       frame.changed = changed_;
@@ -105,8 +89,8 @@ class KeptTracker final : public Tracker {
 
  private:
   /// Sets `changed_` to the places where a frame differs from the one before.
-  void list_changed(const Frame<D>& frame) {
-    const Frame<D> last = tracker_->last_frame();
+  void list_changed(const Frame<dimension>& frame) {
+    const Frame<dimension> last = tracker_->last_frame();
     const std::size_t both = std::min(last.boxes.size(), frame.boxes.size());
     const bool has_filters = !last.filters.empty() && !frame.filters.empty();
     changed_.clear();
@@ -117,16 +101,16 @@ class KeptTracker final : public Tracker {
   }
 
   /// Whether two boxes have the same bits: most have, and this takes no branch for each coordinate.
-  static bool equal(const Box<D>& a, const Box<D>& b) noexcept {
-    using Bits = std::array<std::uint64_t, D>;
+  static bool equal(const Box<dimension>& a, const Box<dimension>& b) noexcept {
+    using Bits = std::array<std::uint64_t, dimension>;
     const Bits a_bits = std::bit_cast<Bits>(a);
     const Bits b_bits = std::bit_cast<Bits>(b);
     std::uint64_t differ = 0;
-    for (int i = 0; i < D; ++i) differ |= a_bits[i] ^ b_bits[i];
+    for (int i = 0; i < dimension; ++i) differ |= a_bits[i] ^ b_bits[i];
     return differ == 0;
   }
 
-  std::unique_ptr<PairTracker<D>> tracker_;
+  std::unique_ptr<PairTracker<dimension>> tracker_;
   std::vector<BoxId> changed_;
   std::vector<Pair> begun_;
   std::vector<Pair> ended_;
@@ -134,27 +118,27 @@ class KeptTracker final : public Tracker {
 
 }  // namespace
 
-BROADSIDE_EXPORT(finder_make) Status finder_make(int dimension, const char* spec, std::size_t size) {
-  return make_kept<KeptFinder, Finder>(dimension, std::string_view(spec, size));
+BROADSIDE_EXPORT(finder_make) Status finder_make(const char* spec, std::size_t size) {
+  return make_kept<KeptFinder>(std::string_view(spec, size));
 }
 
-BROADSIDE_EXPORT(finder_free) void finder_free(Finder* finder) { delete finder; }
+BROADSIDE_EXPORT(finder_free) void finder_free(KeptFinder* finder) { delete finder; }
 
 BROADSIDE_EXPORT(finder_find)
-Status finder_find(Finder* finder, const float* boxes, std::size_t count, const float* right,
+Status finder_find(KeptFinder* finder, const float* boxes, std::size_t count, const float* right,
                    std::size_t right_count, const Filter* filters, const Filter* right_filters,
                    std::uint32_t mode) {
   return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
 }
 
-BROADSIDE_EXPORT(tracker_make) Status tracker_make(int dimension, const char* spec, std::size_t size) {
-  return make_kept<KeptTracker, Tracker>(dimension, std::string_view(spec, size));
+BROADSIDE_EXPORT(tracker_make) Status tracker_make(const char* spec, std::size_t size) {
+  return make_kept<KeptTracker>(std::string_view(spec, size));
 }
 
-BROADSIDE_EXPORT(tracker_free) void tracker_free(Tracker* tracker) { delete tracker; }
+BROADSIDE_EXPORT(tracker_free) void tracker_free(KeptTracker* tracker) { delete tracker; }
 
 BROADSIDE_EXPORT(tracker_update)
-Status tracker_update(Tracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
+Status tracker_update(KeptTracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
                       std::size_t changed_count, const Filter* filters) {
   return guarded([&] { tracker->update(boxes, count, changed, changed_count, filters); });
 }

@@ -18,20 +18,18 @@ std::vector<Neighbour<float>> neighbours;
 std::vector<double> handles;
 std::vector<double> distances;
 
-template <int D>
-Point<D> point_at(std::size_t first) {
-  Point<D> point;
-  for (int axis = 0; axis < D; ++axis) point[axis] = question[first + static_cast<std::size_t>(axis)];
+Point<dimension> point_at(std::size_t first) {
+  Point<dimension> point;
+  for (int axis = 0; axis < dimension; ++axis) point[axis] = question[first + static_cast<std::size_t>(axis)];
   return point;
 }
 
 /// The box that moves: origin, direction, t_max and half its extent are the question.
-template <int D>
-BoxCast<D> cast_at() {
-  const Point<D> origin = point_at<D>(0);
-  const Point<D> half = point_at<D>(2 * D + 1);
-  BoxCast<D> cast{{origin, origin}, point_at<D>(D), question[2 * D]};
-  for (int axis = 0; axis < D; ++axis) {
+BoxCast<dimension> cast_at() {
+  const Point<dimension> origin = point_at(0);
+  const Point<dimension> half = point_at(2 * dimension + 1);
+  BoxCast<dimension> cast{{origin, origin}, point_at(dimension), question[2 * dimension]};
+  for (int axis = 0; axis < dimension; ++axis) {
     cast.box.min[axis] -= half[axis];
     cast.box.max[axis] += half[axis];
   }
@@ -45,23 +43,15 @@ float squared(double distance) {
   return rounded < square ? std::nextafter(rounded, INFINITY) : rounded;
 }
 
-class AnyIndex {
+class KeptIndex {
  public:
-  virtual ~AnyIndex() = default;
-  virtual void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
-                      const Filter* filters) = 0;
-};
-
-template <int D>
-class KeptIndex final : public AnyIndex {
- public:
-  const BoxIndex<D>& index() const noexcept { return *index_; }
+  const BoxIndex<dimension>& index() const noexcept { return *index_; }
 
   void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
-              const Filter* filters) override {
-    Frame<D> frame{.boxes = boxes_at<D>(boxes, count),
-                   .changed = {changed, changed_count},
-                   .filters = filters_at(filters, count)};
+              const Filter* filters) {
+    Frame<dimension> frame{.boxes = boxes_at<dimension>(boxes, count),
+                           .changed = {changed, changed_count},
+                           .filters = filters_at(filters, count)};
     if (changed == nullptr) {
       all_.clear();
       for (std::size_t i = 0; i < count; ++i) all_.push_back(BoxId(i));
@@ -71,19 +61,19 @@ class KeptIndex final : public AnyIndex {
   }
 
  private:
-  std::unique_ptr<BoxIndex<D>> index_ = make_box_index<D>();
+  std::unique_ptr<BoxIndex<dimension>> index_ = make_box_index<dimension>();
   std::vector<BoxId> all_;
 };
 
-template <int D, typename Ask>
-void ask_index(const BoxIndex<D>& index, double except, const Ask& ask) {
+template <typename Ask>
+void ask_index(const BoxIndex<dimension>& index, double except, const Ask& ask) {
   const bool is_id = except >= 0 && except < 0x1p32;
   ask(index, is_id ? std::optional(BoxId(static_cast<std::uint32_t>(except))) : std::nullopt);
   answer(std::span<const BoxId>(ids));
 }
 
-template <int D, typename Ask>
-void ask_world(const World<D>& world, double except, const Ask& ask) {
+template <typename Ask>
+void ask_world(const World<dimension>& world, double except, const Ask& ask) {
   std::optional<BoxId> slot;
   if (except >= 0) {
     const Handle handle = handle_of(except);
@@ -95,69 +85,66 @@ void ask_world(const World<D>& world, double except, const Ask& ask) {
   answer(std::span<const double>(handles));
 }
 
-/// Hands `ask` what is asked and the box that is left out, and says in `reply` what it put into `ids`. `kind`
-/// tells what is at `address`: an index of 2D or 3D boxes, or a world of them. An `except` below 0 leaves out
-/// nothing.
+/// Hands `ask` what is asked and the box that is left out, and says in `reply` what it put into `ids`. At
+/// `address` is an index, or a world. An `except` below 0 leaves out nothing.
 template <typename Ask>
-Status asked(std::uint32_t kind, void* address, double except, const Ask& ask) noexcept {
+Status asked(bool is_world, void* address, double except, const Ask& ask) noexcept {
   return guarded([&] {
     ids.clear();
-    if (kind == 0)
-      ask_index(static_cast<KeptIndex<2>*>(static_cast<AnyIndex*>(address))->index(), except, ask);
-    else if (kind == 1)
-      ask_index(static_cast<KeptIndex<3>*>(static_cast<AnyIndex*>(address))->index(), except, ask);
-    else if (kind == 2)
-      ask_world(static_cast<KeptWorld<2>*>(static_cast<AnyWorld*>(address))->world(), except, ask);
+    if (is_world)
+      ask_world(static_cast<KeptWorld*>(address)->world(), except, ask);
     else
-      ask_world(static_cast<KeptWorld<3>*>(static_cast<AnyWorld*>(address))->world(), except, ask);
+      ask_index(static_cast<KeptIndex*>(address)->index(), except, ask);
   });
 }
 
 }  // namespace
 
-BROADSIDE_EXPORT(index_make) Status index_make(int dimension) {
-  return make_kept<KeptIndex, AnyIndex>(dimension);
-}
+BROADSIDE_EXPORT(index_make) Status index_make() { return make_kept<KeptIndex>(); }
 
-BROADSIDE_EXPORT(index_free) void index_free(AnyIndex* index) { delete index; }
+BROADSIDE_EXPORT(index_free) void index_free(KeptIndex* index) { delete index; }
 
 BROADSIDE_EXPORT(index_update)
-Status index_update(AnyIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
+Status index_update(KeptIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
                     std::size_t changed_count, const Filter* filters) {
   return guarded([&] { index->update(boxes, count, changed, changed_count, filters); });
 }
 
 BROADSIDE_EXPORT(query_overlapping)
-Status query_overlapping(std::uint32_t kind, void* address, const Filter* filter, double except) {
-  return asked(kind, address, except, [&]<int D>(const BoxIndex<D>& index, std::optional<BoxId> left_out) {
-    index.overlapping(
-        Box<D>{point_at<D>(0), point_at<D>(D)}, [](BoxId id) { ids.push_back(id); }, filter, left_out);
-  });
+Status query_overlapping(bool is_world, void* address, const Filter* filter, double except) {
+  return asked(is_world, address, except,
+               [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
+                 index.overlapping(
+                     Box<dimension>{point_at(0), point_at(dimension)}, [](BoxId id) { ids.push_back(id); },
+                     filter, left_out);
+               });
 }
 
 BROADSIDE_EXPORT(query_nearest)
-Status query_nearest(std::uint32_t kind, void* address, const Filter* filter, double except, std::size_t k,
+Status query_nearest(bool is_world, void* address, const Filter* filter, double except, std::size_t k,
                      double max_distance) {
-  return asked(kind, address, except, [&]<int D>(const BoxIndex<D>& index, std::optional<BoxId> left_out) {
-    index.nearest(point_at<D>(0), k, neighbours, filter, squared(max_distance), left_out);
-    distances.clear();
-    for (const Neighbour<float>& neighbour : neighbours) {
-      ids.push_back(neighbour.box);
-      distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
-    }
-    answer(std::span<const double>(distances), 1);
-  });
+  return asked(is_world, address, except,
+               [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
+                 index.nearest(point_at(0), k, neighbours, filter, squared(max_distance), left_out);
+                 distances.clear();
+                 for (const Neighbour<float>& neighbour : neighbours) {
+                   ids.push_back(neighbour.box);
+                   distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
+                 }
+                 answer(std::span<const double>(distances), 1);
+               });
 }
 
 /// The parameter of the hit is in `question`.
 BROADSIDE_EXPORT(query_first_hit)
-Status query_first_hit(std::uint32_t kind, void* address, const Filter* filter, double except) {
-  return asked(kind, address, except, [&]<int D>(const BoxIndex<D>& index, std::optional<BoxId> left_out) {
-    if (const auto hit = index.first_hit(cast_at<D>(), filter, left_out)) {
-      ids.push_back(hit->box);
-      question[0] = hit->t_enter;
-    }
-  });
+Status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
+  return asked(is_world, address, except,
+               [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
+                 if (const auto hit = index.first_hit(cast_at(), filter, left_out)) {
+                   ids.push_back(hit->box);
+                   question[0] = hit->t_enter;
+                 }
+               });
 }
 
 }  // namespace broadside::wasm

@@ -18,49 +18,42 @@ void copy_pairs(std::span<const HandlePair> pairs, std::vector<double>& numbers)
 
 }  // namespace
 
-template <int D>
-void KeptWorld<D>::take_handles(const double* handles, std::size_t count) {
+void KeptWorld::take_handles(const double* handles, std::size_t count) {
   handles_.resize(count);
   for (std::size_t i = 0; i < count; ++i) handles_[i] = handle_of(handles[i]);
 }
 
 /// Throws if `more` boxes would take slots that no handle can name.
-template <int D>
-void KeptWorld<D>::check_slots(std::size_t more) {
+void KeptWorld::check_slots(std::size_t more) {
   if (most_slots_so_far_ + more > most_slots) most_slots_so_far_ = world_.statistics().slots;
   if (most_slots_so_far_ + more > most_slots)
     throw InvalidFrame(std::to_string(most_slots_so_far_ + more) + " boxes in a world; expected at most " +
                        std::to_string(most_slots));
 }
 
-template <int D>
-void KeptWorld<D>::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {
+void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {
   check_slots(count);
   options_.resize(filters == nullptr ? 0 : count);
   for (std::size_t i = 0; i < options_.size(); ++i) options_[i].filter = filters[i];
   handles_.resize(count);
-  world_.add(boxes_at<D>(boxes, count), handles_, options_);
+  world_.add(boxes_at<dimension>(boxes, count), handles_, options_);
   most_slots_so_far_ += count;
   for (std::size_t i = 0; i < count; ++i) handles[i] = number_of(handles_[i]);
 }
 
-template <int D>
-void KeptWorld<D>::move(const double* handles, const float* boxes, std::size_t count,
-                        const float* velocities) {
-  static_assert(sizeof(Point<D>) == D * sizeof(float));
+void KeptWorld::move(const double* handles, const float* boxes, std::size_t count, const float* velocities) {
+  static_assert(sizeof(Point<dimension>) == dimension * sizeof(float));
   take_handles(handles, count);
-  world_.move(handles_, boxes_at<D>(boxes, count),
-              {reinterpret_cast<const Point<D>*>(velocities), velocities == nullptr ? 0 : count});
+  world_.move(handles_, boxes_at<dimension>(boxes, count),
+              {reinterpret_cast<const Point<dimension>*>(velocities), velocities == nullptr ? 0 : count});
 }
 
-template <int D>
-void KeptWorld<D>::remove(const double* handles, std::size_t count) {
+void KeptWorld::remove(const double* handles, std::size_t count) {
   take_handles(handles, count);
   world_.remove(handles_);
 }
 
-template <int D>
-void KeptWorld<D>::update() {
+void KeptWorld::update() {
   if (!has_untold_) events_ = world_.update();
   has_untold_ = true;
   copy_pairs(events_.begun, begun_);
@@ -70,23 +63,20 @@ void KeptWorld<D>::update() {
   answer(std::span<const double>(ended_), 1);
 }
 
-template <int D>
-void KeptWorld<D>::pairs() {
+void KeptWorld::pairs() {
   copy_pairs(world_.pairs(), begun_);
   answer(std::span<const double>(begun_));
 }
 
-template <int D>
-void KeptWorld<D>::box(double handle) {
-  const Box<D>& box = world_.box(handle_of(handle));
-  for (int axis = 0; axis < D; ++axis) {
+void KeptWorld::box(double handle) {
+  const Box<dimension>& box = world_.box(handle_of(handle));
+  for (int axis = 0; axis < dimension; ++axis) {
     question[axis] = box.min[axis];
-    question[D + axis] = box.max[axis];
+    question[dimension + axis] = box.max[axis];
   }
 }
 
-template <int D>
-bool KeptWorld<D>::contains(double handle) {
+bool KeptWorld::contains(double handle) {
   try {
     return world_.contains(handle_of(handle));
   } catch (const InvalidHandle&) {
@@ -94,81 +84,72 @@ bool KeptWorld<D>::contains(double handle) {
   }
 }
 
-template <int D>
-void KeptWorld<D>::set_filter(double handle, const Filter& filter) {
+void KeptWorld::set_filter(double handle, const Filter& filter) {
   world_.set_filter(handle_of(handle), filter);
 }
 
-template <int D>
-void KeptWorld<D>::ignore(double a, double b, bool ignores) {
+void KeptWorld::ignore(double a, double b, bool ignores) {
   if (ignores)
     world_.ignore(handle_of(a), handle_of(b));
   else
     world_.unignore(handle_of(a), handle_of(b));
 }
 
-template class KeptWorld<2>;
-template class KeptWorld<3>;
-
 BROADSIDE_EXPORT(world_make)
-Status world_make(int dimension, const char* spec, std::size_t size, double margin, double relative_margin,
+Status world_make(const char* spec, std::size_t size, double margin, double relative_margin,
                   double predicted_frames, bool tells_enlarged) {
-  return guarded([&] {
-    const WorldOptions options{.algorithm = std::string(spec, size),
-                               .margin = margin,
-                               .relative_margin = relative_margin,
-                               .predicted_frames = predicted_frames,
-                               .events = tells_enlarged ? WorldEvents::enlarged : WorldEvents::exact,
-                               .first_generation = next_first_generation()};
-    AnyWorld* const made =
-        dimension == 2 ? static_cast<AnyWorld*>(new KeptWorld<2>(options)) : new KeptWorld<3>(options);
-    reply[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(made));
-  });
+  return make_kept<KeptWorld>(
+      WorldOptions{.algorithm = std::string(spec, size),
+                   .margin = margin,
+                   .relative_margin = relative_margin,
+                   .predicted_frames = predicted_frames,
+                   .events = tells_enlarged ? WorldEvents::enlarged : WorldEvents::exact,
+                   .first_generation = next_first_generation()});
 }
 
-BROADSIDE_EXPORT(world_free) void world_free(AnyWorld* world) { delete world; }
+BROADSIDE_EXPORT(world_free) void world_free(KeptWorld* world) { delete world; }
 
 BROADSIDE_EXPORT(world_add)
-Status world_add(AnyWorld* world, const float* boxes, std::size_t count, const Filter* filters,
+Status world_add(KeptWorld* world, const float* boxes, std::size_t count, const Filter* filters,
                  double* handles) {
   return guarded([&] { world->add(boxes, count, filters, handles); });
 }
 
 BROADSIDE_EXPORT(world_move)
-Status world_move(AnyWorld* world, const double* handles, const float* boxes, std::size_t count,
+Status world_move(KeptWorld* world, const double* handles, const float* boxes, std::size_t count,
                   const float* velocities) {
   return guarded([&] { world->move(handles, boxes, count, velocities); });
 }
 
 BROADSIDE_EXPORT(world_remove)
-Status world_remove(AnyWorld* world, const double* handles, std::size_t count) {
+Status world_remove(KeptWorld* world, const double* handles, std::size_t count) {
   return guarded([&] { world->remove(handles, count); });
 }
 
-BROADSIDE_EXPORT(world_update) Status world_update(AnyWorld* world) {
+BROADSIDE_EXPORT(world_update) Status world_update(KeptWorld* world) {
   return guarded([&] { world->update(); });
 }
 
-BROADSIDE_EXPORT(world_pairs) Status world_pairs(AnyWorld* world) {
+BROADSIDE_EXPORT(world_pairs) Status world_pairs(KeptWorld* world) {
   return guarded([&] { world->pairs(); });
 }
 
 /// The box is in `question`.
-BROADSIDE_EXPORT(world_box) Status world_box(AnyWorld* world, double handle) {
+BROADSIDE_EXPORT(world_box) Status world_box(KeptWorld* world, double handle) {
   return guarded([&] { world->box(handle); });
 }
 
-BROADSIDE_EXPORT(world_size) std::size_t world_size(AnyWorld* world) { return world->size(); }
-BROADSIDE_EXPORT(world_contains) bool world_contains(AnyWorld* world, double handle) {
+BROADSIDE_EXPORT(world_size) std::size_t world_size(KeptWorld* world) { return world->size(); }
+BROADSIDE_EXPORT(world_contains) bool world_contains(KeptWorld* world, double handle) {
   return world->contains(handle);
 }
 
 BROADSIDE_EXPORT(world_set_filter)
-Status world_set_filter(AnyWorld* world, double handle, const Filter* filter) {
+Status world_set_filter(KeptWorld* world, double handle, const Filter* filter) {
   return guarded([&] { world->set_filter(handle, *filter); });
 }
 
-BROADSIDE_EXPORT(world_ignore) Status world_ignore(AnyWorld* world, double a, double b, bool ignores) {
+BROADSIDE_EXPORT(world_ignore) Status world_ignore(KeptWorld* world, double a, double b, bool ignores) {
   return guarded([&] { world->ignore(a, b, ignores); });
 }
 

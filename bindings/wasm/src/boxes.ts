@@ -4,21 +4,16 @@ import type { Core } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 
-export function checkDimension(dimension: unknown): asserts dimension is Dimension {
-  if (dimension !== 2 && dimension !== 3) refuse("dimension", dimension, "2 or 3");
-}
-
 export class KeptBoxes extends Kept implements Boxes {
   readonly #core: Core;
   readonly count: number;
   readonly dimension: Dimension;
   #data: Float32Array;
 
-  constructor(core: Core, count: number, dimension: Dimension) {
-    checkDimension(dimension);
+  constructor(core: Core, count: number) {
+    const { exports, dimension } = core;
     if (!Number.isInteger(count) || count < 0 || count >= 2 ** 32)
       refuse("the number of boxes", count, "a whole number of at least 0");
-    const { exports } = core;
     super(core.reserve(Math.max(8 * dimension * count, 1)), (address) => exports.release(address));
     this.#core = core;
     this.count = count;
@@ -49,10 +44,11 @@ export class KeptBoxes extends Kept implements Boxes {
 export type Given = KeptBoxes | ArrayLike<number>;
 
 /** How many boxes these are. Throws if they are none. */
-export function countOf(core: Core, boxes: unknown, dimension: Dimension, name = "boxes"): number {
+export function countOf(core: Core, boxes: unknown, name = "boxes"): number {
+  const { dimension } = core;
   if (boxes instanceof KeptBoxes) {
-    if (!boxes.isOf(core)) refuse(name, boxes, "boxes of this module; these are another one's");
     if (boxes.dimension !== dimension) refuse(`the dimension of ${name}`, boxes.dimension, String(dimension));
+    if (!boxes.isOf(core)) refuse(name, boxes, "boxes of this module; these are another one's");
     return boxes.count;
   }
   return countIn(boxes, 2 * dimension, name);

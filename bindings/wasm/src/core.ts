@@ -1,5 +1,6 @@
-// Core: an instance of the module, its memory as arrays, and room in it for what a call takes.
-import { BroadsideError, errorOf } from "./error.ts";
+// Core: an instance of a module, its memory as arrays, and room in it for what a call takes. Cores: one a dimension.
+import type { Dimension } from "../types/types.d.ts";
+import { BroadsideError, checkDimension, errorOf, refuse } from "./error.ts";
 import { importsOf } from "./imports.ts";
 
 /** What the module exports: module/*.cpp. Pointers and sizes are numbers. */
@@ -12,20 +13,21 @@ export interface Exports {
   release(address: number): void;
   algorithm_name(number: number): void;
   version(): void;
+  dimension(): Dimension;
   has_simd(): number;
-  finder_make(dimension: number, spec: number, size: number): number;
+  finder_make(spec: number, size: number): number;
   finder_free(finder: number): void;
   finder_find(
     finder: number, boxes: number, count: number, right: number, rightCount: number, filters: number,
     rightFilters: number, mode: number,
   ): number;
-  tracker_make(dimension: number, spec: number, size: number): number;
+  tracker_make(spec: number, size: number): number;
   tracker_free(tracker: number): void;
   tracker_update(
     tracker: number, boxes: number, count: number, changed: number, changedCount: number, filters: number,
   ): number;
   world_make(
-    dimension: number, spec: number, size: number, margin: number, relativeMargin: number, predictedFrames: number,
+    spec: number, size: number, margin: number, relativeMargin: number, predictedFrames: number,
     tellsEnlarged: number,
   ): number;
   world_free(world: number): void;
@@ -55,6 +57,7 @@ export class Core {
   readonly reply: number;     // in elements of u32
   readonly question: number;  // in elements of f32
   readonly algorithms: readonly string[];
+  readonly dimension: Dimension;
   readonly simd: boolean;
   #staging = 0;
   #room = 0;
@@ -74,6 +77,7 @@ export class Core {
     this.lookAgain();
     this.reply = exports.reply() >> 2;
     this.question = exports.question() >> 2;
+    this.dimension = exports.dimension();
     this.simd = exports.has_simd() !== 0;
     this.algorithms = [...this.#algorithms()];
   }
@@ -167,5 +171,33 @@ export class Core {
     new Uint8Array(this.u32.buffer).set(bytes, address);
     this.check(call(address, bytes.length));
     return this.u32[this.reply] as number;
+  }
+}
+
+/** The modules that were loaded: of 2D, of 3D, or one of each. */
+export class Cores {
+  /** The one that calls mean which name no dimension: that of 2D, where it is there. */
+  readonly main: Core;
+  readonly #of: readonly (Core | undefined)[];
+
+  static async make(wasms: readonly WebAssembly.Module[]): Promise<Cores> {
+    return new Cores(await Promise.all(wasms.map((wasm) => Core.make(wasm))));
+  }
+
+  private constructor(cores: readonly Core[]) {
+    const of: (Core | undefined)[] = [];
+    for (const core of cores) {
+      if (of[core.dimension] !== undefined) refuse(`the number of modules of ${core.dimension}D`, 2, "1");
+      of[core.dimension] = core;
+    }
+    this.#of = of;
+    this.main = of[2] ?? of[3] ?? refuse("the number of modules", 0, "1 for each dimension");
+  }
+
+  of(dimension: Dimension | undefined): Core {
+    if (dimension === undefined) return this.main;
+    checkDimension(dimension);
+    return this.#of[dimension] ??
+      refuse("dimension", dimension, `${this.main.dimension}, the one that was loaded`);
   }
 }

@@ -1,5 +1,5 @@
 // BroadsideError, and the module's numbers for what went wrong.
-import type { BroadsideErrorCode } from "../types/types.d.ts";
+import type { BroadsideErrorCode, Dimension } from "../types/types.d.ts";
 
 /** By the module's `Status`, less one. */
 const codes = [
@@ -47,4 +47,8 @@ export function checkOptions(options: object, known: readonly string[]): void {
         `unknown option '${name}'; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
     }
   }
+}
+
+export function checkDimension(dimension: unknown): asserts dimension is Dimension {
+  if (dimension !== 2 && dimension !== 3) refuse("dimension", dimension, "2 or 3");
 }

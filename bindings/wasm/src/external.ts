@@ -1,13 +1,14 @@
-// The entry "broadside/external": everything, over a module that the caller brings.
+// The entry "broadside/external": everything, over modules that the caller brings.
 import type { Broadside } from "../types/types.d.ts";
-import type { ExternalOptions } from "../types/external.d.ts";
+import type { ExternalOptions, ModuleSource } from "../types/external.d.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { broadsideOf } from "./face.ts";
 
 export { BroadsideError } from "./error.ts";
 export { supportsSimd } from "./simd.ts";
 
-async function compiled(wasm: Awaited<ExternalOptions["wasm"]>): Promise<WebAssembly.Module> {
+async function compiled(source: ModuleSource): Promise<WebAssembly.Module> {
+  const wasm = await source;
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (typeof wasm === "string" || wasm instanceof URL) return compiled(await fetch(wasm));
   if (typeof Response !== "undefined" && wasm instanceof Response) {
@@ -20,5 +21,6 @@ async function compiled(wasm: Awaited<ExternalOptions["wasm"]>): Promise<WebAsse
 
 export async function load(options: ExternalOptions): Promise<Broadside> {
   checkOptions(options, ["wasm"]);
-  return broadsideOf(await compiled(await options.wasm));
+  const { wasm } = options;
+  return broadsideOf(await Promise.all((Array.isArray(wasm) ? wasm : [wasm]).map(compiled)));
 }

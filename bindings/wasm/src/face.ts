@@ -1,21 +1,21 @@
-// The face of the module with everything.
+// The face of the modules with everything.
 import type {
   BoxArray, Broadside, Dimension, Filters, Index, QueriedWorld, WorldOptions,
 } from "../types/types.d.ts";
-import { Core } from "./core.ts";
+import { Cores } from "./core.ts";
 import { PairFindingFace } from "./face_of_pairs.ts";
 import { AskedWorld, KeptIndex } from "./queries.ts";
 
 class BroadsideFace extends PairFindingFace implements Broadside {
   override world(options?: WorldOptions): QueriedWorld {
-    return new AskedWorld(this.core, options);
+    return new AskedWorld(this.cores, options);
   }
 
   index(boxes: BoxArray, options?: { readonly dimension?: Dimension; readonly filters?: Filters }): Index {
-    return new KeptIndex(this.core, boxes, options);
+    return new KeptIndex(this.cores, boxes, options);
   }
 }
 
-export async function broadsideOf(wasm: WebAssembly.Module): Promise<Broadside> {
-  return new BroadsideFace(await Core.make(wasm));
+export async function broadsideOf(wasms: readonly WebAssembly.Module[]): Promise<Broadside> {
+  return new BroadsideFace(await Cores.make(wasms));
 }

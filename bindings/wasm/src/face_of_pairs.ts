@@ -1,61 +1,73 @@
-// The face of the smaller module: pairs, trackers and worlds.
+// The face of the smaller modules: pairs, trackers and worlds.
 import type {
   BoxArray, Boxes, CountJoinOptions, CountOptions, Dimension, JoinOptions, PairFinding, PairsOptions, Tracker,
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, KeptBoxes } from "./boxes.ts";
-import { Core } from "./core.ts";
+import { type Core, Cores } from "./core.ts";
 import { Pairs } from "./pairs.ts";
 import { KeptTracker } from "./tracker.ts";
 import { KeptWorld } from "./world.ts";
 
 export class PairFindingFace implements PairFinding {
-  protected readonly core: Core;
-  readonly #pairs: Pairs;
+  protected readonly cores: Cores;
+  readonly #main: Pairs;
+  readonly #pairs = new Map<Core, Pairs>();
   readonly version: string;
   readonly simd: boolean;
 
-  constructor(core: Core) {
-    this.core = core;
-    this.#pairs = new Pairs(core);
-    core.exports.version();
-    this.version = core.text(0);
-    this.simd = core.simd;
+  constructor(cores: Cores) {
+    const { main } = cores;
+    this.cores = cores;
+    this.#main = new Pairs(main);
+    this.#pairs.set(main, this.#main);
+    main.exports.version();
+    this.version = main.text(0);
+    this.simd = main.simd;
+  }
+
+  /** What finds the pairs of boxes of a dimension. */
+  #of(options: CountOptions | undefined): Pairs {
+    if (typeof options !== "object" || options === null) return this.#main;
+    const core = this.cores.of(options.dimension);
+    let pairs = this.#pairs.get(core);
+    if (pairs === undefined) this.#pairs.set(core, pairs = new Pairs(core));
+    return pairs;
   }
 
   pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array {
-    return this.#pairs.pairs(boxes as Given, options);
+    return (options === undefined ? this.#main : this.#of(options)).pairs(boxes as Given, options);
   }
 
   join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array {
-    return this.#pairs.join(left as Given, right as Given, options);
+    return this.#of(options).join(left as Given, right as Given, options);
   }
 
   count(boxes: BoxArray, options?: CountOptions): number {
-    return this.#pairs.count(boxes as Given, options);
+    return this.#of(options).count(boxes as Given, options);
   }
 
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number {
-    return this.#pairs.countJoin(left as Given, right as Given, options);
+    return this.#of(options).countJoin(left as Given, right as Given, options);
   }
 
-  boxes(count: number, dimension: Dimension = 2): Boxes {
-    return new KeptBoxes(this.core, count, dimension);
+  boxes(count: number, dimension?: Dimension): Boxes {
+    return new KeptBoxes(this.cores.of(dimension), count);
   }
 
   tracker(options?: TrackerOptions): Tracker {
-    return new KeptTracker(this.core, options);
+    return new KeptTracker(this.cores, options);
   }
 
   world(options?: WorldOptions): World {
-    return new KeptWorld(this.core, options);
+    return new KeptWorld(this.cores, options);
   }
 
   algorithms(): string[] {
-    return [...this.core.algorithms];
+    return [...this.cores.main.algorithms];
   }
 }
 
-export async function pairFindingOf(wasm: WebAssembly.Module): Promise<PairFinding> {
-  return new PairFindingFace(await Core.make(wasm));
+export async function pairFindingOf(wasms: readonly WebAssembly.Module[]): Promise<PairFinding> {
+  return new PairFindingFace(await Cores.make(wasms));
 }

@@ -2,24 +2,30 @@
 //
 // The pairs, and their order, are those of the module's brute force. Where a box is invalid or absent, the module is
 // to look at it.
+import type { Dimension } from "../types/types.d.ts";
 
 /** Views of up to so many ids are kept: making one costs as much as comparing ten boxes. */
 const mostKept = 256;
 
 export class Few {
-  /** Up to how many boxes this is the faster way, in the plane and in space; measured by bench/web/compare.mjs. */
-  readonly most2: number;
-  readonly most3: number;
+  /** Up to how many boxes this is the faster way; measured by bench/web/compare.mjs. */
+  readonly most: number;
+  readonly #dimension: Dimension;
   #pairs: Uint32Array = new Uint32Array(1024);
   readonly #views: Uint32Array[] = [];
 
-  constructor(simd: boolean) {
-    this.most2 = simd ? 48 : 300;
-    this.most3 = simd ? 44 : 300;
+  constructor(simd: boolean, dimension: Dimension) {
+    this.most = simd ? (dimension === 2 ? 48 : 44) : 300;
+    this.#dimension = dimension;
   }
 
-  /** The pairs of up to `most2` boxes, or undefined if one is not as it should be. */
-  pairs2(boxes: Float32Array): Uint32Array | undefined {
+  /** The pairs of up to `most` boxes, or undefined if these are not as they should be. */
+  pairs(boxes: Float32Array): Uint32Array | undefined {
+    if (this.#dimension === 2) return boxes.length % 4 === 0 ? this.#pairs2(boxes) : undefined;
+    return boxes.length % 6 === 0 ? this.#pairs3(boxes) : undefined;
+  }
+
+  #pairs2(boxes: Float32Array): Uint32Array | undefined {
     const { length } = boxes;
     let pairs: Uint32Array = this.#pairs;
     let found = 0;
@@ -39,8 +45,7 @@ export class Few {
     return this.#first(found);
   }
 
-  /** The same for up to `most3` boxes of space. */
-  pairs3(boxes: Float32Array): Uint32Array | undefined {
+  #pairs3(boxes: Float32Array): Uint32Array | undefined {
     const { length } = boxes;
     let pairs: Uint32Array = this.#pairs;
     let found = 0;

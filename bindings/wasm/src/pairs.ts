@@ -1,8 +1,8 @@
-// All pairs: by finders that stay in the module, one for each dimension and algorithm, so that calls ask for no memory.
+// All pairs of boxes of one dimension: by finders that stay in the module, one for each algorithm, so that calls ask for no memory.
 import type {
-  CountJoinOptions, CountOptions, Dimension, Filters, JoinOptions, PairsOptions,
+  CountJoinOptions, CountOptions, Filters, JoinOptions, PairsOptions,
 } from "../types/types.d.ts";
-import { type Given, bytesOf, bytesOfFilter, checkDimension, checkFilters, countOf, put, putFilters } from "./boxes.ts";
+import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Few } from "./few.ts";
@@ -21,44 +21,40 @@ const mostFinders = 16;
 export class Pairs {
   readonly #core: Core;
   readonly #finders = new Map<string, number>();
-  #lastKey = "";
+  #lastAlgorithm = "";
   #lastFinder = 0;
   #lastChecked: object | undefined;  // options that were looked through for unknown ones
   #lastView: Uint32Array = new Uint32Array(0);
 
   readonly #few: Few;
+  readonly #mostOfFew: number;  // numbers in an array of few boxes
   readonly #forFew: string;  // the algorithm that few boxes get where none is named
 
   constructor(core: Core) {
     this.#core = core;
-    this.#few = new Few(core.simd);
+    this.#few = new Few(core.simd, core.dimension);
+    this.#mostOfFew = 2 * core.dimension * this.#few.most;
     this.#forFew = core.algorithmFor(0);
   }
 
   pairs(boxes: Given, options?: PairsOptions): Uint32Array {
-    const few = this.#few;
-    if (options === undefined) {
-      if (boxes instanceof Float32Array && boxes.length <= 4 * few.most2 && boxes.length % 4 === 0) {
-        const found = few.pairs2(boxes);
+    if (boxes instanceof Float32Array && boxes.length <= this.#mostOfFew) {
+      if (options === undefined || this.#meansFew(options)) {
+        const found = this.#few.pairs(boxes);
         if (found !== undefined) return found;
       }
-      return this.#find(boxes, undefined, {}, 0);
     }
+    if (options === undefined) return this.#find(boxes, undefined, {}, 0);
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
-    if (boxes instanceof Float32Array && options.filters === undefined &&
-        (options.algorithm === undefined || options.algorithm === "brute_force" || options.algorithm === this.#forFew)) {
-      if (options.dimension === 3) {
-        if (boxes.length <= 6 * few.most3 && boxes.length % 6 === 0) {
-          const found = few.pairs3(boxes);
-          if (found !== undefined) return found;
-        }
-      } else if (boxes.length <= 4 * few.most2 && boxes.length % 4 === 0 &&
-          (options.dimension === 2 || options.dimension === undefined)) {
-        const found = few.pairs2(boxes);
-        if (found !== undefined) return found;
-      }
-    }
     return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
+  }
+
+  /** Whether few boxes may be compared in JavaScript. */
+  #meansFew(options: PairsOptions): boolean {
+    if (options !== this.#lastChecked) this.#check(options, pairsOptions);
+    const { algorithm } = options;
+    return options.filters === undefined &&
+      (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
   join(left: Given, right: Given, options: JoinOptions = {}): Uint32Array {
@@ -103,13 +99,12 @@ export class Pairs {
 
   #search(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): void {
     const core = this.#core;
-    const { dimension = 2, filters, rightFilters } = options;
-    checkDimension(dimension);
-    const count = countOf(core, boxes, dimension, right === undefined ? "boxes" : "left");
-    const rightCount = right === undefined ? 0 : countOf(core, right, dimension, "right");
+    const { filters, rightFilters } = options;
+    const count = countOf(core, boxes, right === undefined ? "boxes" : "left");
+    const rightCount = right === undefined ? 0 : countOf(core, right, "right");
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
-    const finder = this.#finder(dimension, options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
+    const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
     core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
       (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)));
     const at = put(core, boxes);
@@ -118,21 +113,20 @@ export class Pairs {
       putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount), mode));
   }
 
-  #finder(dimension: Dimension, algorithm: string): number {
-    const key = dimension === 2 ? algorithm : `3${algorithm}`;
-    if (key === this.#lastKey) return this.#lastFinder;
+  #finder(algorithm: string): number {
+    if (algorithm === this.#lastAlgorithm) return this.#lastFinder;
     if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
     const { exports } = this.#core;
-    let finder = this.#finders.get(key);
+    let finder = this.#finders.get(algorithm);
     if (finder === undefined) {
-      finder = this.#core.make(algorithm, (spec, size) => exports.finder_make(dimension, spec, size));
+      finder = this.#core.make(algorithm, (spec, size) => exports.finder_make(spec, size));
       if (this.#finders.size >= mostFinders) {
         this.#finders.forEach((old) => exports.finder_free(old));
         this.#finders.clear();
       }
-      this.#finders.set(key, finder);
+      this.#finders.set(algorithm, finder);
     }
-    this.#lastKey = key;
+    this.#lastAlgorithm = algorithm;
     return (this.#lastFinder = finder);
   }
 }

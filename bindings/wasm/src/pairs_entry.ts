@@ -1,11 +1,15 @@
 // The entry "broadside/pairs": pairs, trackers and worlds.
 import type { LoadOptions, PairFinding } from "../types/types.d.ts";
-import { bytes } from "wasm:broadside-pairs";
 import { pairFindingOf } from "./face_of_pairs.ts";
 import { compileInline } from "./inline.ts";
 
 export { BroadsideError } from "./error.ts";
 
 export async function load(options: LoadOptions = {}): Promise<PairFinding> {
-  return pairFindingOf(await compileInline(options, bytes, () => import("./pairs_scalar.ts")));
+  return pairFindingOf(await compileInline(options, {
+    "2d": () => import("module:broadside-pairs-2d"),
+    "3d": () => import("module:broadside-pairs-3d"),
+    "2d-scalar": () => import("module:broadside-pairs-2d-scalar"),
+    "3d-scalar": () => import("module:broadside-pairs-3d-scalar"),
+  }));
 }

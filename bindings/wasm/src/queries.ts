@@ -3,8 +3,8 @@ import type {
   BoxArray, Dimension, Filters, Hit, Index, NearestOptions, Neighbours, QueriedWorld, Queries, QueryOptions,
   RayOptions, TrackerUpdateOptions, WorldOptions,
 } from "../types/types.d.ts";
-import { type Given, bytesOfFilter, checkDimension, countIn, putFilter } from "./boxes.ts";
-import type { Core, Exports } from "./core.ts";
+import { type Given, bytesOfFilter, countIn, putFilter } from "./boxes.ts";
+import type { Core, Cores, Exports } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 import { idsOf, putFrame } from "./tracker.ts";
@@ -12,40 +12,36 @@ import { KeptWorld, handlesOf } from "./world.ts";
 
 /** What the module with queries exports besides: module/queries.cpp. */
 export interface QueryExports extends Exports {
-  index_make(dimension: number): number;
+  index_make(): number;
   index_free(index: number): void;
   index_update(
     index: number, boxes: number, count: number, changed: number, changedCount: number, filters: number,
   ): number;
-  query_overlapping(kind: number, asked: number, filter: number, except: number): number;
+  query_overlapping(isWorld: number, asked: number, filter: number, except: number): number;
   query_nearest(
-    kind: number, asked: number, filter: number, except: number, k: number, maxDistance: number,
+    isWorld: number, asked: number, filter: number, except: number, k: number, maxDistance: number,
   ): number;
-  query_first_hit(kind: number, asked: number, filter: number, except: number): number;
+  query_first_hit(isWorld: number, asked: number, filter: number, except: number): number;
 }
 
 const queryOptions = ["filter", "except"];
 const nothing = -1;  // the `except` of a query that leaves none out
-
-/** The kinds of what is asked, less 2, the dimension. */
-const kindOfIndex = -2;
-const kindOfWorld = 0;
 
 /** Asks an index or a world. `Numbers` are ids or handles. */
 class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbers> {
   readonly #core: Core;
   readonly #exports: QueryExports;
   readonly #dimension: Dimension;
-  readonly #kind: number;
+  readonly #isWorld: number;
   readonly #address: () => number;
   readonly #found: (number: number) => Numbers;
 
-  constructor(core: Core, dimension: Dimension, kind: number, address: () => number,
+  constructor(core: Core, isWorld: boolean, address: () => number,
     found: (number: number) => Numbers) {
     this.#core = core;
     this.#exports = core.exports as QueryExports;
-    this.#dimension = dimension;
-    this.#kind = kind + dimension;
+    this.#dimension = core.dimension;
+    this.#isWorld = isWorld ? 1 : 0;
     this.#address = address;
     this.#found = found;
   }
@@ -70,7 +66,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     const address = this.#address();
     const { filter, except } = this.#options(options, []);
     this.#ask(0, box, 2 * this.#dimension, "box");
-    this.#core.check(this.#exports.query_overlapping(this.#kind, address, filter, except));
+    this.#core.check(this.#exports.query_overlapping(this.#isWorld, address, filter, except));
     return this.#found(0);
   }
 
@@ -83,7 +79,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     const { filter, except } = this.#options(options, ["maxDistance"]);
     this.#ask(0, point, this.#dimension, "point");
     const core = this.#core;
-    core.check(this.#exports.query_nearest(this.#kind, address, filter, except, k, maxDistance));
+    core.check(this.#exports.query_nearest(this.#isWorld, address, filter, except, k, maxDistance));
     return { ids: this.#found(0), distances: handlesOf(core, 1, 1) };
   }
 
@@ -98,7 +94,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     const core = this.#core;
     core.f32[core.question + at++] = tMax;
     this.#ask(at, halfExtent ?? new Float32Array(dimension), dimension, "halfExtent");
-    core.check(this.#exports.query_first_hit(this.#kind, address, filter, except));
+    core.check(this.#exports.query_first_hit(this.#isWorld, address, filter, except));
     const found = this.#found(0);
     return found.length === 0 ? undefined : { id: found[0] as number, t: core.f32[core.question] as number };
   }
@@ -109,17 +105,17 @@ export class KeptIndex extends Kept implements Index {
   readonly #asker: Asker<Uint32Array>;
   readonly dimension: Dimension;
 
-  constructor(core: Core, boxes: BoxArray,
+  constructor(cores: Cores, boxes: BoxArray,
     options: { readonly dimension?: Dimension; readonly filters?: Filters } = {}) {
-    const { dimension = 2, ...rest } = options;
+    const { dimension, ...rest } = options;
     checkOptions(options, ["dimension", "filters"]);
-    checkDimension(dimension);
+    const core = cores.of(dimension);
     const exports = core.exports as QueryExports;
-    core.check(exports.index_make(dimension));
+    core.check(exports.index_make());
     super(core.u32[core.reply] as number, (address) => exports.index_free(address));
     this.#core = core;
-    this.dimension = dimension;
-    this.#asker = new Asker(core, dimension, kindOfIndex, () => this.address, (n) => idsOf(core, n, 1));
+    this.dimension = core.dimension;
+    this.#asker = new Asker(core, false, () => this.address, (n) => idsOf(core, n, 1));
     try {
       this.update(boxes, rest);
     } catch (error) {
@@ -131,7 +127,7 @@ export class KeptIndex extends Kept implements Index {
   update(boxes: BoxArray, options: TrackerUpdateOptions = {}): void {
     const core = this.#core;
     const index = this.address;
-    const frame = putFrame(core, boxes as Given, this.dimension, options);
+    const frame = putFrame(core, boxes as Given, options);
     core.check((core.exports as QueryExports).index_update(index, frame.at, frame.count, frame.changed,
       frame.changedCount, frame.filters));
   }
@@ -152,10 +148,10 @@ export class KeptIndex extends Kept implements Index {
 export class AskedWorld extends KeptWorld implements QueriedWorld {
   readonly #asker: Asker<Float64Array>;
 
-  constructor(core: Core, options?: WorldOptions) {
-    super(core, options);
-    this.#asker = new Asker(core, this.dimension, kindOfWorld, () => this.address,
-      (n) => handlesOf(core, n, 1));
+  constructor(cores: Cores, options?: WorldOptions) {
+    super(cores, options);
+    const { core } = this;
+    this.#asker = new Asker(core, true, () => this.address, (n) => handlesOf(core, n, 1));
   }
 
   overlapping(box: ArrayLike<number>, options?: QueryOptions): Float64Array {

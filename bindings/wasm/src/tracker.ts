@@ -1,27 +1,27 @@
 // Trackers of arrays of boxes.
 import type { BoxArray, Dimension, Events, Tracker, TrackerOptions, TrackerUpdateOptions } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkDimension, checkFilters, countIn, countOf, put, putFilters, putWords,
+  type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters, putWords,
 } from "./boxes.ts";
-import type { Core } from "./core.ts";
+import type { Core, Cores } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 
-/** The spec of an object that is made with options, checked. */
-export function specOf(core: Core, options: TrackerOptions, known: readonly string[]):
-  { dimension: Dimension; algorithm: string } {
+/** The module and the spec of an object that is made with options, checked. */
+export function specOf(cores: Cores, options: TrackerOptions, known: readonly string[]):
+  { core: Core; algorithm: string } {
   checkOptions(options, ["dimension", "algorithm", ...known]);
-  const { dimension = 2, algorithm = core.algorithmFor(Infinity) } = options;
-  checkDimension(dimension);
+  const core = cores.of(options.dimension);
+  const { algorithm = core.algorithmFor(Infinity) } = options;
   if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
-  return { dimension, algorithm };
+  return { core, algorithm };
 }
 
 /** Puts a frame's arguments into the module. */
-export function putFrame(core: Core, boxes: Given, dimension: Dimension, options: TrackerUpdateOptions) {
+export function putFrame(core: Core, boxes: Given, options: TrackerUpdateOptions) {
   checkOptions(options, ["changed", "filters"]);
   const { changed, filters } = options;
-  const count = countOf(core, boxes, dimension);
+  const count = countOf(core, boxes);
   const changedCount = changed === undefined ? 0 : countIn(changed, 1, "changed");
   if (filters !== undefined) checkFilters(filters, count);
   core.stage(bytesOf(boxes) + 4 * changedCount + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
@@ -48,10 +48,10 @@ export class KeptTracker extends Kept implements Tracker {
   readonly #core: Core;
   readonly dimension: Dimension;
 
-  constructor(core: Core, options: TrackerOptions = {}) {
-    const { dimension, algorithm } = specOf(core, options, []);
-    const { exports } = core;
-    super(core.make(algorithm, (spec, size) => exports.tracker_make(dimension, spec, size)),
+  constructor(cores: Cores, options: TrackerOptions = {}) {
+    const { core, algorithm } = specOf(cores, options, []);
+    const { exports, dimension } = core;
+    super(core.make(algorithm, (spec, size) => exports.tracker_make(spec, size)),
       (address) => exports.tracker_free(address));
     this.#core = core;
     this.dimension = dimension;
@@ -60,7 +60,7 @@ export class KeptTracker extends Kept implements Tracker {
   update(boxes: BoxArray, options: TrackerUpdateOptions = noOptions): Events<Uint32Array> {
     const core = this.#core;
     const tracker = this.address;
-    const frame = putFrame(core, boxes as Given, this.dimension, options);
+    const frame = putFrame(core, boxes as Given, options);
     core.check(core.exports.tracker_update(tracker, frame.at, frame.count, frame.changed, frame.changedCount,
       frame.filters));
     return { begun: idsOf(core, 0, 2), ended: idsOf(core, 1, 2) };

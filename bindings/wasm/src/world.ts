@@ -5,7 +5,7 @@ import type {
 import {
   type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilter, putFilters, putFloats,
 } from "./boxes.ts";
-import type { Core } from "./core.ts";
+import type { Core, Cores } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 import { specOf } from "./tracker.ts";
@@ -34,27 +34,27 @@ function putHandles(core: Core, handles: Handles, count: number): number {
   return address;
 }
 
-function make(core: Core, options: WorldOptions): { address: number; dimension: Dimension } {
-  const { dimension, algorithm } = specOf(core, options, worldOptions);
+function make(cores: Cores, options: WorldOptions): { core: Core; address: number } {
+  const { core, algorithm } = specOf(cores, options, worldOptions);
   const { margin = 0, relativeMargin = 0, predictedFrames = 0, events = "exact" } = options;
   if (events !== "exact" && events !== "enlarged") refuse("events", events, "'exact' or 'enlarged'");
   for (const [name, value] of Object.entries({ margin, relativeMargin, predictedFrames }))
     if (typeof value !== "number") refuse(name, value, "a number");
-  const address = core.make(algorithm, (spec, size) => core.exports.world_make(dimension, spec, size, margin,
+  const address = core.make(algorithm, (spec, size) => core.exports.world_make(spec, size, margin,
     relativeMargin, predictedFrames, events === "enlarged" ? 1 : 0));
-  return { address, dimension };
+  return { core, address };
 }
 
 export class KeptWorld extends Kept implements World {
   protected readonly core: Core;
   readonly dimension: Dimension;
 
-  constructor(core: Core, options: WorldOptions = {}) {
+  constructor(cores: Cores, options: WorldOptions = {}) {
+    const { core, address } = make(cores, options);
     const { exports } = core;
-    const { address, dimension } = make(core, options);
     super(address, (world) => exports.world_free(world));
     this.core = core;
-    this.dimension = dimension;
+    this.dimension = core.dimension;
   }
 
   get size(): number {
@@ -65,7 +65,7 @@ export class KeptWorld extends Kept implements World {
     const { core } = this;
     const world = this.address;
     checkOptions(options, ["filters"]);
-    const count = countOf(core, boxes, this.dimension);
+    const count = countOf(core, boxes);
     const { filters } = options;
     if (filters !== undefined) checkFilters(filters, count);
     core.stage(bytesOf(boxes as Given) + 8 * count + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
@@ -79,7 +79,7 @@ export class KeptWorld extends Kept implements World {
     const { core } = this;
     const world = this.address;
     checkOptions(options, ["velocities"]);
-    const count = countOf(core, boxes, this.dimension);
+    const count = countOf(core, boxes);
     const given = countOfHandles(handles);
     if (given !== count) refuse("the number of handles", given, `${count}, one for each box`);
     const { velocities } = options;

@@ -2,15 +2,19 @@ import type { Broadside } from "./types.js";
 
 export * from "./types.js";
 
-/** The module of one of the package's `.wasm` files, which you bring along. */
+/** The modules of the package's `.wasm` files, which you bring along. */
 export declare function load(options: ExternalOptions): Promise<Broadside>;
+
+/** A module: compiled, as bytes, as what `fetch` gives, or as the address to fetch. */
+export type ModuleSource =
+  WebAssembly.Module | BufferSource | Response | PromiseLike<WebAssembly.Module | BufferSource | Response> | URL | string;
 
 export interface ExternalOptions {
   /**
-   * `broadside/broadside.wasm`, or `broadside/broadside-scalar.wasm` where there is no SIMD: compiled, as bytes, as
-   * what `fetch` gives, or as the address to fetch.
+   * `broadside/broadside-2d.wasm`, `broadside/broadside-3d.wasm`, or an array of both; where there is no SIMD, their
+   * likes with `-scalar` in their names.
    */
-  readonly wasm: WebAssembly.Module | BufferSource | Response | PromiseLike<Response> | URL | string;
+  readonly wasm: ModuleSource | readonly ModuleSource[];
 }
 
 /** Whether WebAssembly has SIMD here. */

@@ -6,7 +6,7 @@ export type Dimension = 2 | 3;
 
 /** An algorithm, perhaps with tunables: `"auto"`, `"grid"`, `"grid:cell=2.5"`. */
 export type AlgorithmSpec =
-  | "auto" | "brute_force" | "grid" | "sweep_and_prune" | "quadtree" | "bvh" | (string & {});
+  | "auto" | "brute_force" | "grid" | (string & {});
 
 /**
  * Boxes one behind the other, each its minima and then its maxima: `minX, minY, maxX, maxY` in 2D, six numbers in
@@ -36,7 +36,7 @@ export interface Filter {
 }
 
 export interface CountOptions {
-  /** 2 if left out. */
+  /** If left out, 2, or the one that was loaded alone. */
   readonly dimension?: Dimension;
   /** `"auto"` if left out; of `broadside/pairs`, which has only `brute_force` and `grid`, the one for so many boxes. */
   readonly algorithm?: AlgorithmSpec;
@@ -247,6 +247,11 @@ export type BroadsideErrorCode =
   | "FAILED";
 
 export interface LoadOptions {
+  /**
+   * The only dimension of boxes that is needed: half is then downloaded. Calls that name no dimension mean this one; both
+   * dimensions are loaded, and they mean 2D, if it is left out.
+   */
+  readonly dimension?: Dimension;
   /** Whether to take the build that uses SIMD. If left out, it is taken wherever WebAssembly has SIMD. */
   readonly simd?: boolean;
 }

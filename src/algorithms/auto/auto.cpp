@@ -21,6 +21,7 @@
 #include "algorithms/auto/segment_join.hpp"
 #include "algorithms/auto/thresholds.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/number_text.hpp"
 #include "core/parallel.hpp"
@@ -40,6 +41,13 @@ enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_plac
 
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
+
+/// The algorithm of a choice. A build without it has the grid, which does well with most boxes: one row of
+/// cells is a sweep.
+const Algorithm& algorithm_of(Choice choice) {
+  const Algorithm* const chosen = find_algorithm(chosen_algorithm[static_cast<std::size_t>(choice)]);
+  return chosen != nullptr ? *chosen : *find_algorithm("grid");
+}
 
 template <int D>
 class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTest<D> {
@@ -62,7 +70,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
  private:
   std::string reason() const {
     const auto rounded = [](double number) { return core::text_of(std::trunc(number * 10) / 10); };
-    std::string text(chosen_algorithm[static_cast<std::size_t>(choice_)]);
+    std::string text = algorithm_of(choice_).name;
     text += ", since ";
     const std::string boxes = std::to_string(count_) + " boxes";
     switch (choice_) {
@@ -112,8 +120,8 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     choice_ = choose(boxes);
     auto& finder = finders_[static_cast<std::size_t>(choice_)];
     if (!finder) {
-      const std::string name(chosen_algorithm[static_cast<std::size_t>(choice_)]);
-      finder = make_finder<D>(*find_algorithm(name), Spec{name, {}});
+      const Algorithm& algorithm = algorithm_of(choice_);
+      finder = make_finder<D>(algorithm, Spec{algorithm.name, {}});
       if (core::Yielding<D>* const search = finder->yielding()) search->let_yield();
     }
     return *finder;
@@ -124,8 +132,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     PairFinder<D>& chosen = chosen_for(boxes);
     chosen.set_workers(this->workers());
     Outline<D> outline = broadside::outline(chosen, boxes);
-    const std::string_view name = chosen_algorithm[static_cast<std::size_t>(choice_)];
-    outline.caption.insert(0, std::string(name) + (outline.caption.empty() ? "" : ": "));
+    outline.caption.insert(0, algorithm_of(choice_).name + (outline.caption.empty() ? "" : ": "));
     return outline;
   }
 
@@ -200,15 +207,17 @@ std::unique_ptr<PairFinder<D>> make_auto(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
-/// The later ones take over where the first makes too many tests.
+/// Those that this build has. The later ones take over where the first makes too many tests.
 template <int D>
 std::vector<core::Follower<D, float>> followers() {
-  return {
+  std::vector<core::Follower<D, float>> followers = {
       {"grid", [] { return make_tracker<D>("grid:update=follow"); }, core::grid_following<D>},
       {"quadtree", [] { return make_tracker<D>("quadtree:update=follow"); },
        core::quadtree_following_for_auto},
       {"bvh", [] { return make_tracker<D>("bvh:update=follow"); }, core::bvh_following_for_auto},
   };
+  std::erase_if(followers, [](const auto& follower) { return find_algorithm(follower.name) == nullptr; });
+  return followers;
 }
 
 template <int D>
@@ -232,14 +241,14 @@ std::unique_ptr<PairTracker<D, double>> make_auto_double_tracker(const Settings&
 Algorithm automatic() {
   return {
       .name = "auto",
-      .summary =
-          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
-      .source = "Broadside's measurements",
+      .summary = core::unless_lean(
+          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame"),
+      .source = core::unless_lean("Broadside's measurements"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .finder_2d = make_auto<2>,
-      .finder_3d = make_auto<3>,
-      .tracker_2d = make_auto_tracker<2>,
-      .tracker_3d = make_auto_tracker<3>,
+      .finder_2d = core::in_dimension<2>(make_auto<2>),
+      .finder_3d = core::in_dimension<3>(make_auto<3>),
+      .tracker_2d = core::in_dimension<2>(make_auto_tracker<2>),
+      .tracker_3d = core::in_dimension<3>(make_auto_tracker<3>),
       .double_tracker_2d = core::is_lean ? nullptr : make_auto_double_tracker<2>,
       .double_tracker_3d = core::is_lean ? nullptr : make_auto_double_tracker<3>,
   };

@@ -173,7 +173,7 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
     for (const Reference& reference : sampled) {
       if ((reference.dedup_mask >> axis & 1U) == 0) minima[count++] = box(reference).min[axis];
     }
-    std::sort(minima.begin(), minima.begin() + count);
+    std::ranges::sort(std::span(minima).first(count));
     const float at = count == 0 ? 0 : minima[count / 2];
     const float high = count == 0 ? 0 : minima[count - 1];
     std::size_t parted = 1;

@@ -7,6 +7,8 @@
 
 #include "algorithms/brute_force/tracker.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/dimensions.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
@@ -80,13 +82,13 @@ std::unique_ptr<PairTracker<D>> make_brute_force_tracking(const Settings& settin
 Algorithm brute_force() {
   return {
       .name = "brute_force",
-      .summary = "every box against every other, over a structure of arrays",
-      .source = "paper.md, sections II and VI-A",
+      .summary = core::unless_lean("every box against every other, over a structure of arrays"),
+      .source = core::unless_lean("paper.md, sections II and VI-A"),
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .finder_2d = make_brute_force<2>,
-      .finder_3d = make_brute_force<3>,
-      .tracker_2d = make_brute_force_tracking<2>,
-      .tracker_3d = make_brute_force_tracking<3>,
+      .finder_2d = core::in_dimension<2>(make_brute_force<2>),
+      .finder_3d = core::in_dimension<3>(make_brute_force<3>),
+      .tracker_2d = core::in_dimension<2>(make_brute_force_tracking<2>),
+      .tracker_3d = core::in_dimension<3>(make_brute_force_tracking<3>),
   };
 }
 

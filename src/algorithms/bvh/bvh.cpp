@@ -16,6 +16,7 @@
 #include "algorithms/bvh/packer.hpp"
 #include "algorithms/bvh/tracker.hpp"
 #include "algorithms/descriptions.hpp"
+#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "interface/adaptive_tracker.hpp"
@@ -176,13 +177,15 @@ std::unique_ptr<PairTracker<D>> make_bvh_tracking(const Settings& settings) {
 Algorithm bvh() {
   return {
       .name = "bvh",
-      .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
-      .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
+      .summary =
+          core::unless_lean("a tree of bounds, sixteen to a node, packed by slabs and joined with itself"),
+      .source = core::unless_lean(
+          "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .finder_2d = make_bvh<2>,
-      .finder_3d = make_bvh<3>,
-      .tracker_2d = make_bvh_tracking<2>,
-      .tracker_3d = make_bvh_tracking<3>,
+      .finder_2d = core::in_dimension<2>(make_bvh<2>),
+      .finder_3d = core::in_dimension<3>(make_bvh<3>),
+      .tracker_2d = core::in_dimension<2>(make_bvh_tracking<2>),
+      .tracker_3d = core::in_dimension<3>(make_bvh_tracking<3>),
   };
 }
 

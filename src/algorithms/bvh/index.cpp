@@ -216,9 +216,10 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
         offer({BoxId{child}, core::squared_distance<D, Real>(point, exact_[child])});
     }
     // The nearest one last, where it is taken from.
-    std::sort(waiting.begin() + begin, waiting.begin() + waits, [](const Waiting& a, const Waiting& b) {
-      return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
-    });
+    std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),
+                      [](const Waiting& a, const Waiting& b) {
+                        return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
+                      });
   }
   std::ranges::sort_heap(found, is_before);
 }

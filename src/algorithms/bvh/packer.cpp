@@ -103,7 +103,7 @@ void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core:
     for (std::size_t bucket = range.begin; bucket < range.end; ++bucket) {
       const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
       if (ends[bucket] - begin > most)
-        std::sort(entries_.begin() + begin, entries_.begin() + ends[bucket], is_before);
+        std::ranges::sort(std::span(entries_).subspan(begin, ends[bucket] - begin), is_before);
     }
   });
 }

@@ -24,6 +24,7 @@
 #include "algorithms/grid/layout.hpp"
 #include "algorithms/grid/sweep.hpp"
 #include "algorithms/grid/tracker.hpp"
+#include "core/dimensions.hpp"
 #include "core/large_array.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
@@ -240,24 +241,25 @@ std::unique_ptr<PairTracker<D>> make_grid_tracking(const Settings& settings) {
 Algorithm grid() {
   return {
       .name = "grid",
-      .summary =
+      .summary = core::unless_lean(
           "cells over all axes but one, a sweep along that one in each; boxes that move are followed in "
           "levels "
-          "of cells, one for each size of boxes",
-      .source =
+          "of cells, one for each size of boxes"),
+      .source = core::unless_lean(
           "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256; levels: "
-          "C. Ericson, Real-Time Collision Detection (2005), 7.2",
+          "C. Ericson, Real-Time Collision Detection (2005), 7.2"),
       .tunables = {{.name = "cell",
-                    .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 "
-                               "cells a box; in tracking, the size of the smallest cells",
+                    .summary = core::unless_lean(
+                        "size of a cell, in the boxes' unit; made larger where there would be over 4 "
+                        "cells a box; in tracking, the size of the smallest cells"),
                     .standard = "auto",
                     .least = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make_grid<2>,
-      .finder_3d = make_grid<3>,
-      .tracker_2d = make_grid_tracking<2>,
-      .tracker_3d = make_grid_tracking<3>,
+      .finder_2d = core::in_dimension<2>(make_grid<2>),
+      .finder_3d = core::in_dimension<3>(make_grid<3>),
+      .tracker_2d = core::in_dimension<2>(make_grid_tracking<2>),
+      .tracker_3d = core::in_dimension<3>(make_grid_tracking<3>),
   };
 }
 

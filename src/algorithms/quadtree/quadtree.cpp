@@ -26,6 +26,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/quadtree/split.hpp"
 #include "algorithms/quadtree/tracker.hpp"
+#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -289,20 +290,21 @@ std::unique_ptr<PairTracker<D>> make_quadtree_tracking(const Settings& settings)
 Algorithm quadtree() {
   return {
       .name = "quadtree",
-      .summary = "nodes split at medians until they hold few boxes, which are swept; an octree in 3D",
-      .source = "paper.md, section V",
+      .summary = core::unless_lean(
+          "nodes split at medians until they hold few boxes, which are swept; an octree in 3D"),
+      .source = core::unless_lean("paper.md, section V"),
       .tunables = {{.name = "capacity",
-                    .summary = "most boxes in a leaf that could be split",
+                    .summary = core::unless_lean("most boxes in a leaf that could be split"),
                     .standard = "auto",
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make_quadtree<2>,
-      .finder_3d = make_quadtree<3>,
-      .tracker_2d = make_quadtree_tracking<2>,
-      .tracker_3d = make_quadtree_tracking<3>,
+      .finder_2d = core::in_dimension<2>(make_quadtree<2>),
+      .finder_3d = core::in_dimension<3>(make_quadtree<3>),
+      .tracker_2d = core::in_dimension<2>(make_quadtree_tracking<2>),
+      .tracker_3d = core::in_dimension<3>(make_quadtree_tracking<3>),
   };
 }
 

@@ -22,6 +22,7 @@
 #include "algorithms/descriptions.hpp"
 #include "algorithms/sweep_and_prune/tracker.hpp"
 #include "core/cell_lists.hpp"
+#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
@@ -233,26 +234,26 @@ std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracking(const Settings& se
 Algorithm sweep_and_prune() {
   return {
       .name = "sweep_and_prune",
-      .summary =
+      .summary = core::unless_lean(
           "a sorted sweep along the axis that separates the boxes best, in stripes of a second axis where "
-          "that pays",
-      .source = "paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited",
+          "that pays"),
+      .source = core::unless_lean("paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited"),
       .tunables = {{.name = "axis",
-                    .summary = "the axis to sweep along",
+                    .summary = core::unless_lean("the axis to sweep along"),
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"x", "y", "z"}},
                    {.name = "axes",
-                    .summary = "how many axes are used: 1, or 2 for stripes",
+                    .summary = core::unless_lean("how many axes are used: 1, or 2 for stripes"),
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = make_sweep_and_prune<2>,
-      .finder_3d = make_sweep_and_prune<3>,
-      .tracker_2d = make_sweep_and_prune_tracking<2>,
-      .tracker_3d = make_sweep_and_prune_tracking<3>,
+      .finder_2d = core::in_dimension<2>(make_sweep_and_prune<2>),
+      .finder_3d = core::in_dimension<3>(make_sweep_and_prune<3>),
+      .tracker_2d = core::in_dimension<2>(make_sweep_and_prune_tracking<2>),
+      .tracker_3d = core::in_dimension<3>(make_sweep_and_prune_tracking<3>),
   };
 }
 

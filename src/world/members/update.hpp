@@ -117,8 +117,8 @@ void World<D, Real>::State::apply_candidates() {
   }
   // Events left by a failed update go before newer ones; a snapshot lists both by id.
   if (is_again) {
-    std::sort(refined.ended.begin(), refined.ended.end());
-    std::sort(fresh.begin(), fresh.end());
+    std::ranges::sort(refined.ended);
+    std::ranges::sort(fresh);
   }
   candidates.clear();
 }

@@ -149,7 +149,8 @@ test("boxes of another module", async () => {
 
 test("load() refuses options that do not apply", async () => {
   await assert.rejects(load({ simd: "yes" as unknown as boolean }), { code: "INVALID_ARGUMENT" });
-  await assert.rejects(load({ fast: true } as object), { message: "unknown option 'fast'; expected some of: simd" });
+  await assert.rejects(load({ fast: true } as object), { message: "unknown option 'fast'; expected some of: simd, dimension" });
+  await assert.rejects(load({ dimension: 4 } as object), { message: "dimension is 4; expected 2 or 3" });
   await assert.rejects(loadPairs({ wasm: 1 } as object), { code: "INVALID_ARGUMENT" });
   await assert.rejects(loadExternal({ wasm: 1 as unknown as URL }), { code: "INVALID_ARGUMENT" });
 });

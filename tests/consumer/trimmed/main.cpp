@@ -1,12 +1,30 @@
-// A program whose library has `grid` alone. Exit status 0 if that finds pairs and another name is refused.
+// A program whose library has `grid` alone, in 2D. Exit status 0 if that finds pairs, and another name and 3D
+// are refused.
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "broadside/broadside.hpp"
 
+namespace {
+
+using namespace broadside;
+
+/// Whether a call throws InvalidSpec with this message.
+template <typename Call>
+bool refuses(const Call& call, const std::string& message) {
+  try {
+    call();
+  } catch (const InvalidSpec& error) {
+    if (error.what() == message) return true;
+    std::fprintf(stderr, "trimmed: %s\n", error.what());
+  }
+  return false;
+}
+
+}  // namespace
+
 int main() {
-  using namespace broadside;
   const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{9, 9}, {9, 9}}};
   if (algorithms().size() != 1 || find_pairs(boxes, "grid").size() != 1) {
     std::fprintf(stderr, "trimmed: expected grid alone, and one pair by it\n");
@@ -15,12 +33,8 @@ int main() {
   World2 world("grid");
   for (const Box2& box : boxes) world.add(box);
   if (world.update().begun.size() != 1) return 1;
-  try {
-    find_pairs(boxes, "bvh");
-  } catch (const InvalidSpec& error) {
-    const std::string text = error.what();
-    if (text == "unknown algorithm 'bvh'; expected one of: grid") return 0;
-    std::fprintf(stderr, "trimmed: %s\n", text.c_str());
-  }
-  return 1;
+  const bool refuses_names =
+      refuses([&] { find_pairs(boxes, "bvh"); }, "unknown algorithm 'bvh'; expected one of: grid");
+  const bool refuses_3d = refuses([] { World3("grid"); }, "grid does not do 3D; expected 2D boxes");
+  return refuses_names && refuses_3d ? 0 : 1;
 }

@@ -1,0 +1,16 @@
+// Parts of the C++ standard library that the module does without, in place of libc++'s: with these, locks for
+// threads that there are not, printf() and the texts of the system's errors would be linked.
+#include <cstdlib>
+#include <mutex>
+
+/// What std::terminate() ends with; JavaScript sees a trap.
+extern "C" __attribute__((noreturn)) void abort_message(const char*, ...) { std::abort(); }
+
+namespace std {
+
+mutex::~mutex() noexcept = default;
+void mutex::lock() {}
+bool mutex::try_lock() noexcept { return true; }
+void mutex::unlock() noexcept {}
+
+}  // namespace std

@@ -1,2 +1,0 @@
-// Its module without SIMD, likewise.
-export { bytes } from "wasm:broadside-pairs-scalar";

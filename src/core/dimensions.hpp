@@ -1,0 +1,25 @@
+// The dimensions of boxes that this build's algorithms have.
+#pragma once
+
+namespace broadside::core {
+
+/// Whether BROADSIDE_DIMENSIONS lists D: CMakeLists.txt defines the macros.
+template <int D>
+inline constexpr bool has_dimension = true;
+#if defined(BROADSIDE_WITHOUT_2D)
+template <>
+inline constexpr bool has_dimension<2> = false;
+#endif
+#if defined(BROADSIDE_WITHOUT_3D)
+template <>
+inline constexpr bool has_dimension<3> = false;
+#endif
+
+/// A function that makes a finder or a tracker in D dimensions; null in a build without them, so that nothing
+/// of it is linked.
+template <int D, typename Maker>
+constexpr Maker* in_dimension(Maker* maker) noexcept {
+  return has_dimension<D> ? maker : nullptr;
+}
+
+}  // namespace broadside::core
