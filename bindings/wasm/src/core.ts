@@ -178,26 +178,31 @@ export class Core {
 export class Cores {
   /** The one that calls mean which name no dimension: that of 2D, where it is there. */
   readonly main: Core;
-  readonly #of: readonly (Core | undefined)[];
+  readonly plane: Core | undefined;
+  readonly space: Core | undefined;
 
   static async make(wasms: readonly WebAssembly.Module[]): Promise<Cores> {
     return new Cores(await Promise.all(wasms.map((wasm) => Core.make(wasm))));
   }
 
   private constructor(cores: readonly Core[]) {
-    const of: (Core | undefined)[] = [];
     for (const core of cores) {
-      if (of[core.dimension] !== undefined) refuse(`the number of modules of ${core.dimension}D`, 2, "1");
-      of[core.dimension] = core;
+      if (this.#ofDimension(core.dimension) !== undefined)
+        refuse(`the number of modules of ${core.dimension}D`, 2, "1");
+      if (core.dimension === 2) this.plane = core;
+      else this.space = core;
     }
-    this.#of = of;
-    this.main = of[2] ?? of[3] ?? refuse("the number of modules", 0, "1 for each dimension");
+    this.main = this.plane ?? this.space ?? refuse("the number of modules", 0, "1 for each dimension");
+  }
+
+  #ofDimension(dimension: Dimension): Core | undefined {
+    return dimension === 2 ? this.plane : this.space;
   }
 
   of(dimension: Dimension | undefined): Core {
     if (dimension === undefined) return this.main;
     checkDimension(dimension);
-    return this.#of[dimension] ??
+    return this.#ofDimension(dimension) ??
       refuse("dimension", dimension, `${this.main.dimension}, the one that was loaded`);
   }
 }

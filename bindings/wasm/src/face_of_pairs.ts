@@ -4,7 +4,7 @@ import type {
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, KeptBoxes } from "./boxes.ts";
-import { type Core, Cores } from "./core.ts";
+import { Cores } from "./core.ts";
 import { Pairs } from "./pairs.ts";
 import { KeptTracker } from "./tracker.ts";
 import { KeptWorld } from "./world.ts";
@@ -12,7 +12,8 @@ import { KeptWorld } from "./world.ts";
 export class PairFindingFace implements PairFinding {
   protected readonly cores: Cores;
   readonly #main: Pairs;
-  readonly #pairs = new Map<Core, Pairs>();
+  readonly #plane: Pairs | undefined;
+  readonly #space: Pairs | undefined;
   readonly version: string;
   readonly simd: boolean;
 
@@ -20,7 +21,9 @@ export class PairFindingFace implements PairFinding {
     const { main } = cores;
     this.cores = cores;
     this.#main = new Pairs(main);
-    this.#pairs.set(main, this.#main);
+    const { plane, space } = cores;
+    this.#plane = plane === main ? this.#main : undefined;
+    this.#space = space === main ? this.#main : space && new Pairs(space);
     main.exports.version();
     this.version = main.text(0);
     this.simd = main.simd;
@@ -28,11 +31,11 @@ export class PairFindingFace implements PairFinding {
 
   /** What finds the pairs of boxes of a dimension. */
   #of(options: CountOptions | undefined): Pairs {
-    if (typeof options !== "object" || options === null) return this.#main;
-    const core = this.cores.of(options.dimension);
-    let pairs = this.#pairs.get(core);
-    if (pairs === undefined) this.#pairs.set(core, pairs = new Pairs(core));
-    return pairs;
+    const dimension = options?.dimension;
+    const pairs = dimension === 3 ? this.#space : dimension === 2 ? this.#plane : undefined;
+    if (pairs !== undefined) return pairs;
+    this.cores.of(dimension);  // throws if there is none
+    return this.#main;
   }
 
   pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array {

@@ -11,11 +11,11 @@ export class Few {
   /** Up to how many boxes this is the faster way; measured by bench/web/compare.mjs. */
   readonly most: number;
   readonly #dimension: Dimension;
-  #pairs: Uint32Array = new Uint32Array(1024);
+  #pairs: Uint32Array = new Uint32Array(2256);  // enough for 48 boxes
   readonly #views: Uint32Array[] = [];
 
   constructor(simd: boolean, dimension: Dimension) {
-    this.most = simd ? (dimension === 2 ? 48 : 44) : 300;
+    this.most = simd ? (dimension === 2 ? 44 : 42) : 300;
     this.#dimension = dimension;
   }
 
@@ -27,13 +27,12 @@ export class Few {
 
   #pairs2(boxes: Float32Array): Uint32Array | undefined {
     const { length } = boxes;
-    let pairs: Uint32Array = this.#pairs;
+    const pairs = this.#room(length / 4);
     let found = 0;
     for (let a = 0; a < length; a += 4) {
       const minX = boxes[a] as number, minY = boxes[a + 1] as number;
       const maxX = boxes[a + 2] as number, maxY = boxes[a + 3] as number;
       if (!(minX <= maxX && minY <= maxY)) return undefined;
-      if (found + length > pairs.length) pairs = this.#grow(found + length);
       for (let b = a + 4; b < length; b += 4) {
         if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 2] as number) &&
             (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 3] as number)) {
@@ -47,13 +46,12 @@ export class Few {
 
   #pairs3(boxes: Float32Array): Uint32Array | undefined {
     const { length } = boxes;
-    let pairs: Uint32Array = this.#pairs;
+    const pairs = this.#room(length / 6);
     let found = 0;
     for (let a = 0, first = 0; a < length; a += 6, ++first) {
       const minX = boxes[a] as number, minY = boxes[a + 1] as number, minZ = boxes[a + 2] as number;
       const maxX = boxes[a + 3] as number, maxY = boxes[a + 4] as number, maxZ = boxes[a + 5] as number;
       if (!(minX <= maxX && minY <= maxY && minZ <= maxZ)) return undefined;
-      if (found + length > pairs.length) pairs = this.#grow(found + length);
       for (let b = a + 6, second = first + 1; b < length; b += 6, ++second) {
         if ((boxes[b] as number) <= maxX && minX <= (boxes[b + 3] as number) &&
             (boxes[b + 1] as number) <= maxY && minY <= (boxes[b + 4] as number) &&
@@ -66,12 +64,14 @@ export class Few {
     return this.#first(found);
   }
 
-  /** Makes room for `ids` and keeps those that are there. */
-  #grow(ids: number): Uint32Array {
-    const pairs = new Uint32Array(2 * ids);
-    pairs.set(this.#pairs);
-    this.#views.length = 0;
-    return (this.#pairs = pairs);
+  /** Room for all pairs of so many boxes. */
+  #room(boxes: number): Uint32Array {
+    const ids = boxes * (boxes - 1);
+    if (ids > this.#pairs.length) {
+      this.#pairs = new Uint32Array(ids);
+      this.#views.length = 0;
+    }
+    return this.#pairs;
   }
 
   #first(count: number): Uint32Array {
