@@ -14,11 +14,10 @@
 namespace broadside {
 namespace {
 
-/// What a pair costs beside a box that is read, sorted and swept: lab-notes.md has the measurements.
-constexpr double cost_of_pair = 0.15;
-
-/// The most boxes of a sample that are joined to see where the pairs are.
-constexpr std::size_t most_joined = 4096;
+/// How many boxes of a sample are joined at first to see where the pairs are, and how many pairs are enough:
+/// with fewer, more boxes are joined.
+constexpr std::size_t first_joined = 4096;
+constexpr std::size_t enough_pairs = 4096;
 
 /// What is spread along the axes: a box from its minimum to its maximum, a pair at its place.
 template <int D, typename Real>
@@ -117,14 +116,22 @@ class Cutter {
 template <int D, typename Real>
 void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
   std::vector<Box<D, Real>> joined;
-  const std::size_t step = std::max<std::size_t>(1, items.size() / most_joined);
-  for (std::size_t place = 0; place < items.size(); place += step) joined.push_back(items[place].box);
+  std::vector<Pair> pairs;
+  std::size_t step = std::max<std::size_t>(1, items.size() / first_joined);
+  while (true) {
+    joined.clear();
+    for (std::size_t place = 0; place < items.size(); place += step) joined.push_back(items[place].box);
+    pairs = find_pairs(joined, algorithms().front().name);
+    if (step == 1 || pairs.size() >= enough_pairs) break;
+    // Four times the boxes have sixteen times the pairs.
+    step = (step + 3) / 4;
+  }
   // With a box in `step`, a pair in its square is seen; and one in boxes / items of these is all there is.
-  const double pair_cost = cost_of_pair * static_cast<double>(step) * static_cast<double>(step) *
-                           static_cast<double>(boxes) / static_cast<double>(items.size());
-  std::vector<Pair> pairs = find_pairs(joined, algorithms().front().name);
+  const double pair_cost = Partition<D, Real>::cost(0, 1) * static_cast<double>(step) *
+                           static_cast<double>(step) * static_cast<double>(boxes) /
+                           static_cast<double>(items.size());
   // Some of very many pairs tell as much.
-  const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * most_joined));
+  const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough_pairs));
   for (std::size_t place = 0; place < pairs.size(); place += pair_step) {
     const Box<D, Real>& first = joined[index(pairs[place].first)];
     const Box<D, Real>& second = joined[index(pairs[place].second)];

@@ -72,6 +72,13 @@ class BROADSIDE_PUBLIC Partition {
     return region;
   }
 
+  /// What a part costs that has this many boxes and pairs, where reading, sorting and sweeping a box costs 1.
+  static constexpr double cost(std::uint64_t boxes, std::uint64_t pairs) noexcept {
+    // docs/lab-notes.md has the measurements.
+    constexpr double cost_of_pair = 0.15;
+    return static_cast<double>(boxes) + cost_of_pair * static_cast<double>(pairs);
+  }
+
   /// One part: all of space.
   Partition() : Partition({}, 1) {}
 

@@ -1,0 +1,137 @@
+// The ranks of an MPI communicator: failures that all of them learn of, and arrays of any length sent from
+// each to each.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <mpi.h>
+
+#include "broadside/mpi.hpp"
+
+namespace broadside::mpi {
+
+/// A communicator of our own over the caller's ranks, so that no message is mistaken for one of theirs. All
+/// members are collective but rank(), size() and sent_bytes().
+class Communicator {
+ public:
+  explicit Communicator(MPI_Comm comm);
+  ~Communicator();
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  int rank() const noexcept { return rank_; }
+  std::size_t size() const noexcept { return static_cast<std::size_t>(size_); }
+
+  /// The bytes that this rank has sent to others by exchange().
+  std::uint64_t sent_bytes() const noexcept { return sent_bytes_; }
+
+  /// Does a step of work on every rank. Where it throws on one, all ranks throw: so none waits for a rank
+  /// that has left. What InvalidInput, InvalidFrame and InvalidSpec say of the first such rank is thrown by
+  /// all, as such. Of anything else, a rank throws its own, and RankError for another's.
+  template <typename Work>
+  void together(const Work& work) {
+    std::exception_ptr error;
+    try {
+      work();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    settle(error);
+  }
+
+  /// Throws InvalidSpec on all ranks unless all call it with the same number.
+  void check_same(std::uint64_t number, const char* what);
+
+  std::uint64_t sum(std::uint64_t number);
+  std::uint64_t max(std::uint64_t number);
+  double sum(double number);
+  double max(double number);
+
+  /// The sum of the numbers of the ranks before this one.
+  std::uint64_t sum_before(std::uint64_t number);
+
+  /// The number of each rank.
+  std::vector<std::uint64_t> gather(std::uint64_t number);
+
+  /// The values of rank 0.
+  template <typename T>
+  void broadcast(std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::uint64_t count = values.size();
+    broadcast_bytes(&count, sizeof(count));
+    together([&] { values.resize(count); });
+    broadcast_bytes(values.data(), count * sizeof(T));
+  }
+
+  /// What came from the ranks, in their order.
+  template <typename T>
+  struct Received {
+    std::vector<T> values;
+    std::vector<std::uint64_t> counts;  ///< from each rank
+  };
+
+  /// Sends to[r] to rank r.
+  template <typename T>
+  Received<T> exchange(std::vector<std::vector<T>> to) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Received<T> received;
+    std::vector<Block> out;
+    std::vector<Block> in;
+    std::vector<std::uint64_t> counts;
+    together([&] {
+      for (const std::vector<T>& values : to) counts.push_back(values.size());
+      received.counts.resize(to.size());
+    });
+    exchange_counts(counts, received.counts);
+    const auto own = static_cast<std::size_t>(rank_);
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : received.counts) all += count;
+    // What comes from this rank alone need not be copied.
+    const bool is_own_alone = all == to[own].size();
+    together([&] {
+      if (!is_own_alone) received.values.resize(all);
+      T* place = received.values.data();
+      for (std::size_t rank = 0; rank < to.size(); ++rank) {
+        if (rank == own) {
+          if (!is_own_alone) std::copy(to[own].begin(), to[own].end(), place);
+        } else {
+          out.push_back({reinterpret_cast<std::byte*>(to[rank].data()), to[rank].size() * sizeof(T)});
+          in.push_back({reinterpret_cast<std::byte*>(place), received.counts[rank] * sizeof(T)});
+        }
+        if (!is_own_alone) place += received.counts[rank];
+      }
+      reserve_requests(out, in);
+    });
+    exchange_blocks(out, in);
+    if (is_own_alone) received.values = std::move(to[own]);
+    return received;
+  }
+
+ private:
+  struct Block {
+    std::byte* bytes;
+    std::uint64_t size;
+  };
+
+  void settle(const std::exception_ptr& error);
+  void broadcast_bytes(void* bytes, std::uint64_t size);
+  void exchange_counts(std::span<const std::uint64_t> to, std::span<std::uint64_t> from);
+
+  /// Blocks of the ranks but this one, in their order.
+  void reserve_requests(std::span<const Block> out, std::span<const Block> in);
+  void exchange_blocks(std::span<const Block> out, std::span<const Block> in);
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0;
+  int size_ = 1;
+  std::uint64_t sent_bytes_ = 0;
+  std::vector<MPI_Request> requests_;
+};
+
+}  // namespace broadside::mpi

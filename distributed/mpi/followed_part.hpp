@@ -1,0 +1,164 @@
+// The boxes of one part of space, followed by a tracker: which pairs of all space begin and end there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/large_pair.hpp"
+#include "broadside/partition.hpp"
+#include "broadside/tracker.hpp"
+
+namespace broadside::mpi {
+
+/// A box that touched the part at the last update, and has changed.
+template <int D, typename Real>
+struct MovedBox {
+  Box<D, Real> now;
+  std::uint64_t id;
+};
+
+/// A box that touches the part and did not at the last update.
+template <int D, typename Real>
+struct EnteringBox {
+  Box<D, Real> before;
+  Box<D, Real> now;
+  std::uint64_t id;
+};
+
+/// One thread at a time. After a call that has thrown, only the destructor may be called.
+///
+/// The tracker sees boxes while they touch the part. It tells of pairs as well that go on elsewhere, or have
+/// come from there, or that belong to another part, which has both boxes as well. Whether one is an event of
+/// all space is told by the boxes before and now: a pair begins if it did not overlap before, and is told by
+/// the part that it belongs to now; it ends if it does not overlap now, and is told by the part that it
+/// belonged to.
+template <int D, typename Real>
+class FollowedPart {
+ public:
+  using Region = typename Partition<D, Real>::Region;
+
+  /// Events, by the rank that owns the first box.
+  struct Events {
+    std::vector<std::vector<LargePair>> begun;
+    std::vector<std::vector<LargePair>> ended;
+  };
+
+  FollowedPart(const Region& region, std::unique_ptr<PairTracker<D, Real>> tracker)
+      : region_(region), tracker_(std::move(tracker)) {}
+
+  /// The box of this number has changed; `owner` is the rank that says so.
+  void change(const MovedBox<D, Real>& box, std::uint32_t owner) {
+    change_slot(slots_.at(box.id), box.now, owner);
+  }
+
+  /// A box comes in.
+  void change(const EnteringBox<D, Real>& box, std::uint32_t owner) {
+    const std::uint32_t slot = new_slot();
+    slots_.emplace(box.id, slot);
+    ids_[slot] = box.id;
+    before_[slot] = box.before;
+    change_slot(slot, box.now, owner);
+  }
+
+  /// Has the tracker take in the changes.
+  Events follow(std::size_t ranks) {
+    Events events{std::vector<std::vector<LargePair>>(ranks), std::vector<std::vector<LargePair>>(ranks)};
+    free_.reserve(free_.size() + changed_.size());
+    EventSink begun(*this, now_, before_, events.begun);
+    EventSink ended(*this, before_, now_, events.ended);
+    tracker_->update({shown_, changed_}, begun, ended);
+    pairs_ += begun.count() - ended.count();
+    return events;
+  }
+
+  /// What is now becomes what was before; boxes that have left are forgotten.
+  void commit() noexcept {
+    for (const BoxId id : changed_) {
+      const std::uint32_t slot = index(id);
+      before_[slot] = now_[slot];
+      if (is_present(shown_[slot])) continue;
+      slots_.erase(ids_[slot]);
+      free_.push_back(slot);
+    }
+    changed_.clear();
+  }
+
+  std::size_t boxes() const noexcept { return slots_.size(); }
+  std::uint64_t pairs() const noexcept { return pairs_; }
+
+ private:
+  /// Takes pairs of slots that the tracker tells of, and keeps those that belong to the part by `here`, where
+  /// they overlap, and do not overlap by `elsewhere`.
+  class EventSink final : public PairSink {
+   public:
+    EventSink(const FollowedPart& part, const std::vector<Box<D, Real>>& here,
+              const std::vector<Box<D, Real>>& elsewhere, std::vector<std::vector<LargePair>>& events)
+        : part_(part), here_(here), elsewhere_(elsewhere), events_(events) {}
+
+    std::uint64_t count() const noexcept { return count_; }
+
+   private:
+    void consume(std::span<const Pair> pairs) override {
+      count_ += pairs.size();
+      for (const Pair pair : pairs) {
+        std::uint32_t first = index(pair.first);
+        std::uint32_t second = index(pair.second);
+        const bool belongs =
+            (part_.region_.begins_before(here_[first]) & part_.region_.begins_before(here_[second])) == 0;
+        const Box<D, Real>& a = elsewhere_[first];
+        const Box<D, Real>& b = elsewhere_[second];
+        if (!belongs || (is_present(a) && is_present(b) && overlap(a, b))) continue;
+        if (part_.ids_[second] < part_.ids_[first]) std::swap(first, second);
+        events_[part_.owners_[first]].push_back({part_.ids_[first], part_.ids_[second]});
+      }
+    }
+
+    const FollowedPart& part_;
+    const std::vector<Box<D, Real>>& here_;
+    const std::vector<Box<D, Real>>& elsewhere_;
+    std::vector<std::vector<LargePair>>& events_;
+    std::uint64_t count_ = 0;
+  };
+
+  std::uint32_t new_slot() {
+    if (!free_.empty()) {
+      const std::uint32_t slot = free_.back();
+      free_.pop_back();
+      return slot;
+    }
+    const auto slot = static_cast<std::uint32_t>(ids_.size());
+    ids_.push_back(0);
+    owners_.push_back(0);
+    before_.push_back(absent_box<D, Real>());
+    now_.push_back(absent_box<D, Real>());
+    shown_.push_back(absent_box<D, Real>());
+    return slot;
+  }
+
+  void change_slot(std::uint32_t slot, const Box<D, Real>& box, std::uint32_t owner) {
+    owners_[slot] = owner;
+    now_[slot] = box;
+    shown_[slot] = is_present(box) && region_.touches(box) ? box : absent_box<D, Real>();
+    changed_.push_back(BoxId(slot));
+  }
+
+  Region region_;
+  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // by number
+  std::vector<std::uint64_t> ids_;                          // by slot, as all that follows
+  std::vector<std::uint32_t> owners_;
+  std::vector<Box<D, Real>> before_;  // at the last update
+  std::vector<Box<D, Real>> now_;     // wherever it is
+  std::vector<Box<D, Real>> shown_;   // to the tracker: absent where it does not touch the part
+  std::vector<std::uint32_t> free_;
+  std::vector<BoxId> changed_;
+  std::uint64_t pairs_ = 0;  // that overlap in shown_
+};
+
+}  // namespace broadside::mpi

@@ -1,0 +1,281 @@
+// Worlds of several ranks: the events of each update are what has changed between the boxes as they were and
+// as they are, whoever owns them and wherever the cuts are.
+#include "broadside/distributed_world.hpp"
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/error.hpp"
+
+#include "tests/mpi/ranks.hpp"
+#include "tests/support/model.hpp"
+
+namespace broadside {
+namespace {
+
+using mpi::DistributedEvents;
+using mpi::DistributedWorld;
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The boxes of all ranks, as each rank knows them: all draw the same random numbers.
+template <int D, typename Real>
+class History {
+ public:
+  explicit History(std::uint64_t seed, const mpi::DistributedWorldOptions& options = {})
+      : rng_(seed), world_(MPI_COMM_WORLD, options) {}
+
+  Rng& rng() { return rng_; }
+  DistributedWorld<D, Real>& world() { return world_; }
+  std::size_t size() const { return boxes_.size(); }
+
+  void add(const Box<D, Real>& box) {
+    // Large numbers, in no order.
+    const std::uint64_t id = rng_.bits();
+    const int owner = any_rank();
+    boxes_[id] = box;
+    owners_[id] = owner;
+    if (owner == rank()) world_.add(id, box);
+  }
+
+  void move(std::uint64_t id, const Box<D, Real>& box) {
+    boxes_[id] = box;
+    if (owners_[id] == rank()) world_.move(id, box);
+  }
+
+  void remove(std::uint64_t id) {
+    boxes_.erase(id);
+    if (owners_[id] == rank()) world_.remove(id);
+  }
+
+  /// Until the next update its owner stays what it was.
+  void hand_over(std::uint64_t id) {
+    const int to = any_rank();
+    if (owners_[id] == rank()) world_.hand_over(id, to);
+    next_owners_[id] = to;
+  }
+
+  std::uint64_t any() {
+    auto found = boxes_.begin();
+    std::advance(found, static_cast<std::ptrdiff_t>(rng_.below(boxes_.size())));
+    return found->first;
+  }
+
+  std::vector<std::uint64_t> ids() const {
+    std::vector<std::uint64_t> ids;
+    for (const auto& [id, box] : boxes_) ids.push_back(id);
+    return ids;
+  }
+
+  void expect_events() {
+    const std::set<LargePair> now = pairs_now();
+    for (const auto& [id, owner] : next_owners_) owners_[id] = owner;
+    next_owners_.clear();
+    const DistributedEvents events = world_.update();
+    EXPECT_THAT(events.begun, ElementsAreArray(own_of_one_only(now, pairs_)));
+    EXPECT_THAT(events.ended, ElementsAreArray(own_of_one_only(pairs_, now)));
+    pairs_ = now;
+    std::size_t owned = 0;
+    for (const auto& [id, box] : boxes_) {
+      owned += std::size_t{owners_[id] == rank()};
+      ASSERT_EQ(world_.contains(id), owners_[id] == rank());
+      if (owners_[id] == rank()) {
+        ASSERT_EQ(world_.box(id), box);
+      }
+    }
+    EXPECT_EQ(world_.size(), owned);
+  }
+
+ private:
+  int any_rank() { return static_cast<int>(rng_.below(static_cast<std::size_t>(ranks()))); }
+
+  std::set<LargePair> pairs_now() const {
+    std::vector<Box<D, Real>> boxes;
+    for (const auto& [id, box] : boxes_) boxes.push_back(box);
+    const std::vector<std::uint64_t> numbers = ids();
+    std::set<LargePair> pairs;
+    for (const Pair pair : find_pairs(boxes))
+      pairs.insert({numbers[index(pair.first)], numbers[index(pair.second)]});
+    return pairs;
+  }
+
+  std::vector<LargePair> own_of_one_only(const std::set<LargePair>& one, const std::set<LargePair>& other) {
+    std::vector<LargePair> own;
+    for (const LargePair pair : one)
+      if (!other.contains(pair) && owners_[pair.first] == rank()) own.push_back(pair);
+    return own;
+  }
+
+  Rng rng_;
+  DistributedWorld<D, Real> world_;
+  std::map<std::uint64_t, Box<D, Real>> boxes_;
+  std::map<std::uint64_t, int> owners_;
+  std::map<std::uint64_t, int> next_owners_;
+  std::set<LargePair> pairs_;
+};
+
+template <int D, typename Real>
+Box<D, Real> drawn(Rng& rng) {
+  const Box<D> box = random_box<D>(rng, {.places = 40, .most_extent = 5, .infinite_one_in = 100});
+  if constexpr (sizeof(Real) == sizeof(float))
+    return box;
+  else
+    return near_double(rng, box);
+}
+
+template <int D, typename Real>
+void play(std::uint64_t seed, const mpi::DistributedWorldOptions& options = {}) {
+  History<D, Real> history(seed, options);
+  Rng& rng = history.rng();
+  for (int frame = 0; frame < 30; ++frame) {
+    for (std::size_t i = rng.below(frame == 0 ? 150 : 15); i > 0; --i) history.add(drawn<D, Real>(rng));
+    for (std::size_t i = rng.below(1 + history.size() / 2); i > 0; --i)
+      history.move(history.any(), drawn<D, Real>(rng));
+    for (std::size_t i = history.size() > 20 ? rng.below(10) : 0; i > 0; --i) history.remove(history.any());
+    for (std::size_t i = history.size() > 20 ? rng.below(10) : 0; i > 0; --i)
+      history.hand_over(history.any());
+    history.expect_events();
+  }
+}
+
+TEST(DistributedWorld, TellsWhatChanges) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    play<2, float>(seed);
+    play<3, float>(seed, {.algorithm = "bvh", .threads = 2});
+    play<2, double>(seed, {.sample = 10});
+    play<3, double>(seed);
+  }
+}
+
+TEST(DistributedWorld, CutsSpaceAnewWhereTheLoadShiftsAndTellsNothingOfThat) {
+  History<2, float> history(9);
+  Rng& rng = history.rng();
+  const std::size_t count = 300 * static_cast<std::size_t>(ranks());
+  const float side = 20 * std::sqrt(static_cast<float>(ranks()));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Box2 box{{rng.between(0, side), rng.between(0, side)}, {}};
+    history.add({box.min, {box.min[0] + 1, box.min[1] + 1}});
+  }
+  history.expect_events();
+  EXPECT_EQ(history.world().statistics().cuts, 1U);
+  if (ranks() > 1) {
+    EXPECT_LT(history.world().statistics().largest_over_mean_work, 1.25);
+  }
+  // A tenth at a time, all go into one corner.
+  const std::vector<std::uint64_t> ids = history.ids();
+  for (std::size_t tenth = 0; tenth < 10; ++tenth) {
+    for (std::size_t i = tenth; i < ids.size(); i += 10) {
+      const Box2 box{{rng.between(0, side / 4), rng.between(0, side / 4)}, {}};
+      history.move(ids[i], {box.min, {box.min[0] + 1, box.min[1] + 1}});
+    }
+    history.expect_events();
+  }
+  history.expect_events();
+  if (ranks() > 1) {
+    EXPECT_GT(history.world().statistics().cuts, 1U);
+    EXPECT_LT(history.world().statistics().largest_over_mean_work, 1.4);
+    EXPECT_LT(history.world().statistics().cuts, 8U);
+  }
+}
+
+TEST(DistributedWorld, DoesNotCutAgainWhatNoCutTellsApart) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  for (std::uint64_t i = 0; i < 300; ++i)
+    world.add(i * static_cast<std::uint64_t>(ranks()) + static_cast<std::uint64_t>(rank()), at(0));
+  for (int frame = 0; frame < 5; ++frame) world.update();
+  EXPECT_EQ(world.statistics().cuts, 1U);
+}
+
+TEST(DistributedWorld, SendsOnlyWhatChanges) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const std::uint64_t id = i * static_cast<std::uint64_t>(ranks()) + static_cast<std::uint64_t>(rank());
+    world.add(id, at(static_cast<float>(2 * id)));
+  }
+  world.update();
+  world.update();
+  EXPECT_EQ(world.statistics().sent_bytes, 0U);
+  // All of one rank's boxes move on the spot.
+  if (rank() == 0) world.move(0, at(0.5F));
+  world.update();
+  EXPECT_LE(world.statistics().sent_bytes, rank() == 0 ? 2 * 24U : 0U);
+}
+
+TEST(DistributedWorld, RefusesANumberThatIsTakenOnAllRanks) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  if (rank() == 0) world.add(7, at(0));
+  world.update();
+  const int adder = ranks() - 1;
+  if (adder > 0) {
+    if (rank() == adder) world.add(7, at(1));
+    EXPECT_THAT(thrown<InvalidFrame>([&] { world.update(); }),
+                HasSubstr("box 7 is added on rank " + std::to_string(adder) +
+                          " and is in the world, added on rank 0"));
+    EXPECT_THAT(thrown<InvalidFrame>([&] { world.update(); }), HasSubstr("box 7"));
+    if (rank() == adder) world.remove(7);
+  }
+  // With another one that is free, all is told as if nothing had been.
+  if (rank() == adder) world.add(9, at(1));
+  const DistributedEvents events = world.update();
+  if (rank() == 0)
+    EXPECT_THAT(events.begun, ElementsAre(LargePair{7, 9}));
+  else
+    EXPECT_THAT(events.begun, IsEmpty());
+}
+
+TEST(DistributedWorld, LetsANumberBeUsedAgainAfterAnUpdate) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  if (rank() == 0) {
+    world.add(1, at(0));
+    world.add(2, at(0.5F));
+  }
+  world.update();
+  if (rank() == 0) {
+    world.remove(2);
+    EXPECT_THAT(thrown<InvalidFrame>([&] { world.add(2, at(0)); }), HasSubstr("was removed since"));
+  }
+  EXPECT_EQ(world.update().ended.size(), rank() == 0 ? 1U : 0U);
+  if (rank() == ranks() - 1) world.add(2, at(0.5F));
+  EXPECT_EQ(world.update().begun.size(), rank() == 0 ? 1U : 0U);
+}
+
+TEST(DistributedWorld, RefusesWhatItsOwnerDoesWrong) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  const auto id = static_cast<std::uint64_t>(rank());
+  EXPECT_THAT(thrown<InvalidInput>([&] { world.add(id, {{nan, 0}, {1, 1}}); }), HasSubstr("NaN"));
+  EXPECT_THAT(thrown<InvalidInput>([&] { world.add(id, absent_box<2>()); }),
+              HasSubstr("expected min <= max"));
+  world.add(id, at(0));
+  EXPECT_THAT(thrown<InvalidFrame>([&] { world.add(id, at(0)); }), HasSubstr("in the world"));
+  EXPECT_THAT(thrown<InvalidHandle>([&] { world.move(id + 1000, at(0)); }), HasSubstr("not owned"));
+  EXPECT_THAT(thrown<InvalidHandle>([&] { world.remove(id + 1000); }), HasSubstr("not owned"));
+  EXPECT_THAT(thrown<InvalidInput>([&] { world.move(id, {{1, 0}, {0, 0}}); }), HasSubstr("min > max"));
+  EXPECT_THAT(thrown<std::invalid_argument>([&] { world.hand_over(id, ranks()); }),
+              HasSubstr("expected one from 0"));
+  EXPECT_EQ(world.box(id), at(0));
+  world.remove(id);
+  EXPECT_FALSE(world.contains(id));
+  EXPECT_THAT(world.update().begun, IsEmpty());
+}
+
+TEST(DistributedWorld, RefusesOptionsThatDifferOrAreWrong) {
+  EXPECT_THAT(
+      thrown<std::invalid_argument>([] { DistributedWorld<2> world(MPI_COMM_WORLD, {.most_imbalance = 1}); }),
+      HasSubstr("most_imbalance"));
+  EXPECT_THAT(thrown<InvalidSpec>([] { DistributedWorld<2> world(MPI_COMM_WORLD, {.algorithm = "none"}); }),
+              HasSubstr("none"));
+  if (ranks() == 1) return;
+  EXPECT_THAT(thrown<InvalidSpec>([] {
+                DistributedWorld<2> world(MPI_COMM_WORLD, {.algorithm = rank() == 0 ? "grid" : "bvh"});
+              }),
+              HasSubstr("ranks differ"));
+}
+
+}  // namespace
+}  // namespace broadside
