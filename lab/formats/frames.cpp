@@ -39,6 +39,11 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
   bool has_pieces() const override { return frames_->has_pieces(); }
 
+  /// What is rounded in one slice is not told with what is in the others.
+  bool take_slice(std::size_t slice, std::size_t slices) override {
+    return (keeps_numbers || slices == 1) && frames_->take_slice(slice, slices);
+  }
+
   std::uint64_t estimated_boxes() const override { return frames_->estimated_boxes(); }
 
   bool next(Step<D, Real>& step) override {
@@ -69,7 +74,8 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
  private:
   // Flat or rounded boxes overlap where these do not.
-  static constexpr bool keeps_pairs = D == OldD && sizeof(Real) >= sizeof(OldReal);
+  static constexpr bool keeps_numbers = sizeof(Real) >= sizeof(OldReal);
+  static constexpr bool keeps_pairs = D == OldD && keeps_numbers;
 
   std::vector<Box<D, Real>> converted_boxes(const std::vector<Box<OldD, OldReal>>& boxes) {
     if constexpr (std::is_same_v<Real, float> && std::is_same_v<OldReal, double>)

@@ -94,6 +94,14 @@ class FrameReader {
   /// Whether first_piece() gives a few boxes at a time, and memory is needed for no others.
   virtual bool has_pieces() const { return false; }
 
+  /// Has first() and first_piece(), which have not been called, give one of `slices` slices of the first
+  /// frame's boxes alone: slices are about as long, and one behind the other they are all boxes. False where
+  /// nothing but reading from the beginning tells which boxes these are.
+  virtual bool take_slice(std::size_t slice, std::size_t slices) {
+    static_cast<void>(slice);
+    return slices == 1;
+  }
+
   /// About how many boxes the first frame has; 0 where that is not known before it is read.
   virtual std::uint64_t estimated_boxes() const { return 0; }
 

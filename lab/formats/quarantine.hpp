@@ -20,6 +20,9 @@ class Quarantine {
 
   explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
 
+  /// Whether invalid boxes are left out rather than refused.
+  bool leaves_out() const noexcept { return static_cast<bool>(say_); }
+
   /// Whether `read()` returned. If it throws a FileError, the box is left out and the error reported; without
   /// say_invalid, the error goes on to the caller.
   template <typename Read>

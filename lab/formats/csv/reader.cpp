@@ -53,6 +53,8 @@ class PlainCsv final : public FrameReader<D, Real> {
 
   bool has_pieces() const override { return true; }
 
+  bool take_slice(std::size_t slice, std::size_t slices) override { return rows_.take_slice(slice, slices); }
+
   bool next(Step<D, Real>&) override { return false; }
 
   std::string warning() const override { return rows_.warning(); }

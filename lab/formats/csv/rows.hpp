@@ -57,7 +57,14 @@ class CsvRows {
   const CsvLines& lines() const noexcept { return table_.lines; }
 
   /// Says that the rows up to here will not be looked at again.
-  void release() { table_.input->release(table_.input->bytes().size() - table_.lines.bytes_left()); }
+  void release() { table_.input->release(table_.lines.passed_bytes()); }
+
+  /// Leaves out the rows but those of a slice; false where invalid rows are left out, which are counted.
+  bool take_slice(std::size_t slice, std::size_t slices) {
+    if (table_.quarantine.leaves_out() && slices > 1) return false;
+    table_.lines.take_slice(slice, slices);
+    return true;
+  }
 
   /// Whether bounds are computed from other numbers.
   bool is_computed() const noexcept { return is_computed_; }

@@ -158,6 +158,21 @@ CsvLines::CsvLines(Input& input) : input_(&input), rest_(input.bytes()) {
   while (rest_.ends_with('\n') || rest_.ends_with('\r')) rest_.remove_suffix(1);
 }
 
+void CsvLines::take_slice(std::size_t slice, std::size_t slices) {
+  // A line belongs to the slice in which it begins.
+  const auto begin_of = [&](std::size_t number) {
+    const std::size_t place = rest_.size() / slices * number + std::min(number, rest_.size() % slices);
+    if (place == 0 || place == rest_.size()) return place;
+    const std::size_t end_of_line = rest_.find('\n', place - 1);
+    return end_of_line == std::string_view::npos ? rest_.size() : end_of_line + 1;
+  };
+  const std::size_t begin = begin_of(slice);
+  const std::size_t end = begin_of(slice + 1);
+  before_slice_ = rest_.substr(0, begin);
+  passed_ += begin;
+  rest_ = rest_.substr(begin, end - begin);
+}
+
 void CsvLines::take() {
   input_->passed(passed_);
   const void* const end = std::memchr(rest_.data(), '\n', rest_.size());
@@ -171,7 +186,8 @@ void CsvLines::take() {
 }
 
 void CsvLines::refuse(std::uint64_t line, const std::string& found, const std::string& expected) const {
-  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), line, found, expected));
+  const auto before = static_cast<std::uint64_t>(std::ranges::count(before_slice_, '\n'));
+  throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), before + line, found, expected));
 }
 
 }  // namespace broadside::lab::readers

@@ -91,7 +91,13 @@ class CsvLines {
 
   std::string_view line() const noexcept { return line_; }
 
-  /// The number of the line, from 1.
+  /// Leaves out the lines but those of one of `slices` slices, which have about as many bytes.
+  void take_slice(std::size_t slice, std::size_t slices);
+
+  /// How many bytes of the input come before what next() takes.
+  std::uint64_t passed_bytes() const noexcept { return passed_; }
+
+  /// The number of the line, from 1; in a slice, from 1 after the lines that were left out before it.
   std::uint64_t number() const noexcept { return number_; }
 
   /// How many bytes there are behind the line, without empty lines at the end.
@@ -101,7 +107,7 @@ class CsvLines {
     refuse(number_, found, expected);
   }
 
-  /// Refuses an earlier line.
+  /// Refuses an earlier line, by its number().
   [[noreturn]] void refuse(std::uint64_t line, const std::string& found, const std::string& expected) const;
 
  private:
@@ -109,6 +115,7 @@ class CsvLines {
 
   Input* input_;  // not a reference, so that lines can be assigned
   std::uint64_t passed_ = 0;
+  std::string_view before_slice_;  // what was left out; its lines are counted where they are told
   std::string_view rest_;
   std::string_view line_;
   std::uint64_t number_ = 0;

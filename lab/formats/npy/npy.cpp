@@ -23,24 +23,34 @@ template <int D, typename Real>
 class NpyFrame final : public FrameReader<D, Real> {
  public:
   NpyFrame(std::unique_ptr<Input> input, std::size_t begin, const NpyLayout& layout)
-      : input_(std::move(input)), begin_(begin), layout_(layout), is_plain_(is_plain(layout)) {}
+      : input_(std::move(input)),
+        begin_(begin),
+        layout_(layout),
+        is_plain_(is_plain(layout)),
+        end_row_(layout.rows) {}
 
   std::vector<Box<D, Real>> first() override {
     std::vector<Box<D, Real>> boxes;
-    read(layout_.rows, boxes);
+    read(end_row_ - next_row_, boxes);
     return boxes;
   }
 
   bool first_piece(std::vector<Box<D, Real>>& boxes) override {
     constexpr std::size_t rows_a_piece = std::size_t{1} << 18;
     input_->release(begin_ + next_row_ * layout_.row_step);
-    read(std::min(rows_a_piece, layout_.rows - next_row_), boxes);
+    read(std::min(rows_a_piece, end_row_ - next_row_), boxes);
     return !boxes.empty();
   }
 
   bool has_pieces() const override { return true; }
 
-  std::uint64_t estimated_boxes() const override { return layout_.rows; }
+  bool take_slice(std::size_t slice, std::size_t slices) override {
+    next_row_ = layout_.rows / slices * slice + std::min(slice, layout_.rows % slices);
+    end_row_ = next_row_ + layout_.rows / slices + (slice < layout_.rows % slices ? 1 : 0);
+    return true;
+  }
+
+  std::uint64_t estimated_boxes() const override { return end_row_ - next_row_; }
 
   bool next(Step<D, Real>&) override { return false; }
 
@@ -116,6 +126,7 @@ class NpyFrame final : public FrameReader<D, Real> {
   NpyLayout layout_;
   bool is_plain_;
   std::size_t next_row_ = 0;
+  std::size_t end_row_;
 };
 
 AnyFrameReader open_npy(std::unique_ptr<Input> input, const ReadOptions&) {
