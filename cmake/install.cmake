@@ -30,8 +30,22 @@ foreach(target IN LISTS distributed)
   install(FILES ${PROJECT_SOURCE_DIR}/distributed/include/broadside/${name}.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/broadside COMPONENT development)
 endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/distributed/include/broadside/large_pair.hpp
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/broadside COMPONENT development)
 install(TARGETS ${distributed} EXPORT BroadsideTargets ARCHIVE COMPONENT development
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+# Read for COMPONENTS mpi alone, since it takes MPI to be found.
+if(BROADSIDE_HAS_MPI)
+  set_target_properties(broadside_mpi PROPERTIES EXPORT_NAME mpi)
+  foreach(name IN ITEMS mpi distributed_world)
+    install(FILES ${PROJECT_SOURCE_DIR}/distributed/include/broadside/${name}.hpp
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/broadside COMPONENT development)
+  endforeach()
+  install(TARGETS broadside_mpi EXPORT BroadsideMpiTargets ARCHIVE COMPONENT development
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT BroadsideMpiTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT development)
+endif()
 
 # The config file makes the target itself: Bullet is wherever it is found there.
 if(BROADSIDE_HAS_BULLET)
@@ -81,6 +95,12 @@ if(BROADSIDE_BUILD_PROGRAM)
     set_target_properties(broadside_program PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
   endif()
   install(TARGETS broadside_program COMPONENT program)
+  if(BROADSIDE_HAS_MPI)
+    if(BUILD_SHARED_LIBS)
+      set_target_properties(broadside_mpi_program PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
+    endif()
+    install(TARGETS broadside_mpi_program COMPONENT program)
+  endif()
   if(TARGET broadside_manual)
     set(zsh_folder zsh/$<IF:$<BOOL:${BROADSIDE_DEB}>,vendor-completions,site-functions>)
     install(DIRECTORY ${BROADSIDE_MANUAL}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)

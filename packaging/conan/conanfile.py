@@ -55,6 +55,7 @@ class Broadside(ConanFile):
         toolchain.cache_variables["BROADSIDE_BUILD_PROGRAM"] = False
         toolchain.cache_variables["BROADSIDE_BULLET"] = "OFF"
         toolchain.cache_variables["BROADSIDE_FCL"] = "OFF"
+        toolchain.cache_variables["BROADSIDE_MPI"] = "OFF"
         toolchain.cache_variables["BROADSIDE_THREADS"] = "ON" if self.options.threads else "OFF"
         toolchain.generate()
 

@@ -1,0 +1,78 @@
+// The program `broadside-mpi`, which mpirun starts: the verb `pairs` on the ranks of an MPI job.
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include "broadside/version.hpp"
+
+#include "cli/help.hpp"
+#include "cli/interruption.hpp"
+#include "cli/message.hpp"
+#include "cli/mpi/pairs.hpp"
+#include "cli/mpi/ranks.hpp"
+#include "cli/verbs.hpp"
+#include "lab/catalogue.hpp"
+#include "lab/platform/terminal.hpp"
+
+namespace broadside::cli {
+namespace {
+
+/// All ranks have the same arguments, and refuse them alike. Help and version are printed by one.
+Exit run(std::vector<std::string> arguments) {
+  const lab::Catalogue catalogue;
+  CLI::App program(
+      "Finds overlapping boxes by the ranks of an MPI job: mpirun -n 4 broadside-mpi pairs boxes.npy -o "
+      "pairs.npy.",
+      program_name());
+  program.formatter(std::make_shared<HelpFormatter>());
+  program.set_help_flag("-h,--help", "Print this help and end");
+  program.set_version_flag("--version", "broadside-mpi " BROADSIDE_VERSION, "Print the version and end");
+  program.require_subcommand(1);
+  program.footer(
+      "Exit status: 0 fine, 2 unusable arguments or input, 130 interrupted; mpirun ends all ranks where one "
+      "is "
+      "killed, and has a status of its own then.");
+  const Verb pairs = add_mpi_pairs(program, catalogue);
+  try {
+    // CLI11 takes the arguments in reverse and without the program.
+    program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0)
+      throw EndsOnAll(fmt::format("{}; `{} --help` tells more", error.what(), program_name()));
+    if (rank() == 0) program.exit(error);
+    return Exit::fine;
+  }
+  return pairs();
+}
+
+}  // namespace
+}  // namespace broadside::cli
+
+int main(int count, char** values) {
+  using namespace broadside;
+  lab::platform::prepare_standard_streams();
+  MPI_Init(&count, &values);
+  cli::set_program_name("broadside-mpi");
+  // The others end with it; and only it writes.
+  if (cli::rank() == 0) cli::on_signal(cli::OnSignal::end);
+  cli::Exit exit = cli::Exit::unusable;
+  try {
+    exit = cli::run(lab::platform::arguments(count, values));
+    cli::flush_output();
+  } catch (const cli::EndsOnAll& error) {
+    if (cli::rank() == 0) cli::say(error.what());
+  } catch (const std::exception& error) {
+    // The others know nothing of it, and may wait for this rank.
+    cli::say(fmt::format("rank {}: {}", cli::rank(), error.what()));
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::unusable));
+  }
+  const bool is_first = cli::rank() == 0;
+  MPI_Finalize();
+  // mpirun gives on one rank's status, and sends the others a signal.
+  return is_first ? static_cast<int>(exit) : 0;
+}

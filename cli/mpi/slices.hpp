@@ -1,0 +1,110 @@
+// Files read by ranks: each has a slice of the boxes.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/message.hpp"
+#include "cli/mpi/ranks.hpp"
+#include "lab/formats/format.hpp"
+
+namespace broadside::cli {
+
+/// A file, how it is read, and what rank 0 has found it to be.
+struct SlicedFile {
+  std::string path;
+  lab::ReadOptions options;
+  std::optional<lab::BoxFile> opened{};  ///< on rank 0, and its slice taken: a pipe cannot be opened again
+  int dimension = 2;
+  lab::Precision precision = lab::Precision::float32;
+  bool has_slices =
+      false;  ///< which each rank reads by itself; otherwise rank 0 reads all and sends them out
+};
+
+inline bool take_slice(lab::BoxFile& file) {
+  return std::visit(
+      [](auto& frames) {
+        return frames->take_slice(static_cast<std::size_t>(rank()), static_cast<std::size_t>(ranks()));
+      },
+      file.frames);
+}
+
+/// Has rank 0 open the file, and tells all what it is. A pipe or a compressed file has no slices: only one
+/// process can read the one, and the other only from its beginning.
+inline void look_at(SlicedFile& file) {
+  on_all([&] {
+    if (rank() != 0) return;
+    file.opened.emplace(lab::open_file(file.path, file.options));
+    file.dimension = lab::dimension_of(file.opened->frames);
+    file.precision = lab::precision_of_frames(file.opened->frames);
+    const bool is_regular = file.path != "-" && std::filesystem::is_regular_file(file.path);
+    file.has_slices =
+        is_regular && lab::compression_extension_of(file.path).empty() && take_slice(*file.opened);
+  });
+  broadcast(&file.dimension, sizeof(file.dimension));
+  broadcast(&file.precision, sizeof(file.precision));
+  broadcast(&file.has_slices, sizeof(file.has_slices));
+}
+
+/// The boxes of the first frame, or of the slice that was taken, with coordinates of type Real.
+template <int D, typename Real>
+std::vector<Box<D, Real>> read_first(lab::BoxFile file) {
+  const lab::AnyFrameReader any =
+      lab::with_precision(std::move(file.frames), lab::precision_of<Real>, file.name);
+  lab::FrameReader<D, Real>& frames = *std::get<std::unique_ptr<lab::FrameReader<D, Real>>>(any);
+  std::vector<Box<D, Real>> boxes = frames.first();
+  if (const std::string warning = frames.warning(); !warning.empty()) say(warning);
+  if (lab::Step<D, Real> step; rank() == 0 && frames.next(step))
+    say(fmt::format("{}: holds several frames; these are the pairs of the first", file.name));
+  return boxes;
+}
+
+/// Gives each rank its slice of what rank 0 has read.
+template <int D, typename Real>
+void send_out(std::vector<Box<D, Real>>& boxes) {
+  std::uint64_t all = boxes.size();
+  broadcast(&all, sizeof(all));
+  const auto count = static_cast<std::uint64_t>(ranks());
+  const auto begin_of = [&](int of_rank) {
+    const auto number = static_cast<std::uint64_t>(of_rank);
+    return all / count * number + std::min(number, all % count);
+  };
+  const std::uint64_t own = begin_of(rank() + 1) - begin_of(rank());
+  on_all([&] {
+    if (rank() != 0) boxes.resize(own);
+  });
+  if (rank() != 0) {
+    receive(boxes.data(), own * sizeof(Box<D, Real>), 0);
+    return;
+  }
+  for (int to = 1; to < ranks(); ++to)
+    send(boxes.data() + begin_of(to), (begin_of(to + 1) - begin_of(to)) * sizeof(Box<D, Real>), to);
+  boxes.resize(own);
+}
+
+/// This rank's slice of the file's boxes. Called once.
+template <int D, typename Real>
+std::vector<Box<D, Real>> read_slice(SlicedFile& file) {
+  std::vector<Box<D, Real>> boxes;
+  on_all([&] {
+    if (rank() != 0 && !file.has_slices) return;
+    if (rank() != 0) {
+      file.opened.emplace(lab::open_file(file.path, file.options));
+      take_slice(*file.opened);
+    }
+    boxes = read_first<D, Real>(std::move(*file.opened));
+    file.opened.reset();
+  });
+  if (!file.has_slices) send_out(boxes);
+  return boxes;
+}
+
+}  // namespace broadside::cli
