@@ -69,14 +69,28 @@ class Communicator {
     broadcast_bytes(values.data(), count * sizeof(T));
   }
 
-  /// What came from the ranks, in their order.
+  /// What came from the ranks.
   template <typename T>
   struct Received {
-    std::vector<T> values;
+    std::vector<T> values;              ///< this rank's own first, then those of the others in their order
     std::vector<std::uint64_t> counts;  ///< from each rank
+
+    /// Calls visit(value, rank) for each.
+    template <typename Visit>
+    void for_each(int own_rank, const Visit& visit) const {
+      std::size_t place = 0;
+      const auto visit_those_of = [&](std::size_t rank) {
+        for (std::uint64_t i = 0; i < counts[rank]; ++i)
+          visit(values[place++], static_cast<std::uint32_t>(rank));
+      };
+      const auto own = static_cast<std::size_t>(own_rank);
+      visit_those_of(own);
+      for (std::size_t rank = 0; rank < counts.size(); ++rank)
+        if (rank != own) visit_those_of(rank);
+    }
   };
 
-  /// Sends to[r] to rank r.
+  /// Sends to[r] to rank r. What stays on this rank is not copied where to[rank()] has room for the others'.
   template <typename T>
   Received<T> exchange(std::vector<std::vector<T>> to) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -89,27 +103,23 @@ class Communicator {
       received.counts.resize(to.size());
     });
     exchange_counts(counts, received.counts);
-    const auto own = static_cast<std::size_t>(rank_);
-    std::uint64_t all = 0;
-    for (const std::uint64_t count : received.counts) all += count;
-    // What comes from this rank alone need not be copied.
-    const bool is_own_alone = all == to[own].size();
     together([&] {
-      if (!is_own_alone) received.values.resize(all);
-      T* place = received.values.data();
+      const auto own = static_cast<std::size_t>(rank_);
+      std::uint64_t all = 0;
+      for (const std::uint64_t count : received.counts) all += count;
+      received.values = std::move(to[own]);
+      std::size_t used = received.values.size();
+      received.values.resize(static_cast<std::size_t>(all));
       for (std::size_t rank = 0; rank < to.size(); ++rank) {
-        if (rank == own) {
-          if (!is_own_alone) std::copy(to[own].begin(), to[own].end(), place);
-        } else {
-          out.push_back({reinterpret_cast<std::byte*>(to[rank].data()), to[rank].size() * sizeof(T)});
-          in.push_back({reinterpret_cast<std::byte*>(place), received.counts[rank] * sizeof(T)});
-        }
-        if (!is_own_alone) place += received.counts[rank];
+        if (rank == own) continue;
+        T* const place = received.values.data() + used;
+        used += static_cast<std::size_t>(received.counts[rank]);
+        out.push_back({reinterpret_cast<std::byte*>(to[rank].data()), to[rank].size() * sizeof(T)});
+        in.push_back({reinterpret_cast<std::byte*>(place), received.counts[rank] * sizeof(T)});
       }
       reserve_requests(out, in);
     });
     exchange_blocks(out, in);
-    if (is_own_alone) received.values = std::move(to[own]);
     return received;
   }
 

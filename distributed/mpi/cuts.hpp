@@ -18,7 +18,7 @@ namespace broadside::mpi {
 /// How large a sample of all ranks is where the caller does not say: with 4,096 boxes a part, its box count
 /// is off by some 2 %.
 inline std::size_t standard_sample(std::size_t ranks) {
-  return std::max<std::size_t>(std::size_t{1} << 15, (std::size_t{1} << 12) * ranks);
+  return std::max<std::size_t>(std::size_t{1} << 14, (std::size_t{1} << 12) * ranks);
 }
 
 /// Appends about `wanted` of `count` boxes, spread evenly: one from anywhere in each stretch, since boxes may

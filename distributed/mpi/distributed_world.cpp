@@ -168,7 +168,7 @@ class DistributedWorld<D, Real>::State {
     try {
       comm_.together([&] {
         new_ids_.reserve(announced.values.size());
-        for_each_from(announced, [&](std::uint64_t id, std::uint32_t rank) {
+        announced.for_each(comm_.rank(), [&](std::uint64_t id, std::uint32_t rank) {
           register_.add(id, static_cast<int>(rank));
           new_ids_.push_back(id);
         });
@@ -181,15 +181,6 @@ class DistributedWorld<D, Real>::State {
 
   void unregister(const std::vector<std::uint64_t>& ids) noexcept {
     for (const std::uint64_t id : ids) register_.remove(id);
-  }
-
-  /// Calls visit(value, rank) for what came from the ranks.
-  template <typename Received, typename Visit>
-  static void for_each_from(const Received& received, const Visit& visit) {
-    std::size_t place = 0;
-    for (std::size_t rank = 0; rank < received.counts.size(); ++rank)
-      for (std::uint64_t i = 0; i < received.counts[rank]; ++i)
-        visit(received.values[place++], static_cast<std::uint32_t>(rank));
   }
 
   void make_part() {
@@ -234,7 +225,7 @@ class DistributedWorld<D, Real>::State {
     });
     const auto received = comm_.exchange(std::move(entering));
     comm_.together([&] {
-      for_each_from(received, [&](const auto& box, std::uint32_t rank) { part_->change(box, rank); });
+      received.for_each(comm_.rank(), [&](const auto& box, std::uint32_t rank) { part_->change(box, rank); });
       part_->follow(comm_.size());
       part_->commit();
     });
@@ -263,8 +254,8 @@ class DistributedWorld<D, Real>::State {
     const auto received_entering = comm_.exchange(std::move(entering));
     comm_.together([&] {
       const auto change = [&](const auto& box, std::uint32_t rank) { part_->change(box, rank); };
-      for_each_from(received_moved, change);
-      for_each_from(received_entering, change);
+      received_moved.for_each(comm_.rank(), change);
+      received_entering.for_each(comm_.rank(), change);
     });
   }
 

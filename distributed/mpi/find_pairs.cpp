@@ -38,7 +38,13 @@ struct Side {
     return rank == 0 ? 0 : ends[static_cast<std::size_t>(rank) - 1];
   }
   std::size_t owner(std::uint64_t id) const noexcept {
-    return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin());
+    constexpr std::size_t few = 16;
+    if (ends.size() > few)
+      return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin());
+    // Without a branch that depends on the pair.
+    std::size_t rank = 0;
+    for (const std::uint64_t end : ends) rank += std::size_t{end <= id};
+    return rank;
   }
 };
 
@@ -185,10 +191,12 @@ class Join {
     comm_.together([&] {
       boxes.resize(comm_.size());
       ids.resize(comm_.size());
-      const std::size_t usual = side.mine.size() / partition.size();
+      // On this rank there will be those of the others as well.
+      const std::size_t usual = side.mine.size() + side.mine.size() / 16;
       for (std::size_t part = 0; part < partition.size(); ++part) {
-        boxes[part].reserve(usual + usual / 16);
-        ids[part].reserve(usual + usual / 16);
+        const bool is_own = part == static_cast<std::size_t>(comm_.rank());
+        boxes[part].reserve(is_own ? usual : usual / partition.size());
+        ids[part].reserve(is_own ? usual : usual / partition.size());
       }
       const std::uint64_t first = side.first_id(comm_.rank());
       for (std::size_t i = 0; i < side.mine.size(); ++i) {

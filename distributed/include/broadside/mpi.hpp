@@ -40,7 +40,7 @@ struct Options {
   std::string_view algorithm = default_algorithm;  ///< the spec by which each rank joins its part
   std::optional<std::size_t> threads{};            ///< of each rank; empty: as the spec says
 
-  /// How many boxes of all ranks the cuts are made from; 0: 32,768, or 4,096 a rank where that is more.
+  /// How many boxes of all ranks the cuts are made from; 0: 16,384, or 4,096 a rank where that is more.
   std::size_t sample = 0;
 };
 
