@@ -214,7 +214,7 @@ Exit run(const MpiPairsArguments& arguments, const CLI::App& verb, const lab::Ca
     check(arguments, catalogue);
     spec = entry_of(arguments, catalogue).spec.text();
     for (const std::string& path : arguments.files)
-      files.push_back({path, read_options(arguments.input, path)});
+      files.emplace_back(path, read_options(arguments.input, path));
   });
   for (SlicedFile& file : files) look_at(file);
   on_all([&] { check_match(files); });

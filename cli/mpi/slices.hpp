@@ -20,14 +20,31 @@ namespace broadside::cli {
 
 /// A file, how it is read, and what rank 0 has found it to be.
 struct SlicedFile {
+  /// Takes over options in which float is asked for as `broadside pairs` does: what is read is rounded then,
+  /// and counted.
+  SlicedFile(std::string file, lab::ReadOptions read_options)
+      : path(std::move(file)),
+        options(std::move(read_options)),
+        is_rounded(options.precision == lab::Precision::float32) {
+    if (is_rounded) options.precision.reset();
+  }
+
   std::string path;
   lab::ReadOptions options;
+  bool is_rounded;
   std::optional<lab::BoxFile> opened{};  ///< on rank 0, and its slice taken: a pipe cannot be opened again
   int dimension = 2;
   lab::Precision precision = lab::Precision::float32;
   bool has_slices =
       false;  ///< which each rank reads by itself; otherwise rank 0 reads all and sends them out
 };
+
+inline void open(SlicedFile& file) {
+  file.opened.emplace(lab::open_file(file.path, file.options));
+  if (file.is_rounded)
+    file.opened->frames =
+        lab::with_precision(std::move(file.opened->frames), lab::Precision::float32, file.opened->name);
+}
 
 inline bool take_slice(lab::BoxFile& file) {
   return std::visit(
@@ -42,7 +59,7 @@ inline bool take_slice(lab::BoxFile& file) {
 inline void look_at(SlicedFile& file) {
   on_all([&] {
     if (rank() != 0) return;
-    file.opened.emplace(lab::open_file(file.path, file.options));
+    open(file);
     file.dimension = lab::dimension_of(file.opened->frames);
     file.precision = lab::precision_of_frames(file.opened->frames);
     const bool is_regular = file.path != "-" && std::filesystem::is_regular_file(file.path);
@@ -97,7 +114,7 @@ std::vector<Box<D, Real>> read_slice(SlicedFile& file) {
   on_all([&] {
     if (rank() != 0 && !file.has_slices) return;
     if (rank() != 0) {
-      file.opened.emplace(lab::open_file(file.path, file.options));
+      open(file);
       take_slice(*file.opened);
     }
     boxes = read_first<D, Real>(std::move(*file.opened));

@@ -49,7 +49,7 @@ TEST(MpiProgram, WritesThePairsOfTheProgramByteForByte) {
   ASSERT_EQ(run({"convert", solid, "-o", npy}).status, 0);
   ASSERT_EQ(shell("gzip -k " + csv).status, 0);
   for (const std::string& input : {csv, csv + " " + other, npy, csv + ".gz", solid + " " + npy,
-                                   npy + " --dimension 2 --precision float"})
+                                   csv + " --precision float", npy + " --dimension 2"})
     for (const std::string name : {"pairs.csv", "pairs.npy"}) {
       const std::string expected = folder.file("expected_" + name);
       ASSERT_EQ(shell("$BROADSIDE pairs " + input + " -o " + expected).status, 0);
