@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +35,7 @@ struct Wishes {
   std::size_t ranks = 1000;
   std::size_t sample_boxes = 1'000'000;  // of a scene whose number of boxes can be chosen
   std::size_t drawn = 10'000'000;
-  std::size_t sampled_per_rank = 64;
+  std::size_t sampled_per_rank = 256;
   double balanced = 1.2;
 };
 
@@ -105,7 +106,8 @@ std::vector<Box<D>> drawn_from(const Population<D>& population, std::size_t coun
 
 /// What a partition of the drawn boxes costs.
 struct Loads {
-  double boxes = 0;   // largest over mean
+  double cost = 0;    // largest over mean, of Partition::cost()
+  double boxes = 0;   // likewise
   double pairs = 0;   // likewise
   double copies = 0;  // parts a box
 };
@@ -113,13 +115,18 @@ struct Loads {
 template <int D>
 Loads loads_of(const Population<D>& population, const std::vector<Box<D>>& boxes,
                const Partition<D>& partition) {
-  std::vector<double> loads(partition.size());
-  for (const Box<D>& box : boxes) partition.for_each_part(box, [&](std::size_t part) { loads[part] += 1; });
-  double touches = 0;
-  for (const double load : loads) touches += load;
+  std::vector<double> touches(partition.size());
+  for (const Box<D>& box : boxes) partition.for_each_part(box, [&](std::size_t part) { touches[part] += 1; });
   const std::vector<double> pairs = population.pairs_by_part(
       partition.size(), [&](const Point<D>& place) { return partition.owner(place); });
-  return {imbalance(loads), imbalance(pairs), touches / static_cast<double>(boxes.size())};
+  // Per box drawn, and per pair of a box of the sample.
+  std::vector<double> costs(partition.size());
+  const double pair_weight = population.pairs_per_box() * static_cast<double>(boxes.size()) /
+                             std::max(1.0, std::accumulate(pairs.begin(), pairs.end(), 0.0));
+  for (std::size_t part = 0; part < costs.size(); ++part)
+    costs[part] = touches[part] + Partition<D>::cost(0, 1) * pair_weight * pairs[part];
+  const double all = std::accumulate(touches.begin(), touches.end(), 0.0);
+  return {imbalance(costs), imbalance(touches), imbalance(pairs), all / static_cast<double>(boxes.size())};
 }
 
 /// Cuts as Sedona's KDBTreePartitioner makes them: each at the median minimum of the sampled boxes, across
@@ -209,7 +216,7 @@ void simulate(const lab::NamedScene& named, const Wishes& wishes, lab::Columns& 
       sampled *= 4;
       partition = Partition<D>(drawn_from(population, sampled, 3 + steps), wishes.ranks, boxes);
       loads = loads_of(population, drawn, partition);
-    } while (++steps < 4 && std::max(loads.boxes, loads.pairs) > wishes.balanced);
+    } while (++steps < 4 && loads.cost > wishes.balanced);
     // Sedona samples a hundredth. More than a million would change nothing here.
     const std::size_t hundredth = std::min<std::uint64_t>(boxes / 100, 1'000'000);
     const Loads median =
@@ -226,9 +233,9 @@ void simulate(const lab::NamedScene& named, const Wishes& wishes, lab::Columns& 
                               sizeof(std::uint64_t);
     columns.add({named.spec.text(), fmt::format("{}D", D), fmt::format("{:.0e}", static_cast<double>(boxes)),
                  lab::rounded(population.pairs_per_box()), std::to_string(steps),
-                 lab::grouped(sampled / wishes.ranks), lab::rounded(loads.boxes), lab::rounded(loads.pairs),
-                 lab::rounded(loads.copies), lab::whole(sent), lab::bytes(memory), lab::rounded(median.boxes),
-                 lab::rounded(median.pairs), lab::rounded(median.copies),
+                 lab::grouped(sampled / wishes.ranks), lab::rounded(loads.cost), lab::rounded(loads.boxes),
+                 lab::rounded(loads.pairs), lab::rounded(loads.copies), lab::whole(sent), lab::bytes(memory),
+                 lab::rounded(median.boxes), lab::rounded(median.pairs), lab::rounded(median.copies),
                  lab::rounded(ranks_per_query(drawn, partition))});
   }
 }
@@ -249,8 +256,7 @@ int run(int count, char** arguments) {
   app.add_option("--sample", wishes.sampled_per_rank, "boxes sampled by each rank in the first step")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--balanced", wishes.balanced,
-                 "largest over mean, of boxes and of pairs, at which no step follows")
+  app.add_option("--balanced", wishes.balanced, "largest cost over the mean at which no step follows")
       ->capture_default_str();
   try {
     app.parse(count, arguments);
@@ -261,10 +267,10 @@ int run(int count, char** arguments) {
   const lab::Build build = lab::this_build();
   fmt::print("{} ranks, {} boxes drawn; {}, {}, {}, {}\n", lab::grouped(wishes.ranks),
              lab::grouped(wishes.drawn), machine.cpu, build.compiler, build.revision, lab::today());
-  lab::Columns columns("<<>>>>>>>>>>>>>");
-  columns.add({"scene", "", "boxes", "pairs a box", "steps", "sampled a rank", "boxes, largest/mean", "pairs",
-               "parts a box", "bytes sent a box", "memory a rank", "Sedona: boxes", "pairs", "parts a box",
-               "ArborX: ranks a query"});
+  lab::Columns columns("<<>>>>>>>>>>>>>>>");
+  columns.add({"scene", "", "boxes", "pairs a box", "steps", "sampled a rank", "cost, largest/mean", "boxes",
+               "pairs", "parts a box", "bytes sent a box", "memory a rank", "Sedona: cost", "boxes", "pairs",
+               "parts a box", "ArborX: ranks a query"});
   for (const std::string& name : wishes.scenes) {
     const lab::NamedScene named = lab::find_scene(name);
     if (named.scene.has_dimension(2)) simulate<2>(named, wishes, columns);

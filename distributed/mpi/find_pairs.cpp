@@ -13,7 +13,6 @@
 #include "broadside/partition.hpp"
 
 #include "communicator.hpp"
-#include "core/sort_pairs.hpp"
 #include "cuts.hpp"
 
 namespace broadside::mpi {
@@ -95,12 +94,6 @@ class OwnedPairs final : public PairSink {
   std::vector<std::vector<P>> owned_;
 };
 
-void sort_pairs(std::vector<Pair>& pairs) {
-  std::vector<Pair> scratch;
-  core::sort(pairs, scratch);
-}
-void sort_pairs(std::vector<LargePair>& pairs) { std::sort(pairs.begin(), pairs.end()); }
-
 void hand_on(std::span<const LargePair> pairs, const PairCallback& take) {
   if (!pairs.empty()) take(pairs);
 }
@@ -161,7 +154,10 @@ class Join {
     std::vector<P> pairs = comm_.exchange(std::move(owned)).values;
     statistics_.pair_bytes = comm_.sent_bytes() - statistics_.box_bytes;
     statistics_.pairs = pairs.size();
-    comm_.together([&] { sort_pairs(pairs); });
+    comm_.together([&] {
+      std::vector<P> scratch;
+      sort_pairs(pairs, scratch);
+    });
     comm_.together([&] { hand_on(std::span<const P>(pairs), take); });
     return statistics_;
   }

@@ -12,18 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/out_of_core.hpp"
+#include "broadside/large_pair.hpp"
 #include "broadside/pair.hpp"
 
 #include "blocks.hpp"
 #include "work_folder.hpp"
 
 namespace broadside::out_of_core {
-
-inline void sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) { sort_pairs(pairs, scratch); }
-inline void sort(std::vector<LargePair>& pairs, std::vector<LargePair>&) {
-  std::sort(pairs.begin(), pairs.end());
-}
 
 /// Size of a run's blocks in bytes.
 constexpr std::size_t run_block_bytes = std::size_t{1} << 16;
@@ -63,7 +58,7 @@ class RunWriter {
   /// Writes what has been collected.
   void flush() {
     if (pairs_.empty()) return;
-    out_of_core::sort(pairs_, scratch_);
+    sort_pairs(pairs_, scratch_);
     part_.pairs += pairs_.size();
     part_.runs.push_back(write_run<P>(folder_.pair_file(part_, part_.runs.size()), pairs_));
     pairs_.clear();
@@ -131,7 +126,7 @@ void merge_runs(const std::vector<Run>& runs, std::uint64_t memory,
       heads.pop();
       pool_next(run);
     }
-    sort(pool, scratch);
+    sort_pairs(pool, scratch);
     const auto complete =
         heads.empty() ? pool.end() : std::upper_bound(pool.begin(), pool.end(), heads.top().last);
     visit({pool.data(), static_cast<std::size_t>(complete - pool.begin())});

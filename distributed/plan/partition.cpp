@@ -19,6 +19,9 @@ namespace {
 constexpr std::size_t first_joined = 4096;
 constexpr std::size_t enough_pairs = 4096;
 
+/// Points stay points, however often they are doubled.
+constexpr int max_doublings = 16;
+
 /// What is spread along the axes: a box from its minimum to its maximum, a pair at its place.
 template <int D, typename Real>
 struct Weighted {
@@ -112,7 +115,22 @@ class Cutter {
   std::vector<std::pair<Real, double>> maxima_;
 };
 
-/// The pairs of a sample as what they cost, each at the greater of its two minima.
+/// Twice as large about its centre; unbounded axes stay as they are.
+template <int D, typename Real>
+Box<D, Real> doubled(Box<D, Real> box) {
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    const Real half = (box.max[axis] - box.min[axis]) / 2;
+    if (!std::isfinite(half)) continue;
+    box.min[axis] -= half;
+    box.max[axis] += half;
+  }
+  return box;
+}
+
+/// Adds the estimated cost of all pairs, each at the greater of its two minima.
+///
+/// A thin sample has few pairs, each of which stands for very many. So its boxes are enlarged until they have
+/// enough pairs. Where boxes are spread evenly, twice the extents make 2^D times the pairs.
 template <int D, typename Real>
 void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
   std::vector<Box<D, Real>> joined;
@@ -126,10 +144,17 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
     // Four times the boxes have sixteen times the pairs.
     step = (step + 3) / 4;
   }
-  // With a box in `step`, a pair in its square is seen; and one in boxes / items of these is all there is.
+  double enlargement = 1;  // of a box's volume
+  const bool is_thin = boxes > items.size();
+  for (int doublings = 0; is_thin && doublings < max_doublings && pairs.size() < enough_pairs; ++doublings) {
+    for (Box<D, Real>& box : joined) box = doubled(box);
+    enlargement *= std::size_t{1} << D;
+    pairs = find_pairs(joined, algorithms().front().name);
+  }
+  // Of boxes in every `step`, a square of that in pairs is seen; and the items stand for all boxes.
   const double pair_cost = Partition<D, Real>::cost(0, 1) * static_cast<double>(step) *
                            static_cast<double>(step) * static_cast<double>(boxes) /
-                           static_cast<double>(items.size());
+                           static_cast<double>(items.size()) / enlargement;
   // Some of very many pairs tell as much.
   const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough_pairs));
   for (std::size_t place = 0; place < pairs.size(); place += pair_step) {

@@ -1,15 +1,17 @@
-// A pair of boxes whose numbers need 64 bits: of more boxes than one search takes.
+// Pairs of boxes with 64-bit ids, for sets of more than 2^32 boxes.
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
+#include <vector>
 
 #include "broadside/pair.hpp"
 #include "broadside/sinks.hpp"
 
 namespace broadside {
 
-/// Two boxes by their numbers; what numbers them says whether first < second.
+/// Ids of two boxes, as Pair has them in 32 bits.
 struct LargePair {
   std::uint64_t first;
   std::uint64_t second;
@@ -17,10 +19,14 @@ struct LargePair {
   friend constexpr auto operator<=>(const LargePair&, const LargePair&) = default;
 };
 
-/// One pair's contribution to the hash of a set, as hash(Pair): the same as that where 32 bits hold both
-/// numbers.
+/// Sorts by first, then by second id. `scratch` is for the same call with Pair.
+inline void sort_pairs(std::vector<LargePair>& pairs, std::vector<LargePair>& /* scratch */) {
+  std::sort(pairs.begin(), pairs.end());
+}
+
+/// A pair's contribution to the hash of a set. Equals hash(Pair) where 32 bits hold both ids.
 constexpr std::uint64_t hash(const LargePair& pair) noexcept {
-  const auto low = [](std::uint64_t number) { return BoxId(static_cast<std::uint32_t>(number)); };
+  const auto low = [](std::uint64_t id) { return BoxId(static_cast<std::uint32_t>(id)); };
   const std::uint64_t bits = hash(Pair{low(pair.first), low(pair.second)});
   const std::uint64_t high = (pair.first >> 32) << 32 | pair.second >> 32;
   if (high == 0) return bits;
