@@ -1,7 +1,7 @@
 """broadside.dask.pairs against dask-geopandas' spatial join and DuckDB's range join: verified in the same run, Markdown.
 
-    build/python/tester/bin/python bench/python/cluster.py [--boxes 100000,1000000] [--rounds 5] [--workers 2]
-        [--chunks 8] [--slow 10] [--limit 60]
+    build/python/tester/bin/python bench/python/cluster.py [--boxes 100000,1000000] [--rounds 3] [--workers 2]
+        [--chunks 8] [--slow 8] [--limit 60]
 
 The Dask libraries run on one LocalCluster, a process and a thread for each worker, which holds the boxes already; DuckDB
 has as many threads. All hand their pairs to this process. One whose first call takes longer than --slow seconds is called
@@ -153,10 +153,10 @@ def compare(client: distributed.Client, n: int, options: argparse.Namespace) -> 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--boxes", default="100000,1000000", help="of each of the two sets")
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--chunks", type=int, default=8)
-    parser.add_argument("--slow", type=float, default=10)
+    parser.add_argument("--slow", type=float, default=8)
     parser.add_argument("--limit", type=float, default=60)
     options = parser.parse_args()
     print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, Dask {dask.__version__}, "
