@@ -2,8 +2,15 @@
 #include "broadside/partition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <nanobind/stl/string.h>
 
