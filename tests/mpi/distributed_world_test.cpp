@@ -9,7 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/tracker.hpp"
 
 #include "tests/mpi/ranks.hpp"
 #include "tests/support/model.hpp"
@@ -150,6 +152,47 @@ TEST(DistributedWorld, TellsWhatChanges) {
     play<3, float>(seed, {.algorithm = "bvh", .threads = 2});
     play<2, double>(seed, {.sample = 10});
     play<3, double>(seed);
+  }
+}
+
+bool is_to_fail = false;
+
+/// A tracker that fails when it is told to.
+class FailingTracker final : public PairTracker<2> {
+ private:
+  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    if (is_to_fail) throw std::domain_error("told to fail");
+    update_with(*tracker_, change, begun, ended);
+  }
+
+  std::unique_ptr<PairTracker<2>> tracker_ = make_tracker<2>("brute_force");
+};
+
+TEST(DistributedWorld, TellsAllThatChangedOnceAnUpdateHasFailedOnARank) {
+  register_algorithm({.name = "failing",
+                      .summary = "fails",
+                      .source = "this test",
+                      .finder_2d = [](const Settings&) { return make_finder<2>("brute_force"); },
+                      .tracker_2d = [](const Settings&) { return std::make_unique<FailingTracker>(); }});
+  History<2, float> history(4, {.algorithm = "failing"});
+  for (int frame = 0; frame < 12; ++frame) {
+    for (int i = 0; i < 20; ++i) history.add(drawn<2, float>(history.rng()));
+    for (int i = 0; i < 10; ++i) history.move(history.any(), drawn<2, float>(history.rng()));
+    for (int i = 0; i < 5; ++i) history.remove(history.any());
+    if (frame % 3 == 1) {
+      // Not of rank 0 alone, nor in the same step each time: the first of a world, or after cuts.
+      const int failing = frame % ranks();
+      is_to_fail = rank() == failing;
+      if (is_to_fail)
+        EXPECT_EQ(thrown<std::domain_error>([&] { history.world().update(); }), "told to fail");
+      else
+        EXPECT_THAT(thrown<mpi::RankError>([&] { history.world().update(); }),
+                    HasSubstr("rank " + std::to_string(failing) + ": told to fail"));
+      // And again, in taking over the boxes as they were.
+      EXPECT_THROW(history.world().update(), std::exception);
+      is_to_fail = false;
+    }
+    history.expect_events();
   }
 }
 
