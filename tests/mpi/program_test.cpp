@@ -53,7 +53,8 @@ TEST(MpiProgram, WritesThePairsOfTheProgramByteForByte) {
     for (const std::string name : {"pairs.csv", "pairs.npy"}) {
       const std::string expected = folder.file("expected_" + name);
       ASSERT_EQ(shell("$BROADSIDE pairs " + input + " -o " + expected).status, 0);
-      for (const int ranks : {1, 3}) {
+      // To start ranks takes longer than all else here.
+      for (const int ranks : input == csv ? std::vector{1, 3} : std::vector{3}) {
         const std::string found = folder.file(name);
         const Ended ended = on_ranks(ranks, "$MPI pairs " + input + " -o " + found);
         ASSERT_EQ(ended.status, 0) << ended.errors;
