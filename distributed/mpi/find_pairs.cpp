@@ -119,6 +119,7 @@ std::uint64_t fingerprint(const Options& options, bool is_between) {
   for (const char c : options.algorithm) add(static_cast<unsigned char>(c));
   add(options.threads.value_or(std::numeric_limits<std::size_t>::max()));
   add(options.sample);
+  add(std::uint64_t{options.has_large_ids});
   add(std::uint64_t{D} << 16 | sizeof(Real) << 8 | std::uint64_t{is_between});
   return hash;
 }
@@ -274,7 +275,7 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
                       const PairCallback& pairs, const Options& options) {
   Communicator comm(mpi_comm);
   comm.check_same(fingerprint<D, Real>(options, right != nullptr),
-                  "spec, threads, sample, sets, dimension or type of coordinate");
+                  "spec, threads, sample, size of numbers, sets, dimension or type of coordinate");
   const std::array<BoxView<D, Real>, 2> both{boxes, right == nullptr ? BoxView<D, Real>() : *right};
   const std::span<const BoxView<D, Real>> views = std::span(both).first(right == nullptr ? 1 : 2);
   std::unique_ptr<PairFinder<D, Real>> finder;
@@ -291,7 +292,7 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
     most = std::max(most, counts.back());
     comm.together([&] { ends.push_back(std::move(counts)); });
   }
-  if (most <= most_small_ids)
+  if (most <= most_small_ids && !options.has_large_ids)
     return join<std::uint32_t, Pair>(comm, *finder, views, std::move(ends), pairs, options);
   return join<std::uint64_t, LargePair>(comm, *finder, views, std::move(ends), pairs, options);
 }

@@ -88,6 +88,7 @@ TEST(MpiFindPairs, FindsThePairsOfOneRank) {
       expect_law<D>(boxes);
       expect_law<D>(boxes, {.algorithm = "grid", .threads = 2, .sample = 64});
       expect_law<D>(as_doubles(boxes));
+      expect_law<D>(boxes, {.has_large_ids = true});
     }
   });
 }
@@ -100,6 +101,20 @@ TEST(MpiFindPairs, FindsThePairsBetweenTwoSets) {
     expect_law_between<D>({}, sets[3]);
     expect_law_between<D>(as_doubles(sets[2]), as_doubles(sets[0]));
   });
+}
+
+TEST(MpiFindPairs, FindsThePairsBetweenTwoSetsByLargeNumbers) {
+  const std::vector<std::vector<Box2>> sets = scenes<2>();
+  EXPECT_EQ(mpi::find_pairs(MPI_COMM_WORLD, own_of(Share::evenly, sets[0]),
+                            own_of(Share::some_have_none, sets[2]), {.has_large_ids = true}),
+            own_pairs(Share::evenly, sets[0].size(), find_pairs(sets[0], sets[2])));
+}
+
+TEST(LargePair, HashesAsAPairWhere32BitsHoldIt) {
+  EXPECT_EQ(hash(LargePair{3, UINT32_MAX}), hash(pair(3, UINT32_MAX)));
+  constexpr std::uint64_t high = std::uint64_t{1} << 32;
+  EXPECT_NE(hash(LargePair{high | 3, 9}), hash(pair(3, 9)));
+  EXPECT_NE(hash(LargePair{high | 3, 9}), hash(LargePair{3, high | 9}));
 }
 
 TEST(MpiFindPairs, TakesNoBoxesAndFewBoxes) {

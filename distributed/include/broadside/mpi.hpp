@@ -42,6 +42,10 @@ struct Options {
 
   /// How many boxes of all ranks the cuts are made from; 0: 16,384, or 4,096 a rank where that is more.
   std::size_t sample = 0;
+
+  /// Whether boxes and pairs are sent with numbers of 64 bits although 32 would do. Where there are more
+  /// boxes they always are.
+  bool has_large_ids = false;
 };
 
 /// What a rank did in one find_pairs().
