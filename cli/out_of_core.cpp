@@ -114,6 +114,15 @@ std::filesystem::path work_folder_of(const PairsArguments& arguments) {
   return (has_output ? arguments.output : arguments.files[0]) + ".work";
 }
 
+/// The work folder is removed, or holds nothing but the join's files.
+void check_output(const PairsArguments& arguments, const std::filesystem::path& work) {
+  if (arguments.counts || lab::is_written_directly(arguments.output)) return;
+  const auto folder = std::filesystem::absolute(arguments.output).parent_path();
+  if (std::filesystem::weakly_canonical(folder) == std::filesystem::weakly_canonical(work))
+    throw Unusable(fmt::format("-o {} lies in the work folder {}; expected it elsewhere", arguments.output,
+                               work.string()));
+}
+
 class Progress {
  public:
   void operator()(OutOfCoreStage stage, std::uint64_t done, std::uint64_t total) {
@@ -192,8 +201,10 @@ bool has_out_of_core() noexcept { return true; }
 Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) {
   OutOfCoreOptions options;
   options.folder = work_folder_of(arguments);
+  check_output(arguments, options.folder);
   options.memory = read_memory(arguments.memory);
   options.algorithm = entry.spec.text();
+  options.counts_only = arguments.counts;
   options.threads = make_finder<2>(options.algorithm)->workers().threads;
   std::vector<FileToRead> files;
   std::vector<int> dimensions;

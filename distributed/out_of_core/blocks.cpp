@@ -3,7 +3,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -21,14 +23,6 @@ struct Header {
 /// No block is larger. A header that says otherwise is damaged, and must not make us allocate that much.
 constexpr std::uint64_t max_block_bytes = std::uint64_t{1} << 30;
 
-std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std::byte> more) {
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  XXH3_64bits_update(&state, bytes.data(), bytes.size());
-  XXH3_64bits_update(&state, more.data(), more.size());
-  return XXH3_64bits_digest(&state);
-}
-
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -40,28 +34,49 @@ bool write(std::FILE* file, const void* bytes, std::size_t count) {
 
 }  // namespace
 
+std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std::byte> more) {
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  XXH3_64bits_update(&state, bytes.data(), bytes.size());
+  XXH3_64bits_update(&state, more.data(), more.size());
+  return XXH3_64bits_digest(&state);
+}
+
 void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::byte> more) {
   const auto refuse = [this] {
     throw OutOfCoreError(path_.string() + ": cannot be written: " + std::strerror(errno) +
                          "; finished parts are kept: make room, then run the same command again to resume");
   };
-  const File file(std::fopen(path_.c_str(), blocks_ == 0 ? "wb" : "ab"));
+  File file(std::fopen(path_.c_str(), blocks_ == 0 ? "wb" : "ab"));
   if (file == nullptr) refuse();
   std::setvbuf(file.get(), nullptr, _IONBF, 0);
   const Header header{bytes.size() + more.size(), checksum_of(bytes, more)};
   if (!write(file.get(), &header, sizeof(header)) || !write(file.get(), bytes.data(), bytes.size()) ||
-      !write(file.get(), more.data(), more.size()))
+      !write(file.get(), more.data(), more.size()) ||
+      std::fclose(file.release()) != 0)  // where quotas and network file systems report
     refuse();
   ++blocks_;
 }
 
 bool BlockReader::next(std::vector<std::byte>& bytes) {
-  if (left_ == 0) return false;
+  if (is_at_end_) return false;
   const auto refuse = [this](const char* found) {
     throw CorruptFile(path_.string() + ": " + found + " at byte " + std::to_string(offset_));
   };
+  if (left_ == 0) {
+    is_at_end_ = true;
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path_, error);
+    // A file without a block was never written.
+    if (error ? offset_ > 0 : size != offset_) refuse("has no end");
+    return false;
+  }
   const File file(std::fopen(path_.c_str(), "rb"));
-  if (file == nullptr) refuse("cannot be opened");
+  if (file == nullptr) {
+    // What is gone can be made again; for others, such as too many open files, that is no remedy.
+    if (errno == ENOENT) refuse("is missing");
+    throw OutOfCoreError(path_.string() + ": cannot be read: " + std::strerror(errno));
+  }
   std::setvbuf(file.get(), nullptr, _IONBF, 0);
   Header header;
   if (fseeko(file.get(), static_cast<off_t>(offset_), SEEK_SET) != 0 ||

@@ -17,6 +17,9 @@ class CorruptFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// XXH3 of `bytes` followed by `more`.
+std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std::byte> more = {});
+
 /// Appends blocks to a file. The file is closed between blocks, so any number of writers can exist at once.
 /// Throws OutOfCoreError if writing fails.
 class BlockWriter {
@@ -42,13 +45,15 @@ class BlockReader {
   /// `blocks` is the number of blocks that the file must have.
   BlockReader(std::filesystem::path path, std::uint64_t blocks) : path_(std::move(path)), left_(blocks) {}
 
-  /// Replaces `bytes` by the next block; false at the end. Throws CorruptFile.
+  /// Replaces `bytes` by the next block; false at the end. Throws CorruptFile, also where the file goes on
+  /// behind its last block; OutOfCoreError where it cannot be read.
   bool next(std::vector<std::byte>& bytes);
 
  private:
   std::filesystem::path path_;
   std::uint64_t left_;
   std::uint64_t offset_ = 0;
+  bool is_at_end_ = false;
 };
 
 }  // namespace broadside::out_of_core

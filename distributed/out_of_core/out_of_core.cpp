@@ -6,7 +6,9 @@
 #include "broadside/out_of_core.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "broadside/error.hpp"
@@ -41,34 +43,38 @@ class OutOfCoreJoin<D, Real>::Work {
   Work(std::vector<BoxSource<D, Real>*> sources, OutOfCoreOptions options)
       : sources_(std::move(sources)),
         options_(checked(std::move(options))),
-        folder_(options_.folder),
         finder_(finder_of(options_)),
-        part_join_(folder_, *finder_, options_.memory, sources_.size()) {
-    const std::string kind = std::to_string(D) + "D " + (sizeof(Real) == 4 ? "float" : "double") + " " +
-                             std::to_string(sources_.size());
-    if (std::optional<Manifest> found = folder_.read()) {
+        folder_(options_.folder),
+        part_join_(folder_, *finder_, options_.memory, sources_.size(), options_.counts_only) {
+    const std::string kind = std::to_string(D) + "D " + (sizeof(Real) == 4 ? "float" : "double") +
+                             (sources_.size() == 2 ? ", two sources" : "") +
+                             (options_.has_large_ids ? ", 64-bit ids" : "") +
+                             (options_.counts_only ? ", counts only" : "");
+    const std::string identity = out_of_core::identity_text(options_.identity);
+    if (std::optional<Manifest> found = folder_.read(D)) {
       manifest_ = std::move(*found);
-      is_read_ = true;
-      if (manifest_.kind != kind || manifest_.identity != options_.identity)
-        throw OutOfCoreError(folder_.path().string() + ": holds the join of " + manifest_.identity + " (" +
-                             manifest_.kind + "); expected " + options_.identity + " (" + kind +
+      const bool is_same = manifest_.kind == kind && manifest_.identity == identity;
+      if (manifest_.is_read && (!is_same || identity.empty()))
+        throw OutOfCoreError(folder_.path().string() + ": holds the join of " + named(manifest_.identity) +
+                             " (" + manifest_.kind + "); expected " + named(identity) + " (" + kind +
                              "). Name another folder, or remove this one to start over");
+      if (!manifest_.is_read) manifest_ = {};
     }
     manifest_.kind = kind;
-    manifest_.identity = options_.identity;
+    manifest_.identity = identity;
+    folder_.write(manifest_);
     folder_.remove_others(manifest_);
   }
 
+  ~Work() {
+    // There is nothing to resume.
+    if (!manifest_.is_read) folder_.remove();
+  }
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
   void run() {
-    if (!is_read_) {
-      try {
-        read_all();
-      } catch (...) {
-        // What was written is of no use, and may be what filled the disk.
-        folder_.remove_others(manifest_);
-        throw;
-      }
-    }
+    if (!manifest_.is_read) read_all();
     std::uint64_t done = 0;
     for (std::size_t place = 0; place < manifest_.parts.size();) {
       const Part& part = manifest_.parts[place];
@@ -88,6 +94,7 @@ class OutOfCoreJoin<D, Real>::Work {
   const Manifest& manifest() const noexcept { return manifest_; }
 
   std::uint64_t pairs() const {
+    check_is_finished();
     std::uint64_t pairs = 0;
     for (const Part& part : manifest_.parts) pairs += part.pairs;
     return pairs;
@@ -98,21 +105,30 @@ class OutOfCoreJoin<D, Real>::Work {
     if (manifest_.has_large_ids != std::is_same_v<P, LargePair>)
       throw InvalidFrame("OutOfCoreJoin: ids of " + std::string(manifest_.has_large_ids ? "64" : "32") +
                          " bits; expected a visitor of " + (manifest_.has_large_ids ? "LargePair" : "Pair"));
-    check_runs();
-    std::vector<Run> runs;
-    for (const Part& part : manifest_.parts)
-      for (std::size_t run = 0; run < part.runs.size(); ++run)
-        runs.push_back({folder_.pair_file(part, run), part.runs[run]});
-    std::uint64_t done = 0;
+    if (options_.counts_only)
+      throw std::logic_error(
+          "OutOfCoreJoin: pairs were counted only, and cannot be visited; expected counts_only = false");
     const std::uint64_t all = pairs();
+    check_runs();
+    std::uint64_t done = 0;
     const std::function<void(std::span<const P>)> counted = [&](std::span<const P> pairs) {
       visit(pairs);
       report(OutOfCoreStage::sorting, done += pairs.size(), all);
     };
-    if (is_sorted)
-      out_of_core::merge_runs<P>(runs, options_.memory / 2, counted);
-    else
-      out_of_core::read_runs<P>(runs, counted);
+    try {
+      std::vector<Run> runs;
+      for (const Part& part : manifest_.parts) {
+        for (std::size_t run = 0; run < part.runs.size(); ++run)
+          runs.push_back({folder_.pair_file(part, run), part.runs[run]});
+        // Sorted within each part: the same order for any number of threads.
+        if (!is_sorted)
+          out_of_core::merge_runs<P>(folder_, std::exchange(runs, {}), options_.memory / 2, counted);
+      }
+      if (is_sorted) out_of_core::merge_runs<P>(folder_, std::move(runs), options_.memory / 2, counted);
+    } catch (const CorruptFile& corrupt) {
+      throw OutOfCoreError(std::string(corrupt.what()) +
+                           ", where it was whole before; expected a disk that keeps what it is given");
+    }
   }
 
   void remove_folder() { folder_.remove(); }
@@ -132,6 +148,17 @@ class OutOfCoreJoin<D, Real>::Work {
     workers.threads = options.threads;
     finder->set_workers(workers);
     return finder;
+  }
+
+  static std::string named(const std::string& identity) {
+    return identity.empty() ? "boxes without an identity" : identity;
+  }
+
+  void check_is_finished() const {
+    const bool is_finished = manifest_.is_read && std::ranges::all_of(manifest_.parts, [](const Part& part) {
+                               return part.is_joined;
+                             });
+    if (!is_finished) throw std::logic_error("OutOfCoreJoin: asked for pairs before run() has finished");
   }
 
   void report(OutOfCoreStage stage, std::uint64_t done, std::uint64_t total) const {
@@ -198,8 +225,7 @@ class OutOfCoreJoin<D, Real>::Work {
     const bool is_between = sources_.size() == 2;
     std::erase_if(parts, [&](const Part& part) {
       if (part.boxes[0] > 0 && (!is_between || part.boxes[1] > 0)) return false;
-      for (std::size_t side = 0; side < sources_.size(); ++side)
-        std::filesystem::remove(folder_.box_file(part, side));
+      for (std::size_t side = 0; side < sources_.size(); ++side) folder_.remove_boxes(part, side);
       return true;
     });
   }
@@ -219,7 +245,7 @@ class OutOfCoreJoin<D, Real>::Work {
       std::uint64_t first = 0;
       sources_[side]->rewind();
       while (sources_[side]->next(piece)) {
-        check(piece, first);
+        check(piece, first, side);
         distributor.add(piece, [first](std::size_t i) { return first + i; });
         first += piece.size();
         report(OutOfCoreStage::reading, done += piece.size(), estimated);
@@ -231,9 +257,11 @@ class OutOfCoreJoin<D, Real>::Work {
     manifest_.has_large_ids =
         options_.has_large_ids || std::max(manifest_.boxes[0], manifest_.boxes[1]) > max_small;
     drop_empty(parts);
-    manifest_.parts = std::move(parts);
-    folder_.write(manifest_);
-    is_read_ = true;
+    Manifest read = manifest_;
+    read.parts = std::move(parts);
+    read.is_read = true;
+    folder_.write(read);
+    manifest_ = std::move(read);
   }
 
   /// Cuts made from the first pieces of either source. Where these are not typical of the others, parts come
@@ -264,7 +292,7 @@ class OutOfCoreJoin<D, Real>::Work {
     return Partition<D, Real>(thinned(std::move(sample)), parts);
   }
 
-  /// At most so many boxes that making the cuts costs little beside reading.
+  /// Limits the sample, so that making the cuts costs little beside reading.
   static std::vector<Box<D, Real>> thinned(std::vector<Box<D, Real>> sample) {
     constexpr std::size_t most = std::size_t{1} << 16;
     if (sample.size() <= most) return sample;
@@ -273,13 +301,14 @@ class OutOfCoreJoin<D, Real>::Work {
     return some;
   }
 
-  void check(std::span<const Box<D, Real>> boxes, std::uint64_t first) const {
+  void check(std::span<const Box<D, Real>> boxes, std::uint64_t first, std::size_t side) const {
+    const char* const set = sources_.size() == 1 ? "box " : side == 0 ? "left box " : "right box ";
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (is_present(boxes[i]) || is_absent(boxes[i])) continue;
       const std::uint64_t id = first + i;
       throw InvalidInput(
           static_cast<std::size_t>(id),
-          "box " + std::to_string(id) + " has a NaN or min > max; expected min <= max, or the absent box");
+          set + std::to_string(id) + " has a NaN or min > max; expected min <= max, or the absent box");
     }
   }
 
@@ -316,6 +345,7 @@ class OutOfCoreJoin<D, Real>::Work {
     const Region region = region_of(part);
     const std::array<std::uint64_t, 2> boxes_before = part.boxes;
     for (std::size_t side = 0; side < sources_.size(); ++side) {
+      folder_.remove_boxes(part, side);
       BoxFileWriter<D, Real> writer(folder_.box_file(part, side), std::size_t{1} << 15);
       std::vector<Box<D, Real>> piece;
       std::uint64_t first = 0;
@@ -414,31 +444,34 @@ class OutOfCoreJoin<D, Real>::Work {
     manifest_.parts[place] = std::move(part);
     folder_.write(manifest_);
     for (std::size_t side = 0; side < sources_.size(); ++side)
-      std::filesystem::remove(folder_.box_file(manifest_.parts[place], side));
+      folder_.remove_boxes(manifest_.parts[place], side);
   }
 
   /// Reads all pairs once, so that corrupt runs are made again before any pair is visited.
   void check_runs() {
+    for (std::size_t place = 0; place < manifest_.parts.size(); ++place)
+      with_recovery(place, [&] {
+        if (!manifest_.parts[place].is_joined) join(place);
+        check_runs_of(manifest_.parts[place]);
+      });
+  }
+
+  void check_runs_of(const Part& part) const {
     std::vector<std::byte> bytes;
-    for (std::size_t place = 0; place < manifest_.parts.size(); ++place) {
-      try {
-        const Part& part = manifest_.parts[place];
-        for (std::size_t run = 0; run < part.runs.size(); ++run)
-          for (BlockReader reader(folder_.pair_file(part, run), part.runs[run]); reader.next(bytes);)
-            continue;
-      } catch (const CorruptFile& corrupt) {
-        make_again(place, corrupt);
-        join(place);
-      }
-    }
+    std::uint64_t found = 0;
+    for (std::size_t run = 0; run < part.runs.size(); ++run)
+      for (BlockReader reader(folder_.pair_file(part, run), part.runs[run]); reader.next(bytes);)
+        found += bytes.size() / (manifest_.has_large_ids ? sizeof(LargePair) : sizeof(Pair));
+    if (found != part.pairs)
+      throw CorruptFile(folder_.path().string() + ": part " + part.name + " has " + std::to_string(found) +
+                        " pairs instead of " + std::to_string(part.pairs));
   }
 
   std::vector<BoxSource<D, Real>*> sources_;
   OutOfCoreOptions options_;
+  std::unique_ptr<PairFinder<D, Real>> finder_;
   WorkFolder folder_;
   Manifest manifest_;
-  bool is_read_ = false;
-  std::unique_ptr<PairFinder<D, Real>> finder_;
   PartJoin<D, Real> part_join_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -21,36 +22,41 @@
 namespace broadside::out_of_core {
 
 /// Size of a run's blocks in bytes.
-constexpr std::size_t run_block_bytes = std::size_t{1} << 16;
+constexpr std::size_t run_block_bytes = std::size_t{1} << 15;
 
-/// Writes sorted pairs as a run, and returns its number of blocks.
+/// Appends sorted pairs to a run.
 template <typename P>
-std::uint64_t write_run(const std::filesystem::path& path, std::span<const P> pairs) {
-  BlockWriter writer(path);
+void append_blocks(BlockWriter& writer, std::span<const P> pairs) {
   constexpr std::size_t pairs_per_block = run_block_bytes / sizeof(P);
   while (!pairs.empty()) {
     const std::span<const P> block = pairs.first(std::min(pairs.size(), pairs_per_block));
     writer.append(std::as_bytes(block));
     pairs = pairs.subspan(block.size());
   }
-  return writer.blocks();
 }
 
 /// Collects the pairs of a part; sorts and writes them as a run whenever they fill the memory.
 template <typename P>
 class RunWriter {
  public:
-  /// `memory` in bytes, half of which is for sorting.
-  RunWriter(const WorkFolder& folder, Part& part, std::uint64_t memory)
-      : folder_(folder), part_(part), max_pairs_(std::max<std::uint64_t>(memory / (2 * sizeof(P)), 4096)) {
+  /// `memory` in bytes, half of which is for sorting. With `counts_only` pairs are counted and not kept.
+  RunWriter(const WorkFolder& folder, Part& part, std::uint64_t memory, bool counts_only)
+      : folder_(folder),
+        part_(part),
+        max_pairs_(std::max<std::uint64_t>(memory / (2 * sizeof(P)), 4096)),
+        counts_only_(counts_only) {
     part_.runs.clear();
     part_.pairs = 0;
-    pairs_.reserve(max_pairs_);
+    if (!counts_only_) pairs_.reserve(max_pairs_);
   }
 
   /// May be called by several threads at once.
   void add(std::span<const P> pairs) {
     const std::lock_guard lock(mutex_);
+    if (counts_only_) {
+      part_.pairs += pairs.size();
+      return;
+    }
     if (pairs_.size() + pairs.size() > max_pairs_) flush();
     pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
   }
@@ -60,7 +66,9 @@ class RunWriter {
     if (pairs_.empty()) return;
     sort_pairs(pairs_, scratch_);
     part_.pairs += pairs_.size();
-    part_.runs.push_back(write_run<P>(folder_.pair_file(part_, part_.runs.size()), pairs_));
+    BlockWriter writer(folder_.pair_file(part_, part_.runs.size()));
+    append_blocks<P>(writer, pairs_);
+    part_.runs.push_back(writer.blocks());
     pairs_.clear();
   }
 
@@ -68,6 +76,7 @@ class RunWriter {
   const WorkFolder& folder_;
   Part& part_;
   std::size_t max_pairs_;
+  bool counts_only_;
   std::mutex mutex_;
   std::vector<P> pairs_;
   std::vector<P> scratch_;
@@ -78,23 +87,14 @@ struct Run {
   std::uint64_t blocks;
 };
 
-/// Visits the pairs of one run after the other.
-template <typename P>
-void read_runs(const std::vector<Run>& runs, const std::function<void(std::span<const P>)>& visit) {
-  std::vector<std::byte> bytes;
-  for (const Run& run : runs)
-    for (BlockReader reader(run.path, run.blocks); reader.next(bytes);)
-      visit({reinterpret_cast<const P*>(bytes.data()), bytes.size() / sizeof(P)});
-}
-
 /// Visits the pairs of all runs in ascending order, in about `memory` bytes, or in a few blocks of each run
 /// where that is more.
 ///
 /// Reads blocks into a pool, always the next block of the run whose last pooled pair is the lowest. Every
 /// pair up to that one is then in the pool: these are sorted and visited.
 template <typename P>
-void merge_runs(const std::vector<Run>& runs, std::uint64_t memory,
-                const std::function<void(std::span<const P>)>& visit) {
+void merge_at_once(std::span<const Run> runs, std::uint64_t memory,
+                   const std::function<void(std::span<const P>)>& visit) {
   struct Head {
     P last;  // the last pooled pair of the run
     std::size_t run;
@@ -107,9 +107,10 @@ void merge_runs(const std::vector<Run>& runs, std::uint64_t memory,
   std::vector<std::byte> bytes;
   const auto pool_next = [&](std::size_t run) {
     if (!readers[run].next(bytes)) return;
-    const std::span<const P> block(reinterpret_cast<const P*>(bytes.data()), bytes.size() / sizeof(P));
-    pool.insert(pool.end(), block.begin(), block.end());
-    heads.push({block.back(), run});
+    const std::size_t before = pool.size();
+    pool.resize(before + bytes.size() / sizeof(P));
+    std::memcpy(pool.data() + before, bytes.data(), (pool.size() - before) * sizeof(P));
+    heads.push({pool.back(), run});
   };
   // Half of the memory is for sorting. Pairs that stay in the pool are sorted again, so the pool is several
   // times as large as what can stay.
@@ -132,6 +133,36 @@ void merge_runs(const std::vector<Run>& runs, std::uint64_t memory,
     visit({pool.data(), static_cast<std::size_t>(complete - pool.begin())});
     pool.erase(pool.begin(), complete);
   }
+}
+
+/// The most runs that are merged at once in this much memory.
+constexpr std::size_t max_fan_in(std::uint64_t memory) {
+  return std::max<std::size_t>(4, static_cast<std::size_t>(memory / (8 * run_block_bytes)));
+}
+
+/// Visits the pairs of all runs in ascending order, in about `memory` bytes. Where there are too many runs
+/// for that, first merges some of them into longer ones in the work folder.
+template <typename P>
+void merge_runs(const WorkFolder& folder, std::vector<Run> runs, std::uint64_t memory,
+                const std::function<void(std::span<const P>)>& visit) {
+  const std::size_t fan_in = max_fan_in(memory);
+  std::vector<std::filesystem::path> merged;
+  while (runs.size() > fan_in) {
+    // No more than are needed, so that what is left can be merged at once.
+    const std::size_t some = std::min(fan_in, runs.size() - fan_in + 1);
+    merged.push_back(folder.merged_file(merged.size()));
+    BlockWriter writer(merged.back());
+    const std::span<const Run> first = std::span<const Run>(runs).first(some);
+    merge_at_once<P>(first, memory, [&](std::span<const P> pairs) { append_blocks(writer, pairs); });
+    std::error_code error;
+    for (const Run& run : first)
+      if (std::ranges::find(merged, run.path) != merged.end()) std::filesystem::remove(run.path, error);
+    runs.erase(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(some));
+    runs.push_back({merged.back(), writer.blocks()});
+  }
+  merge_at_once<P>(runs, memory, visit);
+  std::error_code error;
+  for (const std::filesystem::path& file : merged) std::filesystem::remove(file, error);
 }
 
 }  // namespace broadside::out_of_core

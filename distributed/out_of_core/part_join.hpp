@@ -98,9 +98,14 @@ class PartJoin {
  public:
   using Region = typename Partition<D, Real>::Region;
 
-  /// `memory` in bytes. Boxes come from one source or from two.
-  PartJoin(const WorkFolder& folder, PairFinder<D, Real>& finder, std::uint64_t memory, std::size_t sources)
-      : folder_(folder), finder_(finder), memory_(memory), is_between_(sources == 2) {}
+  /// `memory` in bytes. Boxes come from one source or from two. With `counts_only` no pairs are kept.
+  PartJoin(const WorkFolder& folder, PairFinder<D, Real>& finder, std::uint64_t memory, std::size_t sources,
+           bool counts_only)
+      : folder_(folder),
+        finder_(finder),
+        memory_(memory),
+        is_between_(sources == 2),
+        counts_only_(counts_only) {}
 
   /// How many boxes a part may have to be joined in one search. Half of the memory is for the boxes and
   /// their search; a quarter is for pairs.
@@ -116,7 +121,7 @@ class PartJoin {
   /// Throws CorruptFile and OutOfCoreError.
   template <typename P>
   void join(Part& part, const Region& region) {
-    RunWriter<P> runs(folder_, part, memory_ / 4);
+    RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
     const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
     const auto room = [&](std::size_t side) {
@@ -169,6 +174,7 @@ class PartJoin {
   PairFinder<D, Real>& finder_;
   std::uint64_t memory_;
   bool is_between_;
+  bool counts_only_;
 };
 
 }  // namespace broadside::out_of_core

@@ -26,17 +26,19 @@ struct Part {
 
 /// Records what is finished. It is replaced as a whole after each step.
 struct Manifest {
-  std::string kind;      ///< dimension, precision and number of sources
+  std::string kind;      ///< dimension, precision, number of sources, and what is kept of pairs
   std::string identity;  ///< OutOfCoreOptions::identity
+  bool is_read = false;  ///< all boxes are in the files of parts
   std::array<std::uint64_t, 2> boxes{};
   bool has_large_ids = false;
   std::vector<Part> parts;
 };
 
-/// For one thread at a time. All members throw OutOfCoreError.
+/// For one thread at a time. Members throw OutOfCoreError.
 class WorkFolder {
  public:
-  /// Creates the folder if there is none, and locks it against other processes until destruction.
+  /// Creates the folder if there is none, and locks it against other processes until destruction. Refuses a
+  /// folder that holds something else than a join.
   explicit WorkFolder(std::filesystem::path path);
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
@@ -44,8 +46,8 @@ class WorkFolder {
 
   const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Reads the manifest; empty in a new folder.
-  std::optional<Manifest> read() const;
+  /// Reads the manifest, whose regions have D bounds; empty in a new folder.
+  std::optional<Manifest> read(std::size_t dimension) const;
 
   /// Replaces the manifest atomically.
   void write(const Manifest& manifest) const;
@@ -53,15 +55,26 @@ class WorkFolder {
   std::filesystem::path box_file(const Part& part, std::size_t side) const;
   std::filesystem::path pair_file(const Part& part, std::size_t run) const;
 
+  /// The file of a run that several runs were merged into.
+  std::filesystem::path merged_file(std::size_t number) const;
+
   /// Removes the files that `manifest` does not need: what a killed join left unfinished.
   void remove_others(const Manifest& manifest) const;
 
+  /// Removes a part's file of boxes, if there is one.
+  void remove_boxes(const Part& part, std::size_t side) const;
+
   /// Removes all files of the join, and the folder if it is then empty.
-  void remove();
+  void remove() noexcept;
 
  private:
+  void lock();
+
   std::filesystem::path path_;
   int lock_ = -1;
 };
+
+/// An identity as the manifest has it: printable ASCII, other bytes as %ff.
+std::string identity_text(const std::string& identity);
 
 }  // namespace broadside::out_of_core

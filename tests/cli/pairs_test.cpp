@@ -100,6 +100,34 @@ TEST(PairsVerb, GoesOnWithAJoinThatWasKilled) {
   EXPECT_FALSE(std::filesystem::exists(work));
 }
 
+TEST(PairsVerb, LeavesOthersFilesInAWorkFolderAlone) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("scene.boxes", four_boxes);
+  const std::string foreign = folder.put("my.pairs", "mine");
+  const std::string folder_path = std::filesystem::path(file).parent_path();
+  expect_refused("pairs", {{{file, "--format", "csv", "--memory", "1G", "--work", folder_path},
+                            {"holds ", "expected an empty folder"}}});
+  EXPECT_EQ(text_of(file), four_boxes);
+  EXPECT_EQ(text_of(foreign), "mine");
+  const std::string work = folder.file("work");
+  expect_refused("pairs",
+                 {{{file, "--format", "csv", "--memory", "1G", "--work", work, "-o", work + "/pairs.csv"},
+                   {"lies in the work folder"}}});
+}
+
+TEST(PairsVerb, ReadsAFileWithinALimitOfMemoryWhateverItsNameIs) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("b\xff.csv", four_boxes);
+  EXPECT_EQ(run({"pairs", file, "--memory", "1G"}).output, run({"pairs", file}).output);
+}
+
+TEST(PairsVerb, LeavesNoWorkFolderBehindWhereBoxesCannotBeRead) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes + "1,2,nan,3\n");
+  EXPECT_NE(run({"pairs", file, "--memory", "1G"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(file + ".work"));
+}
+
 TEST(PairsVerb, SaysWhatALimitOfMemoryDoesNotGoWith) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);
@@ -114,9 +142,9 @@ TEST(PairsVerb, SaysWhatALimitOfMemoryDoesNotGoWith) {
   expect_refused("pairs", {{{file + ".gz", "--memory", "1G"}, {"is compressed", "read again"}}});
   const std::string work = folder.file("w");
   std::filesystem::create_directory(work);
-  EXPECT_EQ(shell("cd " + work + " && flock lock sh -c 'touch held; sleep 100' & while ! test -e " + work +
-                  "/held; do sleep 0.01; done; $BROADSIDE pairs " + file + " --memory 1G --work " + work +
-                  "; status=$?; kill $!; exit $status")
+  EXPECT_EQ(shell("cd " + work + " && flock join.lock sh -c 'touch ../held; sleep 100' & while ! test -e " +
+                  work + "/../held; do sleep 0.01; done; $BROADSIDE pairs " + file + " --memory 1G --work " +
+                  work + "; status=$?; kill $!; exit $status")
                 .status,
             2);
 }

@@ -46,8 +46,9 @@ enum class OutOfCoreStage : std::uint8_t {
 };
 
 struct OutOfCoreOptions {
-  /// Work folder for parts and pairs; created if missing. It needs the size of the boxes and 4 bytes a box, a
-  /// few percent more for boxes on cuts, and 8 bytes a pair (16 with large ids).
+  /// Work folder for parts and pairs; created if missing, and refused if it holds anything else. It needs the
+  /// size of the boxes and 4 bytes a box, a few percent more for boxes on cuts, and 8 bytes a pair (16 with
+  /// large ids).
   std::filesystem::path folder;
 
   /// Limit of the memory that the join allocates, in bytes; at least min_memory.
@@ -58,8 +59,11 @@ struct OutOfCoreOptions {
   std::size_t threads = 0;                   ///< as in Workers; uses the standard executor
 
   /// Identifies the boxes, for example by path, size and date of their file. A work folder is resumed only
-  /// for the same identity.
+  /// for the same identity, and never for an empty one.
   std::string identity{};
+
+  /// Count the pairs and keep none: they cannot be visited afterwards.
+  bool counts_only = false;
 
   /// Use 64-bit ids even if 32 bits suffice. They are always used above 2^32 boxes.
   bool has_large_ids = false;
@@ -102,7 +106,8 @@ class BROADSIDE_PUBLIC OutOfCoreJoin {
   /// box's id, and whatever a source or `progress` throws.
   void run();
 
-  /// After run(): the number of pairs, and of boxes in either source.
+  /// After run(): the number of pairs, and of boxes in either source. pairs() and the visits throw
+  /// std::logic_error before.
   std::uint64_t pairs() const;
   std::uint64_t boxes() const;
   std::uint64_t right_boxes() const;
@@ -116,7 +121,7 @@ class BROADSIDE_PUBLIC OutOfCoreJoin {
   void visit_sorted(const std::function<void(std::span<const Pair>)>& visit);
   void visit_sorted(const std::function<void(std::span<const LargePair>)>& visit);
 
-  /// Likewise in the order in which parts were joined, which is faster.
+  /// Likewise, sorted within each part only, which is faster. The order depends on boxes and memory limit.
   void visit_unsorted(const std::function<void(std::span<const Pair>)>& visit);
   void visit_unsorted(const std::function<void(std::span<const LargePair>)>& visit);
 

@@ -320,6 +320,110 @@ TEST_F(OutOfCore, RefusesInvalidBoxesByTheirPlaceAndTooLittleMemory) {
   EXPECT_THROW((OutOfCoreJoin<2, float>(source, tiny)), std::invalid_argument);
 }
 
+TEST_F(OutOfCore, NamesTheSourceOfAnInvalidBox) {
+  Given<2, float> left(scattered<2>(10, 5));
+  std::vector<Box2> boxes = scattered<2>(10, 5);
+  boxes[3].min[0] = nan;
+  Given<2, float> right(boxes);
+  OutOfCoreJoin<2, float> join(left, right, options());
+  try {
+    join.run();
+    ADD_FAILURE() << "was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr("right box 3"));
+  }
+}
+
+TEST_F(OutOfCore, RefusesAFolderWithOthersFiles) {
+  std::filesystem::create_directory(path("work"));
+  put("work/my.pairs", "mine");
+  Given<2, float> source(scattered<2>(100, 10));
+  EXPECT_THROW((OutOfCoreJoin<2, float>(source, options())), OutOfCoreError);
+  EXPECT_TRUE(std::filesystem::exists(path("work/my.pairs")));
+}
+
+TEST_F(OutOfCore, NoticesADamagedManifest) {
+  Given<2, float> source(scattered<2>(12'000, 60));
+  {
+    OutOfCoreJoin<2, float> join(source, options());
+    join.run();
+  }
+  const std::filesystem::path manifest = path("work/manifest.json");
+  std::string text;
+  std::getline(std::ifstream(manifest), text);
+  const std::size_t runs = text.find("\"runs\":[");
+  ASSERT_NE(runs, std::string::npos);
+  text[runs + 8] = text[runs + 8] == '1' ? '2' : '1';
+  std::ofstream(manifest) << text;
+  try {
+    OutOfCoreJoin<2, float> join(source, options());
+    ADD_FAILURE() << "was taken";
+  } catch (const OutOfCoreError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is damaged"));
+  }
+}
+
+TEST_F(OutOfCore, NeverResumesWithoutAnIdentity) {
+  Given<2, float> source(scattered<2>(100, 10));
+  OutOfCoreOptions nameless = options();
+  nameless.identity.clear();
+  {
+    OutOfCoreJoin<2, float> join(source, nameless);
+    join.run();
+  }
+  EXPECT_THROW((OutOfCoreJoin<2, float>(source, nameless)), OutOfCoreError);
+}
+
+TEST_F(OutOfCore, CountsPairsWithoutKeepingThem) {
+  const std::vector<Box2> boxes = scattered<2>(12'000, 60);
+  Given<2, float> source(boxes);
+  OutOfCoreOptions counting = options();
+  counting.counts_only = true;
+  OutOfCoreJoin<2, float> join(source, counting);
+  join.run();
+  EXPECT_EQ(join.pairs(), expected(boxes).size());
+  EXPECT_THAT(work_files(".pairs"), IsEmpty());
+  EXPECT_THROW(join.visit_sorted(std::function<void(std::span<const Pair>)>([](std::span<const Pair>) {})),
+               std::logic_error);
+}
+
+TEST_F(OutOfCore, HasNoPairsBeforeItHasRun) {
+  Given<2, float> source(scattered<2>(100, 10));
+  OutOfCoreJoin<2, float> join(source, options());
+  EXPECT_THROW(join.pairs(), std::logic_error);
+}
+
+TEST_F(OutOfCore, MergesMoreRunsThanItsMemoryHoldsAtOnce) {
+  // All at one place: runs of 4,096 pairs, of which memory holds the blocks of four.
+  const std::vector<Box2> boxes(600, at(3));
+  Given<2, float> source(boxes);
+  OutOfCoreJoin<2, float> join(source, options());
+  EXPECT_EQ(sorted_pairs(join), expected(boxes));
+  EXPECT_GT(work_files(".pairs").size(), 16U);
+  EXPECT_TRUE(std::ranges::none_of(work_files(".pairs"), [](const std::filesystem::path& file) {
+    return file.filename().string().starts_with("merged");
+  }));
+}
+
+TEST_F(OutOfCore, GivesUnsortedPairsInTheSameOrderForAnyNumberOfThreads) {
+  const std::vector<Box2> boxes = scattered<2>(12'000, 20);
+  std::vector<std::vector<Pair>> orders;
+  for (const std::size_t threads : {1, 2, 3}) {
+    Given<2, float> source(boxes);
+    OutOfCoreOptions some = options();
+    some.threads = threads;
+    OutOfCoreJoin<2, float> join(source, some);
+    join.run();
+    join.visit_unsorted(std::function<void(std::span<const Pair>)>(
+        [&, &pairs = orders.emplace_back()](std::span<const Pair> found) {
+          pairs.insert(pairs.end(), found.begin(), found.end());
+        }));
+    join.remove_folder();
+  }
+  EXPECT_EQ(orders[0], orders[1]);
+  EXPECT_EQ(orders[0], orders[2]);
+}
+
 TEST_F(OutOfCore, TakesNoBoxes) {
   Given<3, float> source({});
   OutOfCoreJoin<3, float> join(source, options());
