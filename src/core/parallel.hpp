@@ -47,12 +47,12 @@ class Parallel {
   /// a body throws, of several the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
-    if constexpr (is_lean)
-      body(Range{0, count}, std::size_t{0});
-    else if (workers() == 1)
-      body(Range{0, count}, std::size_t{0});
-    else
-      share_ranges(count, [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
+    if constexpr (!is_lean) {
+      if (workers() > 1)
+        return share_ranges(count,
+                            [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
+    }
+    body(Range{0, count}, std::size_t{0});
   }
 
   /// How many ranges for_numbered_ranges() makes.
@@ -64,12 +64,10 @@ class Parallel {
   /// Calls body(number, range, worker) for each range of a number.
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
-    if constexpr (is_lean)
-      body(std::size_t{0}, Range{0, count}, std::size_t{0});
-    else if (workers() == 1)
-      body(std::size_t{0}, Range{0, count}, std::size_t{0});
-    else
-      share_ranges(count, std::cref(body));
+    if constexpr (!is_lean) {
+      if (workers() > 1) return share_ranges(count, std::cref(body));
+    }
+    body(std::size_t{0}, Range{0, count}, std::size_t{0});
   }
 
   /// Searches [0, parts) for pairs: search(range, worker, sink) writes those of a few consecutive parts, and
