@@ -148,7 +148,8 @@ export function table(title, rows, key = "whole") {
     const row = rows.find((one) => one.count === count && one.name === name);
     if (row?.[key] === undefined) return "";
     const time = row[key] < 0.001 ? `${(row[key] * 1e6).toFixed(0)} ns` : row[key] < 1 ?
-      `${(row[key] * 1000).toPrecision(3)} µs` : `${row[key].toPrecision(3)} ms`;
+      `${(row[key] * 1000).toPrecision(3)} µs` : row[key] < 1000 ? `${row[key].toPrecision(3)} ms` :
+      `${(row[key] / 1000).toPrecision(3)} s`;
     return time + (row.agrees ? "" : " (other pairs)");
   };
   const lead = (count) => {
