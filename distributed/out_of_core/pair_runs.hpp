@@ -121,7 +121,8 @@ void merge_at_once(std::span<const Run> runs, std::uint64_t memory,
     readers.emplace_back(runs[run].path, runs[run].blocks);
     pool_next(run);
   }
-  while (!pool.empty()) {
+  // The pool can be empty while a run goes on: all others are then finished.
+  while (!pool.empty() || !heads.empty()) {
     while (!heads.empty() && pool.size() < room) {
       const std::size_t run = heads.top().run;
       heads.pop();

@@ -110,6 +110,7 @@ TEST(PairsVerb, LeavesOthersFilesInAWorkFolderAlone) {
   EXPECT_EQ(text_of(file), four_boxes);
   EXPECT_EQ(text_of(foreign), "mine");
   const std::string work = folder.file("work");
+  std::filesystem::create_directory(work);
   expect_refused("pairs",
                  {{{file, "--format", "csv", "--memory", "1G", "--work", work, "-o", work + "/pairs.csv"},
                    {"lies in the work folder"}}});

@@ -405,6 +405,16 @@ TEST_F(OutOfCore, MergesMoreRunsThanItsMemoryHoldsAtOnce) {
   }));
 }
 
+TEST_F(OutOfCore, MergesRunsThatFollowEachOther) {
+  // One after the other each run is the only one that is not finished.
+  OutOfCoreOptions larger = options();
+  larger.memory = 4 * small_memory;
+  const std::vector<Box2> boxes(2500, at(3));
+  Given<2, float> source(boxes);
+  OutOfCoreJoin<2, float> join(source, larger);
+  EXPECT_EQ(sorted_pairs(join), expected(boxes));
+}
+
 TEST_F(OutOfCore, GivesUnsortedPairsInTheSameOrderForAnyNumberOfThreads) {
   const std::vector<Box2> boxes = scattered<2>(12'000, 20);
   std::vector<std::vector<Pair>> orders;
