@@ -158,27 +158,43 @@ void Communicator::reserve_requests(std::span<const Block> out, std::span<const 
 }
 
 void Communicator::exchange_blocks(std::span<const Block> out, std::span<const Block> in) {
-  constexpr int tag = 0;
   requests_.clear();
-  const auto rank_of = [this](std::size_t place) {
-    return static_cast<int>(place) + (static_cast<int>(place) >= rank_ ? 1 : 0);
+  try {
+    begin_exchange(out, in);
+  } catch (...) {
+    // The caller frees the buffers, so no request may be pending. A send that cannot be cancelled is
+    // received.
+    for (MPI_Request& request : requests_)
+      if (request != MPI_REQUEST_NULL) MPI_Cancel(&request);
+    wait_for_requests();
+    throw;
+  }
+  check(wait_for_requests(), "MPI_Waitall");
+}
+
+void Communicator::begin_exchange(std::span<const Block> out, std::span<const Block> in) {
+  constexpr int tag = 0;
+  const auto rank_of = [this](std::size_t block) {
+    return static_cast<int>(block) + (static_cast<int>(block) >= rank_ ? 1 : 0);
   };
-  for (std::size_t place = 0; place < in.size(); ++place)
-    for_each_piece(in[place].bytes, in[place].size, [&](std::byte* piece, int count) {
-      check(MPI_Irecv(piece, count, MPI_BYTE, rank_of(place), tag, comm_,
+  for (std::size_t block = 0; block < in.size(); ++block)
+    for_each_piece(in[block].bytes, in[block].size, [&](std::byte* piece, int count) {
+      check(MPI_Irecv(piece, count, MPI_BYTE, rank_of(block), tag, comm_,
                       &requests_.emplace_back(MPI_REQUEST_NULL)),
             "MPI_Irecv");
     });
-  for (std::size_t place = 0; place < out.size(); ++place) {
-    sent_bytes_ += out[place].size;
-    for_each_piece(out[place].bytes, out[place].size, [&](std::byte* piece, int count) {
-      check(MPI_Isend(piece, count, MPI_BYTE, rank_of(place), tag, comm_,
+  for (std::size_t block = 0; block < out.size(); ++block) {
+    sent_bytes_ += out[block].size;
+    for_each_piece(out[block].bytes, out[block].size, [&](std::byte* piece, int count) {
+      check(MPI_Isend(piece, count, MPI_BYTE, rank_of(block), tag, comm_,
                       &requests_.emplace_back(MPI_REQUEST_NULL)),
             "MPI_Isend");
     });
   }
-  check(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),
-        "MPI_Waitall");
+}
+
+int Communicator::wait_for_requests() {
+  return MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
 }
 
 }  // namespace broadside::mpi

@@ -78,15 +78,15 @@ class Communicator {
     /// Calls visit(value, rank) for each.
     template <typename Visit>
     void for_each(int own_rank, const Visit& visit) const {
-      std::size_t place = 0;
-      const auto visit_those_of = [&](std::size_t rank) {
+      std::size_t next = 0;
+      const auto visit_from = [&](std::size_t rank) {
         for (std::uint64_t i = 0; i < counts[rank]; ++i)
-          visit(values[place++], static_cast<std::uint32_t>(rank));
+          visit(values[next++], static_cast<std::uint32_t>(rank));
       };
       const auto own = static_cast<std::size_t>(own_rank);
-      visit_those_of(own);
+      visit_from(own);
       for (std::size_t rank = 0; rank < counts.size(); ++rank)
-        if (rank != own) visit_those_of(rank);
+        if (rank != own) visit_from(rank);
     }
   };
 
@@ -112,10 +112,10 @@ class Communicator {
       received.values.resize(static_cast<std::size_t>(all));
       for (std::size_t rank = 0; rank < to.size(); ++rank) {
         if (rank == own) continue;
-        T* const place = received.values.data() + used;
+        T* const begin = received.values.data() + used;
         used += static_cast<std::size_t>(received.counts[rank]);
         out.push_back({reinterpret_cast<std::byte*>(to[rank].data()), to[rank].size() * sizeof(T)});
-        in.push_back({reinterpret_cast<std::byte*>(place), received.counts[rank] * sizeof(T)});
+        in.push_back({reinterpret_cast<std::byte*>(begin), received.counts[rank] * sizeof(T)});
       }
       reserve_requests(out, in);
     });
@@ -136,6 +136,8 @@ class Communicator {
   /// Blocks of the ranks but this one, in their order.
   void reserve_requests(std::span<const Block> out, std::span<const Block> in);
   void exchange_blocks(std::span<const Block> out, std::span<const Block> in);
+  void begin_exchange(std::span<const Block> out, std::span<const Block> in);
+  int wait_for_requests();
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0;
