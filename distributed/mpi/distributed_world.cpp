@@ -32,21 +32,21 @@ std::uint64_t fingerprint(const DistributedWorldOptions& options, std::uint64_t 
   return hash;
 }
 
-/// The register of the numbers of all boxes: each rank has those that fall to it.
+/// The register of the ids of all boxes, spread over the ranks by a hash.
 class IdRegister {
  public:
-  /// The rank that registers a number.
+  /// The rank that registers an id.
   static std::size_t home(std::uint64_t id, std::size_t ranks) noexcept {
     return static_cast<std::size_t>((id * 0x9e3779b97f4a7c15 >> 32) % ranks);
   }
 
-  /// Throws InvalidFrame if it is taken.
+  /// Throws InvalidFrame if the id is taken.
   void add(std::uint64_t id, int rank) {
     const auto [found, is_new] = owners_.emplace(id, rank);
     if (!is_new)
       throw InvalidFrame("box " + std::to_string(id) + " is added on rank " + std::to_string(rank) +
                          " and is in the world, added on rank " + std::to_string(found->second) +
-                         "; expected a number of its own");
+                         "; expected an id that no other box has");
   }
 
   void remove(std::uint64_t id) noexcept { owners_.erase(id); }
@@ -75,7 +75,7 @@ class DistributedWorld<D, Real>::State {
   const OwnedBoxes<D, Real>& owned() const noexcept { return owned_; }
 
   void hand_over(std::uint64_t id, int rank) {
-    owned_.place_of(id);
+    owned_.slot_of(id);
     if (rank < 0 || static_cast<std::size_t>(rank) >= comm_.size())
       throw std::invalid_argument("box " + std::to_string(id) + " is handed over to rank " +
                                   std::to_string(rank) + "; expected one from 0 to " +
@@ -127,29 +127,30 @@ class DistributedWorld<D, Real>::State {
       boxes.resize(comm_.size());
       for (const auto& [id, rank] : handed_over_) {
         if (rank == comm_.rank() || !owned_.contains(id)) continue;
-        boxes[static_cast<std::size_t>(rank)].push_back(owned_.at(owned_.place_of(id)));
+        boxes[static_cast<std::size_t>(rank)].push_back(owned_.at(owned_.slot_of(id)));
         ids.push_back(id);
       }
     });
-    const std::vector<Owned> taken = comm_.exchange(std::move(boxes)).values;
-    std::size_t count = 0;
+    const std::vector<Owned> received = comm_.exchange(std::move(boxes)).values;
+    std::vector<std::uint64_t> taken;
     try {
       comm_.together([&] {
-        for (Owned box : taken) {
+        taken.reserve(received.size());
+        for (Owned box : received) {
           box.is_handed_over = true;
           owned_.take(box);
-          ++count;
+          taken.push_back(box.id);
         }
       });
     } catch (...) {
-      for (std::size_t i = 0; i < count; ++i) owned_.forget(taken[i].id);
+      owned_.forget(taken);
       throw;
     }
-    owned_.hand_over(ids);
+    owned_.forget(ids);
     handed_over_.clear();
   }
 
-  /// Registers the numbers of new boxes, and notes those of removed ones.
+  /// Registers the ids of new boxes, and notes those of removed ones.
   void register_ids() {
     ByRank<std::uint64_t> added;
     ByRank<std::uint64_t> removed;
@@ -277,11 +278,20 @@ class DistributedWorld<D, Real>::State {
     const std::uint64_t boxes = comm_.sum(std::uint64_t{part_->boxes()});
     const double imbalance = all > 0 ? comm_.max(work) * static_cast<double>(comm_.size()) / all : 1;
     statistics_.largest_over_mean_work = imbalance;
-    constexpr std::uint64_t least_boxes = 256;
-    // What cuts cannot mend, as where all boxes are at one place, is not tried again until it is worse.
-    achieved_ = std::exchange(has_just_cut_, false) ? imbalance : std::min(achieved_, imbalance);
-    is_to_be_cut_ = imbalance > options_.most_imbalance && imbalance > 1.1 * achieved_ &&
-                    boxes >= least_boxes * comm_.size();
+    const std::uint64_t least_boxes = 256 * comm_.size();
+    if (std::exchange(has_just_cut_, false)) {
+      // A few boxes say nothing about what cuts can achieve.
+      achieved_ = boxes < least_boxes ? 1 : imbalance;
+      boxes_at_cut_ = boxes;
+      work_at_cut_ = all;
+    }
+    achieved_ = std::min(achieved_, imbalance);
+    // Where cuts cannot help, as where all boxes are at one place, they are not tried again until the balance
+    // gets worse, or the boxes are others: twice as many, or a crowd that has spread and lost its pairs.
+    const bool is_worse = imbalance > 1.1 * achieved_;
+    const bool is_another_world = boxes >= 2 * boxes_at_cut_ || all <= work_at_cut_ / 2;
+    is_to_be_cut_ =
+        boxes >= least_boxes && imbalance > options_.most_imbalance && (is_worse || is_another_world);
   }
 
   Communicator comm_;
@@ -298,7 +308,9 @@ class DistributedWorld<D, Real>::State {
   DistributedWorldStatistics statistics_;
   bool is_to_be_cut_ = true;
   bool has_just_cut_ = false;
-  double achieved_ = 1;  // the least imbalance since space was cut
+  double achieved_ = 1;             // the least imbalance since space was cut
+  std::uint64_t boxes_at_cut_ = 0;  // of all parts, just after space was cut
+  double work_at_cut_ = 0;          // likewise
 };
 
 template <int D, typename Real>
@@ -345,7 +357,7 @@ bool DistributedWorld<D, Real>::contains(std::uint64_t id) const noexcept {
 template <int D, typename Real>
 const Box<D, Real>& DistributedWorld<D, Real>::box(std::uint64_t id) const {
   const OwnedBoxes<D, Real>& owned = state_->owned();
-  return owned.at(owned.place_of(id)).now;
+  return owned.at(owned.slot_of(id)).now;
 }
 
 template <int D, typename Real>

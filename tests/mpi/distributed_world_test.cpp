@@ -1,5 +1,5 @@
 // Worlds of several ranks: the events of each update are what has changed between the boxes as they were and
-// as they are, whoever owns them and wherever the cuts are.
+// as they are, whichever ranks own them and wherever the cuts are.
 #include "broadside/distributed_world.hpp"
 
 #include <map>
@@ -38,7 +38,7 @@ class History {
   std::size_t size() const { return boxes_.size(); }
 
   void add(const Box<D, Real>& box) {
-    // Large numbers, in no order.
+    // Large ids, in no order.
     const std::uint64_t id = rng_.bits();
     const int owner = any_rank();
     boxes_[id] = box;
@@ -227,13 +227,53 @@ TEST(DistributedWorld, CutsSpaceAnewWhereTheLoadShiftsAndTellsNothingOfThat) {
   }
 }
 
-TEST(DistributedWorld, DoesNotCutAgainWhatNoCutTellsApart) {
+TEST(DistributedWorld, SharesOutAWorldThatStartsSmall) {
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  if (rank() == 0) world.add(0, at(0));
+  world.update();
+  // Doubles in each frame, so that it grows past what the first cuts were made for, and stays.
+  std::uint64_t id = 1 + static_cast<std::uint64_t>(rank());
+  const auto step = static_cast<std::uint64_t>(ranks());
+  for (const std::uint64_t count : {1, 2, 4, 100, 500, 1000, 0, 0}) {
+    for (std::uint64_t i = 0; i < count; ++i, id += step) world.add(id, at(static_cast<float>(2 * id)));
+    world.update();
+  }
+  EXPECT_LT(world.statistics().largest_over_mean_work, 1.25);
+  EXPECT_LT(world.statistics().cuts, 6U);
+}
+
+/// A world of boxes at one place, for which space is cut once.
+DistributedWorld<2> crowd() {
   DistributedWorld<2> world(MPI_COMM_WORLD);
   for (std::uint64_t i = 0; i < 300; ++i)
     world.add(i * static_cast<std::uint64_t>(ranks()) + static_cast<std::uint64_t>(rank()), at(0));
   for (int frame = 0; frame < 5; ++frame) world.update();
   EXPECT_EQ(world.statistics().cuts, 1U);
+  return world;
 }
+
+TEST(DistributedWorld, CutsAgainWhereTheBoxesHaveDoubled) {
+  DistributedWorld<2> world = crowd();
+  for (std::uint64_t i = 300; i < 20'000; ++i) {
+    const std::uint64_t id = i * static_cast<std::uint64_t>(ranks()) + static_cast<std::uint64_t>(rank());
+    world.add(id, at(static_cast<float>(2 * id)));
+  }
+  for (int frame = 0; frame < 5; ++frame) world.update();
+  EXPECT_EQ(world.statistics().cuts, ranks() == 1 ? 1U : 2U);
+}
+
+TEST(DistributedWorld, CutsAgainWhereACrowdHasSpread) {
+  DistributedWorld<2> world = crowd();
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const std::uint64_t id = i * static_cast<std::uint64_t>(ranks()) + static_cast<std::uint64_t>(rank());
+    world.move(id, at(static_cast<float>(2 * id)));
+  }
+  for (int frame = 0; frame < 5; ++frame) world.update();
+  EXPECT_EQ(world.statistics().cuts, ranks() == 1 ? 1U : 2U);
+  EXPECT_LT(world.statistics().largest_over_mean_work, 1.25);
+}
+
+TEST(DistributedWorld, DoesNotCutAgainWhatNoCutTellsApart) { crowd(); }
 
 TEST(DistributedWorld, SendsOnlyWhatChanges) {
   DistributedWorld<2> world(MPI_COMM_WORLD);
@@ -250,7 +290,7 @@ TEST(DistributedWorld, SendsOnlyWhatChanges) {
   EXPECT_LE(world.statistics().sent_bytes, rank() == 0 ? 2 * 24U : 0U);
 }
 
-TEST(DistributedWorld, RefusesANumberThatIsTakenOnAllRanks) {
+TEST(DistributedWorld, RefusesAnIdThatIsTakenOnAllRanks) {
   DistributedWorld<2> world(MPI_COMM_WORLD);
   if (rank() == 0) world.add(7, at(0));
   world.update();
@@ -272,7 +312,59 @@ TEST(DistributedWorld, RefusesANumberThatIsTakenOnAllRanks) {
     EXPECT_THAT(events.begun, IsEmpty());
 }
 
-TEST(DistributedWorld, LetsANumberBeUsedAgainAfterAnUpdate) {
+/// Has rank 0 hand over box 6 to the last rank, which has added one of that id, and 30 other boxes in the
+/// same update; then lets the last rank remove its own, and the update be repeated.
+void expect_refused_hand_over_to_be_undone(bool are_new, bool is_handed_back) {
+  if (ranks() == 1) return;
+  const int last = ranks() - 1;
+  constexpr std::uint64_t begin = 10;
+  constexpr std::uint64_t end = 40;
+  // In the part of box 6, not in that of the others.
+  const auto moved = [](std::uint64_t id) { return at(-100 * static_cast<float>(id)); };
+  DistributedWorld<2> world(MPI_COMM_WORLD);
+  if (rank() == 0) {
+    world.add(6, at(-2));
+    for (std::uint64_t id = begin; id < end; ++id) world.add(id, at(0.5F));
+  }
+  if (!are_new) world.update();
+  if (rank() == 0) {
+    world.hand_over(6, last);
+    for (std::uint64_t id = begin; id < end; ++id) {
+      world.hand_over(id, last);
+      world.move(id, moved(id));
+    }
+  }
+  if (rank() == last) world.add(6, at(3));
+  for (int attempt = 0; attempt < 2; ++attempt)
+    EXPECT_THAT(thrown<InvalidFrame>([&] { world.update(); }), HasSubstr("box 6 is handed over"));
+  if (rank() == 0 && is_handed_back) world.hand_over(6, 0);
+  if (rank() == last) world.remove(6);
+  const std::size_t ended = world.update().ended.size();
+  const std::uint64_t all_ended =
+      mpi::summary(MPI_COMM_WORLD, {.pairs = ended, .work = 1}).all.pairs;  // of all ranks
+  EXPECT_EQ(all_ended, are_new ? 0U : 30U * 29 / 2);
+  EXPECT_EQ(world.size(),
+            (rank() == last ? end - begin : 0U) + (rank() == (is_handed_back ? 0 : last) ? 1U : 0U));
+  EXPECT_EQ(world.contains(6), rank() == (is_handed_back ? 0 : last));
+  EXPECT_EQ(world.statistics().part_pairs, 0U);
+  // Each part still knows its boxes: all are moved to one place, where all overlap.
+  for (std::uint64_t id = begin; id < end; ++id)
+    if (rank() == last) world.move(id, at(0.5F));
+  const std::uint64_t begun = world.update().begun.size();
+  EXPECT_EQ(mpi::summary(MPI_COMM_WORLD, {.pairs = begun, .work = 1}).all.pairs, 30U * 29 / 2);
+}
+
+TEST(DistributedWorld, TakesABoxHandedOverOnceTheOneOfItsIdIsRemoved) {
+  expect_refused_hand_over_to_be_undone(false, false);
+  expect_refused_hand_over_to_be_undone(true, false);
+}
+
+TEST(DistributedWorld, TakesBoxesThatARefusedUpdateHadHandedOver) {
+  expect_refused_hand_over_to_be_undone(false, true);
+  expect_refused_hand_over_to_be_undone(true, true);
+}
+
+TEST(DistributedWorld, LetsAnIdBeUsedAgainAfterAnUpdate) {
   DistributedWorld<2> world(MPI_COMM_WORLD);
   if (rank() == 0) {
     world.add(1, at(0));

@@ -23,9 +23,10 @@ struct DistributedWorldOptions {
   std::string algorithm{default_algorithm};  ///< the spec by which each rank follows its part
   std::optional<std::size_t> threads{};      ///< of each rank; empty: as the spec says
 
-  /// Space is cut anew where the work of the rank with the most, over the mean of all ranks, exceeds this and
-  /// has grown by a tenth since the cuts were made; greater than 1. Worlds of fewer than 256 boxes a rank are
-  /// left as they are.
+  /// Space is cut anew if the work of the rank with the most, over the mean of all ranks, exceeds this;
+  /// greater than 1. Cuts that did not achieve it are tried again once the imbalance has grown by a tenth,
+  /// the boxes have doubled or the work has halved. Worlds of fewer than 256 boxes a rank are left as they
+  /// are.
   double most_imbalance = 1.25;
 
   std::size_t sample = 0;  ///< as Options::sample
@@ -49,14 +50,15 @@ struct DistributedWorldStatistics {
 
 /// A set of boxes on all ranks that changes, and its overlapping pairs.
 ///
-/// A box has a number that the caller gives it, one of its own among all ranks, and is owned by one rank: the
-/// one that added it, until it hands it over. Each rank follows a part of space by a PairTracker. An update
+/// The caller gives each box an id, which no other box of any rank has. A box is owned by one rank: the one
+/// that added it, until it hands it over. Each rank follows a part of space by a PairTracker. An update
 /// sends a box that changed to the ranks whose parts it touches or has left, and nothing of others; where the
 /// load has shifted, space is cut anew and boxes move to their new parts, which shows in no event.
 ///
-/// Events are the same whatever the ranks, the cuts and who owns a box. Constructor, destructor, update() and
-/// no other members are collective. One thread at a time. Memory: of each owned box some 100 bytes, and
-/// 40 for the register of numbers; of each box of the part three copies, and what the tracker keeps.
+/// Events do not depend on the number of ranks, the cuts or which rank owns a box. Constructor, destructor
+/// and update() are collective, and no other members are. One thread at a time. Memory: some 100 bytes for
+/// each owned box, and 40 for the register of ids; three copies of each box of the part, and what the tracker
+/// keeps.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC DistributedWorld {
  public:
@@ -67,14 +69,14 @@ class BROADSIDE_PUBLIC DistributedWorld {
   DistributedWorld& operator=(DistributedWorld&& other) noexcept;
   ~DistributedWorld();
 
-  /// Adds a box under a number. Throws InvalidInput if the box has a NaN or min > max, InvalidFrame if this
-  /// rank owns a box of that number or has removed one since the last update.
+  /// Adds a box under an id. Throws InvalidInput if the box has a NaN or min > max, InvalidFrame if this rank
+  /// owns a box of that id or has removed one since the last update.
   void add(std::uint64_t id, const Box<D, Real>& box);
 
   /// Replaces a box. Throws InvalidHandle if this rank does not own it, InvalidInput as add() does.
   void move(std::uint64_t id, const Box<D, Real>& box);
 
-  /// Takes a box out. Its pairs end at the next update, after which its number may be used again, on any
+  /// Takes a box out. Its pairs end at the next update, after which its id may be used again, on any
   /// rank. Throws InvalidHandle if this rank does not own it.
   void remove(std::uint64_t id);
 
@@ -82,16 +84,16 @@ class BROADSIDE_PUBLIC DistributedWorld {
   /// Throws InvalidHandle if this rank does not own the box, std::invalid_argument if there is no such rank.
   void hand_over(std::uint64_t id, int rank);
 
-  /// Brings the pairs up to date. Each pair that begins or ends is told once, with first < second, on the
+  /// Brings the pairs up to date. Each pair that begins or ends is reported once, with first < second, on the
   /// rank that owns the first box or has just removed it. Collective.
   ///
-  /// Throws on all ranks: InvalidFrame if a box was added under a number that is taken on another rank; that
-  /// one can be removed, and the update tried again. What else is thrown on a rank, such as std::bad_alloc,
-  /// is RankError on the others; the next update then cuts space anew and tells what changed since the last
-  /// whole one.
+  /// Throws on all ranks: InvalidFrame if a box was added, or is handed over to a rank, under an id that
+  /// another box has; remove the added box, and the update can be tried again. If anything else is thrown on
+  /// a rank, such as std::bad_alloc, the others throw RankError; the next update then cuts space anew and
+  /// reports what has changed since the last update that did not throw.
   DistributedEvents update();
 
-  /// Whether this rank owns a box of this number, as of now.
+  /// Whether this rank owns a box of this id, as of now.
   bool contains(std::uint64_t id) const noexcept;
 
   /// The box as it was last set. Valid until the next call that changes the world. Throws InvalidHandle if
