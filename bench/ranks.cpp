@@ -186,7 +186,8 @@ int run_all(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   using namespace broadside::bench;
-  MPI_Init(&count, &arguments);
+  int provided = MPI_THREAD_SINGLE;  // more is needed: a rank searches by several threads
+  MPI_Init_thread(&count, &arguments, MPI_THREAD_FUNNELED, &provided);
   const int status = guarded("ranks", 3, [&] { return run_all(count, arguments); });
   if (status != 0) MPI_Abort(MPI_COMM_WORLD, status);
   MPI_Finalize();

@@ -56,8 +56,14 @@ Exit run(std::vector<std::string> arguments) {
 int main(int count, char** values) {
   using namespace broadside;
   lab::platform::prepare_standard_streams();
-  MPI_Init(&count, &values);
+  // A rank searches by several threads, and calls MPI from its first one alone.
+  int provided = MPI_THREAD_SINGLE;
+  MPI_Init_thread(&count, &values, MPI_THREAD_FUNNELED, &provided);
   cli::set_program_name("broadside-mpi");
+  if (provided < MPI_THREAD_FUNNELED) {
+    cli::say("this MPI library provides MPI_THREAD_SINGLE; expected MPI_THREAD_FUNNELED or more");
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::unusable));
+  }
   // The others end with it; and only it writes.
   if (cli::rank() == 0) cli::on_signal(cli::OnSignal::end);
   cli::Exit exit = cli::Exit::unusable;
