@@ -1,4 +1,4 @@
-// Space cut into parts of about equal cost, by a tree of cuts that is made from a sample of the boxes.
+// Builds the tree of cuts from a sample of the boxes, so that the parts have about equal cost.
 #include "broadside/partition.hpp"
 
 #include <algorithm>
@@ -14,15 +14,15 @@
 namespace broadside {
 namespace {
 
-/// How many boxes of a sample are joined at first to see where the pairs are, and how many pairs are enough:
-/// with fewer, more boxes are joined.
+/// The number of boxes of a sample that are joined at first, to see where the pairs are. If they have fewer
+/// pairs than enough_pairs, more boxes are joined.
 constexpr std::size_t first_joined = 4096;
 constexpr std::size_t enough_pairs = 4096;
 
-/// Points stay points, however often they are doubled.
+/// A limit, since boxes without extents stay as they are however often they are doubled.
 constexpr int max_doublings = 16;
 
-/// What is spread along the axes: a box from its minimum to its maximum, a pair at its place.
+/// An item that cuts share out: a box, or the point to which a pair belongs, with its cost.
 template <int D, typename Real>
 struct Weighted {
   Box<D, Real> box;
@@ -38,13 +38,13 @@ class Cutter {
   std::vector<Cut> take_cuts() { return std::move(cuts_); }
 
   void cut(Items items, std::size_t parts, std::size_t depth_left) {
-    const std::size_t place = cuts_.size();
+    const std::size_t own_index = cuts_.size();
     cuts_.emplace_back();
     const std::size_t parts_below = parts / 2;
     const std::optional<Choice> choice =
         parts > 1 && depth_left > 0 ? choose(items, parts_below, parts - parts_below) : std::nullopt;
     if (!choice) {
-      cuts_[place].below = parts_++;
+      cuts_[own_index].below = parts_++;
       return;
     }
     Items below;
@@ -54,21 +54,22 @@ class Cutter {
       if (item.box.max[choice->axis] >= choice->at) above.push_back(item);
     }
     Items().swap(items);
-    const auto place_below = static_cast<std::uint32_t>(cuts_.size());
+    const auto index_below = static_cast<std::uint32_t>(cuts_.size());
     cut(std::move(below), parts_below, depth_left - 1);
-    const auto place_above = static_cast<std::uint32_t>(cuts_.size());
+    const auto index_above = static_cast<std::uint32_t>(cuts_.size());
     cut(std::move(above), parts - parts_below, depth_left - 1);
-    cuts_[place] = {static_cast<std::uint32_t>(choice->axis), place_below, place_above, choice->at};
+    cuts_[own_index] = {static_cast<std::uint32_t>(choice->axis), index_below, index_above, choice->at};
   }
 
  private:
   struct Choice {
     std::size_t axis;
     Real at;
-    double cost;  // of the costlier side's parts
+    double cost;  // per part, of the costlier side
   };
 
-  /// The cut after which the costlier side costs least; nothing if none makes both sides cheaper than all.
+  /// The cut that makes the cost per part of the costlier side least; nothing if no cut makes both sides
+  /// cheaper than the whole.
   std::optional<Choice> choose(const Items& items, std::size_t parts_below, std::size_t parts_above) {
     double all = 0;
     for (const Weighted<D, Real>& item : items) all += item.cost;
@@ -88,12 +89,12 @@ class Cutter {
       minima_.emplace_back(item.box.min[axis], item.cost);
       maxima_.emplace_back(item.box.max[axis], item.cost);
     }
-    const auto by_place = [](const auto& a, const auto& b) { return a.first < b.first; };
-    std::sort(minima_.begin(), minima_.end(), by_place);
-    std::sort(maxima_.begin(), maxima_.end(), by_place);
+    const auto by_coordinate = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::sort(minima_.begin(), minima_.end(), by_coordinate);
+    std::sort(maxima_.begin(), maxima_.end(), by_coordinate);
     std::optional<Choice> best;
-    double below = 0;    // the cost of what begins below the cut
-    double above = all;  // and of what ends at it or above
+    double below = 0;    // the cost of the items that begin below the cut
+    double above = all;  // the cost of the items that end at the cut or above
     std::size_t end = 0;
     for (std::size_t begin = 0; begin < minima_.size();) {
       const Real at = minima_[begin].first;
@@ -115,7 +116,7 @@ class Cutter {
   std::vector<std::pair<Real, double>> maxima_;
 };
 
-/// Twice as large about its centre; unbounded axes stay as they are.
+/// The box with twice its extents about its centre; infinite extents stay as they are.
 template <int D, typename Real>
 Box<D, Real> doubled(Box<D, Real> box) {
   for (std::size_t axis = 0; axis < D; ++axis) {
@@ -127,10 +128,10 @@ Box<D, Real> doubled(Box<D, Real> box) {
   return box;
 }
 
-/// Adds the estimated cost of all pairs, each at the greater of its two minima.
+/// Adds items for the estimated cost of all pairs, each at the greater of its two minima.
 ///
-/// A thin sample has few pairs, each of which stands for very many. So its boxes are enlarged until they have
-/// enough pairs. Where boxes are spread evenly, twice the extents make 2^D times the pairs.
+/// A thin sample has few pairs, and each stands for very many. So its boxes are enlarged until they have
+/// enough pairs. If boxes are spread evenly, twice the extents make 2^D times the pairs.
 template <int D, typename Real>
 void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
   std::vector<Box<D, Real>> joined;
@@ -138,7 +139,7 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
   std::size_t step = std::max<std::size_t>(1, items.size() / first_joined);
   while (true) {
     joined.clear();
-    for (std::size_t place = 0; place < items.size(); place += step) joined.push_back(items[place].box);
+    for (std::size_t i = 0; i < items.size(); i += step) joined.push_back(items[i].box);
     pairs = find_pairs(joined, algorithms().front().name);
     if (step == 1 || pairs.size() >= enough_pairs) break;
     // Four times the boxes have sixteen times the pairs.
@@ -151,15 +152,15 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
     enlargement *= std::size_t{1} << D;
     pairs = find_pairs(joined, algorithms().front().name);
   }
-  // Of boxes in every `step`, a square of that in pairs is seen; and the items stand for all boxes.
+  // Joining every `step`-th box finds one pair in step^2; and the items stand for all boxes.
   const double pair_cost = Partition<D, Real>::cost(0, 1) * static_cast<double>(step) *
                            static_cast<double>(step) * static_cast<double>(boxes) /
                            static_cast<double>(items.size()) / enlargement;
-  // Some of very many pairs tell as much.
+  // Of very many pairs, some are enough to say where they are.
   const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough_pairs));
-  for (std::size_t place = 0; place < pairs.size(); place += pair_step) {
-    const Box<D, Real>& first = joined[index(pairs[place].first)];
-    const Box<D, Real>& second = joined[index(pairs[place].second)];
+  for (std::size_t i = 0; i < pairs.size(); i += pair_step) {
+    const Box<D, Real>& first = joined[index(pairs[i].first)];
+    const Box<D, Real>& second = joined[index(pairs[i].second)];
     Weighted<D, Real> item{{}, pair_cost * static_cast<double>(pair_step)};
     for (std::size_t axis = 0; axis < D; ++axis)
       item.box.min[axis] = item.box.max[axis] = std::max(first.min[axis], second.min[axis]);
@@ -188,30 +189,30 @@ Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t 
 
 template <int D, typename Real>
 Partition<D, Real>::Partition(std::vector<Cut> cuts, const Region& space) : cuts_(std::move(cuts)) {
-  // What a cut leads to lies behind it, and parts are numbered as they are met.
+  // The tree is listed depth first, the lower side before the upper one, and parts are numbered in that
+  // order.
   struct Waiting {
-    std::size_t place;
+    std::size_t cut;
     Region region;
   };
   std::vector<Waiting> waiting{{0, space}};
   std::size_t met = 0;
-  const auto refuse = [](std::size_t place) {
-    throw std::invalid_argument("Partition: cut " + std::to_string(place) +
+  const auto refuse = [](std::size_t cut) {
+    throw std::invalid_argument("Partition: cut " + std::to_string(cut) +
                                 " leads out of the list or backwards; expected the list that cuts() gave");
   };
   while (!waiting.empty()) {
     const Waiting next = waiting.back();
     waiting.pop_back();
-    if (next.place != met || next.place >= cuts_.size() || waiting.size() + 1 >= max_depth)
-      refuse(next.place);
+    if (next.cut != met || next.cut >= cuts_.size() || waiting.size() + 1 >= max_depth) refuse(next.cut);
     ++met;
-    const Cut& cut = cuts_[next.place];
+    const Cut& cut = cuts_[next.cut];
     if (cut.axis == Cut::part) {
-      if (cut.below != regions_.size()) refuse(next.place);
+      if (cut.below != regions_.size()) refuse(next.cut);
       regions_.push_back(next.region);
       continue;
     }
-    if (cut.axis >= D || std::isnan(cut.at)) refuse(next.place);
+    if (cut.axis >= D || std::isnan(cut.at)) refuse(next.cut);
     Waiting above{cut.above, next.region};
     above.region.low[cut.axis] = cut.at;
     Waiting below{cut.below, next.region};

@@ -1,5 +1,5 @@
-// Space cut into parts that can be joined apart from each other: by one machine one after the other, or by
-// many at the same time.
+// Space cut into parts that can be joined independently: in turn on one machine, or at the same time on
+// several.
 #pragma once
 
 #include <array>
@@ -15,32 +15,32 @@
 
 namespace broadside {
 
-/// Space cut into parts, each a box that has its lower bounds and not its upper ones. Every place is in
-/// exactly one part.
+/// Space cut into parts. A part is a box that includes its lower bounds and excludes its upper ones, so every
+/// point lies in exactly one part.
 ///
-/// Each part is given the boxes that touch it. A pair of overlapping boxes belongs to the part that owns the
-/// greater of their two minima on every axis; both boxes touch that part. So if each part is joined by itself
-/// and keeps the pairs that belong to it, every pair is found once, and a part can be joined again without
-/// the others. Whether a pair belongs is told by begins_before() of its boxes: see PartPairs.
+/// Give each part the boxes that touch it. A pair of overlapping boxes belongs to the part that contains the
+/// point made of the greater of their two minima on every axis; both boxes touch that part. So if each part
+/// is joined by itself and keeps the pairs that belong to it, every pair is found once, and a part can be
+/// joined again without the others. PartPairs tells from begins_before() of two boxes whether their pair
+/// belongs.
 ///
 /// Copying copies the cuts. Const functions can be called by several threads at once.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC Partition {
  public:
-  /// A cut at right angles to an axis: what lies below `at` is on one side, and what lies at it or above on
-  /// the other.
+  /// A cut at right angles to an axis. Points below `at` are on one side, all others on the other side.
   struct Cut {
     static constexpr std::uint32_t part = UINT32_MAX;
 
-    std::uint32_t axis = part;  ///< `part` for what is not cut further
-    std::uint32_t below = 0;    ///< the place of what lies below in cuts(), or the number of the part
-    std::uint32_t above = 0;    ///< the place of what lies above
+    std::uint32_t axis = part;  ///< `part` marks a leaf: a part, which is not cut further
+    std::uint32_t below = 0;    ///< the index in cuts() of the cut of the lower side; of a leaf, its part
+    std::uint32_t above = 0;    ///< the index in cuts() of the cut of the upper side
     Real at = 0;
 
     friend bool operator==(const Cut&, const Cut&) = default;
   };
 
-  /// The bounds of a part; infinite where nothing was cut.
+  /// The bounds of a part; infinite where no cut bounds it.
   struct Region {
     Point<D, Real> low;
     Point<D, Real> high;
@@ -57,7 +57,7 @@ class BROADSIDE_PUBLIC Partition {
       return is_touching;
     }
 
-    /// A bit for each axis on which the box begins before the part.
+    /// Bit i is set if the box begins before the part on axis i.
     unsigned begins_before(const Box<D, Real>& box) const noexcept {
       unsigned axes = 0;
       for (std::size_t axis = 0; axis < D; ++axis) axes |= unsigned{box.min[axis] < low[axis]} << axis;
@@ -72,7 +72,8 @@ class BROADSIDE_PUBLIC Partition {
     return region;
   }
 
-  /// What a part costs that has this many boxes and pairs, where reading, sorting and sweeping a box costs 1.
+  /// The estimated cost of joining a part of this many boxes and pairs. The unit is the cost of reading,
+  /// sorting and sweeping one box.
   static constexpr double cost(std::uint64_t boxes, std::uint64_t pairs) noexcept {
     // docs/lab-notes.md has the measurements.
     constexpr double cost_of_pair = 0.15;
@@ -82,15 +83,17 @@ class BROADSIDE_PUBLIC Partition {
   /// One part: all of space.
   Partition() : Partition({}, 1) {}
 
-  /// Cuts `space` into at most `parts` parts of about equal cost, from a sample of the boxes; into fewer
-  /// where boxes cannot be told apart by cuts. A part costs what it has of boxes and, where `boxes` says how
-  /// many the sample stands for, of pairs. The same for the same arguments. Absent boxes count for nothing.
+  /// Cuts `space` into parts of about equal cost, from a sample of the boxes. There are at most `parts`
+  /// parts, and fewer if no cuts separate the boxes. A part's cost counts its boxes and, if `boxes` says how
+  /// many boxes the sample stands for, its pairs. The same arguments give the same cuts. Absent boxes are
+  /// ignored.
   ///
   /// Cost: O(s log s) for each doubling of the parts, with a sample of s boxes.
   Partition(std::span<const Box<D, Real>> sample, std::size_t parts, std::uint64_t boxes = 0,
             const Region& space = everything());
 
-  /// From cuts() of another one. Throws std::invalid_argument if they are no such list.
+  /// Copies a partition from its cuts(). Throws std::invalid_argument if the list is not a tree as cuts()
+  /// returns it.
   explicit Partition(std::vector<Cut> cuts, const Region& space = everything());
 
   /// The number of parts, at least 1.
@@ -98,23 +101,23 @@ class BROADSIDE_PUBLIC Partition {
 
   const Region& region(std::size_t part) const noexcept { return regions_[part]; }
 
-  /// The cuts as a tree, whose root is the first: enough to make the same partition elsewhere.
+  /// The cuts as a tree whose root is the first: enough to make the same partition elsewhere.
   std::span<const Cut> cuts() const noexcept { return cuts_; }
 
-  /// The part that a place lies in.
-  std::size_t owner(const Point<D, Real>& place) const noexcept {
+  /// The part in which a point lies.
+  std::size_t owner(const Point<D, Real>& point) const noexcept {
     std::uint32_t at = 0;
     while (cuts_[at].axis != Cut::part) {
       const Cut& cut = cuts_[at];
-      at = place[cut.axis] < cut.at ? cut.below : cut.above;
+      at = point[cut.axis] < cut.at ? cut.below : cut.above;
     }
     return cuts_[at].below;
   }
 
-  /// Calls visit(part) for each part that a present box touches, ascending.
+  /// Calls visit(part) for each part that a present box touches, in ascending order.
   template <typename Visit>
   void for_each_part(const Box<D, Real>& box, const Visit& visit) const {
-    // As deep as the tree: each level leaves at most one side for later.
+    // A stack as deep as the tree: each level leaves at most one side for later.
     std::array<std::uint32_t, max_depth> later;
     std::size_t waiting = 0;
     std::uint32_t at = 0;
@@ -143,12 +146,12 @@ class BROADSIDE_PUBLIC Partition {
   std::vector<Region> regions_;
 };
 
-/// Passes on the pairs of a part's boxes that belong to the part. One thread at a time; a search by several
-/// threads passes them on in the order of the search.
+/// Passes on the pairs of a part's boxes that belong to the part. One thread at a time; after a search by
+/// several threads, it passes them on in the order of the search.
 class BROADSIDE_PUBLIC PartPairs final : public PairSink {
  public:
-  /// `left` has begins_before() of each box of one set, and `right` of the other; the same where there is one
-  /// set. All of these must outlive the sink.
+  /// `left` holds begins_before() of each box of one set, and `right` that of the other; both are the same if
+  /// there is one set. They and `pairs` must outlive the sink.
   PartPairs(std::span<const std::uint8_t> left, std::span<const std::uint8_t> right, PairSink& pairs)
       : left_(left), right_(right), pairs_(&pairs) {}
 
