@@ -1,24 +1,51 @@
-// A program of which the last rank is killed in the middle of a join, as by a machine that fails; what others
-// say then is looked at by program_test.cpp.
+// A program of which the last rank is killed while it searches its part, as by a machine that fails: the
+// others wait for its pairs. program_test.cpp looks at what they say.
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <mpi.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/mpi.hpp"
 
-int main(int count, char** values) {
-  MPI_Init(&count, &values);
-  int rank = 0;
-  int ranks = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  const std::vector<broadside::Box2> boxes(3);
-  broadside::mpi::find_pairs(MPI_COMM_WORLD, boxes, [&](std::span<const broadside::LargePair>) {
+namespace broadside {
+namespace {
+
+/// Kills the last rank as it searches.
+class DyingFinder final : public PairFinder<2> {
+ private:
+  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+    int rank = 0;
+    int ranks = 1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (rank == ranks - 1) std::raise(SIGKILL);
-  });
+    search_with(*finder_, boxes, pairs);
+  }
+
+  std::unique_ptr<PairFinder<2>> finder_ = make_finder<2>("brute_force");
+};
+
+void join() {
+  register_algorithm({.name = "dying",
+                      .summary = "kills the last rank",
+                      .source = "this test",
+                      .finder_2d = [](const Settings&) { return std::make_unique<DyingFinder>(); }});
+  const std::vector<Box2> boxes(3);
+  mpi::find_pairs(MPI_COMM_WORLD, boxes, [](std::span<const LargePair>) { std::puts("was given pairs"); },
+                  {.algorithm = "dying"});
+}
+
+}  // namespace
+}  // namespace broadside
+
+int main(int count, char** values) {
+  int provided = MPI_THREAD_SINGLE;  // more is needed: a rank searches by several threads
+  MPI_Init_thread(&count, &values, MPI_THREAD_FUNNELED, &provided);
+  broadside::join();
   std::puts("came to the end");
   MPI_Finalize();
   return 0;

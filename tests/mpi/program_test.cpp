@@ -132,6 +132,7 @@ TEST(MpiProgram, EndsWhereARankIsKilled) {
     const Ended ended = on_ranks(ranks, "$DYING");
     EXPECT_NE(ended.status, 0);
     EXPECT_NE(ended.status, 124) << "it hung";
+    EXPECT_THAT(ended.output, Not(HasSubstr("was given pairs"))) << "it was not killed in the middle";
     EXPECT_THAT(ended.output, Not(HasSubstr("came to the end")));
     EXPECT_THAT(ended.errors + ended.output, HasSubstr("signal 9"));
   }
