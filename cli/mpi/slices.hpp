@@ -2,9 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -17,6 +21,13 @@
 #include "lab/formats/format.hpp"
 
 namespace broadside::cli {
+
+/// What tells whether two ranks see the same file.
+struct FileIdentity {
+  std::uint64_t bytes = 0;
+  std::uint64_t rows = 0;    ///< 0 where these are not known before the file is read
+  std::uint64_t sample = 0;  ///< a hash (FNV-1a) of some of the bytes
+};
 
 /// A file, how it is read, and what rank 0 has found it to be.
 struct SlicedFile {
@@ -37,6 +48,7 @@ struct SlicedFile {
   lab::Precision precision = lab::Precision::float32;
   bool has_slices =
       false;  ///< which each rank reads by itself; otherwise rank 0 reads all and sends them out
+  FileIdentity identity{};  ///< where there are slices
 };
 
 inline void open(SlicedFile& file) {
@@ -54,6 +66,57 @@ inline bool take_slice(lab::BoxFile& file) {
       file.frames);
 }
 
+/// A hash of blocks spread evenly over a file: of all of it up to 256 KiB.
+inline std::uint64_t sample_of(const std::string& path, std::uint64_t bytes) {
+  constexpr std::uint64_t blocks = 64;
+  constexpr std::uint64_t block_bytes = 4096;
+  std::ifstream stream(path, std::ios::binary);
+  std::array<char, block_bytes> block{};
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const std::uint64_t step = std::max(block_bytes, bytes / blocks);
+  for (std::uint64_t begin = 0; begin < bytes; begin += step) {
+    const std::uint64_t size = std::min(block_bytes, bytes - begin);
+    stream.seekg(static_cast<std::streamoff>(begin));
+    if (!stream.read(block.data(), static_cast<std::streamsize>(size)))
+      throw Unusable(fmt::format("{}: cannot read byte {}; expected {} bytes", path, begin, bytes));
+    for (const char c : std::span(block).first(static_cast<std::size_t>(size)))
+      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return hash;
+}
+
+/// Of an open file whose slice has not been taken.
+inline FileIdentity identity_of(const SlicedFile& file) {
+  FileIdentity identity;
+  identity.bytes = std::filesystem::file_size(file.path);
+  identity.rows =
+      std::visit([](const auto& frames) { return frames->estimated_boxes(); }, file.opened->frames);
+  identity.sample = sample_of(file.path, identity.bytes);
+  return identity;
+}
+
+/// Throws Unusable if this rank has opened another file than rank 0, such as a stale copy on its machine.
+/// Slices of different files would overlap or leave gaps.
+inline void check_same_file(const SlicedFile& file) {
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    throw Unusable(
+        fmt::format("rank {} finds {} in {}; expected {} as on rank 0", rank(), found, file.path, expected));
+  };
+  const FileIdentity found = identity_of(file);
+  if (found.bytes != file.identity.bytes)
+    refuse(fmt::format("{} bytes", found.bytes), std::to_string(file.identity.bytes));
+  if (const int dimension = lab::dimension_of(file.opened->frames); dimension != file.dimension)
+    refuse(fmt::format("boxes in {}D", dimension), fmt::format("{}D", file.dimension));
+  if (const lab::Precision precision = lab::precision_of_frames(file.opened->frames);
+      precision != file.precision)
+    refuse(std::string(lab::name(precision)), std::string(lab::name(file.precision)));
+  if (found.rows != file.identity.rows)
+    refuse(fmt::format("{} rows", found.rows), std::to_string(file.identity.rows));
+  if (found.sample != file.identity.sample)
+    throw Unusable(fmt::format("rank {} finds other content in {} than rank 0; expected the same file",
+                               rank(), file.path));
+}
+
 /// Has rank 0 open the file, and tells all what it is. A pipe or a compressed file has no slices: only one
 /// process can read the one, and the other only from its beginning.
 inline void look_at(SlicedFile& file) {
@@ -63,12 +126,15 @@ inline void look_at(SlicedFile& file) {
     file.dimension = lab::dimension_of(file.opened->frames);
     file.precision = lab::precision_of_frames(file.opened->frames);
     const bool is_regular = file.path != "-" && std::filesystem::is_regular_file(file.path);
-    file.has_slices =
-        is_regular && lab::compression_extension_of(file.path).empty() && take_slice(*file.opened);
+    if (is_regular && lab::compression_extension_of(file.path).empty()) {
+      file.identity = identity_of(file);
+      file.has_slices = take_slice(*file.opened);
+    }
   });
   broadcast(&file.dimension, sizeof(file.dimension));
   broadcast(&file.precision, sizeof(file.precision));
   broadcast(&file.has_slices, sizeof(file.has_slices));
+  broadcast(&file.identity, sizeof(file.identity));
 }
 
 /// The boxes of the first frame, or of the slice that was taken, with coordinates of type Real.
@@ -115,7 +181,11 @@ std::vector<Box<D, Real>> read_slice(SlicedFile& file) {
     if (rank() != 0 && !file.has_slices) return;
     if (rank() != 0) {
       open(file);
-      take_slice(*file.opened);
+      check_same_file(file);
+      if (!take_slice(*file.opened))
+        throw Unusable(
+            fmt::format("{}: rank {} cannot read a slice; expected the same file as on rank 0, which can",
+                        file.path, rank()));
     }
     boxes = read_first<D, Real>(std::move(*file.opened));
     file.opened.reset();

@@ -119,6 +119,40 @@ TEST(MpiProgram, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(on_ranks(2, "$MPI pairs --help").output, HasSubstr("--statistics"));
 }
 
+/// Joins boxes.csv or boxes.npy by two ranks, each of which looks for it in a folder of its own.
+Ended in_two_folders(const std::string& first, const std::string& second, const std::string& name) {
+  const auto rank_in = [&](const std::string& folder) {
+    return fmt::format("-n 1 sh -c 'cd {} && exec {} pairs --count {}'", folder, BROADSIDE_MPI_PROGRAM, name);
+  };
+  return shell(fmt::format("timeout -k 5 60 {} {} : {}", BROADSIDE_MPIEXEC, rank_in(first), rank_in(second)));
+}
+
+TEST(MpiProgram, RefusesAFileThatIsAnotherOnAnotherRank) {
+  const TemporaryFolder first;
+  const TemporaryFolder second;
+  const std::string header = "min_x,min_y,max_x,max_y\n";
+  const auto expect = [&](const std::string& name, const std::string& text) {
+    const Ended ended = in_two_folders(first.file(""), second.file(""), name);
+    EXPECT_EQ(ended.status, text.empty() ? 0 : 2) << name << ended.errors;
+    EXPECT_THAT(ended.errors, HasSubstr(text));
+  };
+  for (const TemporaryFolder* const folder : {&first, &second}) {
+    folder->put("same.csv", table(100, 1));
+    folder->put("longer.csv", header + (folder == &first ? "0,0,1,1\n" : "0,0,1,1\n0,0,1,2\n"));
+    folder->put("stale.csv", header + (folder == &first ? "0,0,1,1\n5,5,6,6\n" : "5,5,6,6\n0,0,1,1\n"));
+    for (const std::string name : {"flat", "solid"})
+      ASSERT_EQ(run({"convert", folder->put(name + ".csv", table(8, 1, name == "flat" ? 4 : 6)), "-o",
+                     folder->file(name + ".npy")})
+                    .status,
+                0);
+  }
+  expect("same.csv", "");
+  expect("longer.csv", "rank 1 finds 40 bytes in longer.csv; expected 32 as on rank 0");
+  expect("stale.csv", "rank 1 finds other content in stale.csv than rank 0");
+  ASSERT_EQ(shell(fmt::format("cp {} {}", second.file("solid.npy"), second.file("flat.npy"))).status, 0);
+  expect("flat.npy", "in flat.npy; expected");
+}
+
 TEST(MpiProgram, EndsWhereTheOutputCannotBeTaken) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", table(2000, 1));
