@@ -116,7 +116,7 @@ void write(std::span<const LargePair> pairs, bool has_large_numbers, lab::PairFi
   }
 }
 
-/// Only rank 0 writes; an error of its is one of all.
+/// Rank 0 writes. If it cannot, all ranks throw.
 void write_all(const MpiPairsArguments& arguments, std::span<const LargePair> own, bool has_large_numbers) {
   PairsOfRanks pairs(own);
   on_all([&] {

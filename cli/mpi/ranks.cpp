@@ -55,21 +55,21 @@ std::uint64_t sum_of_ranks(std::uint64_t number) {
 }
 
 void send(const void* bytes, std::uint64_t size, int to) {
-  const auto* place = static_cast<const std::byte*>(bytes);
+  const auto* next = static_cast<const std::byte*>(bytes);
   while (size > 0) {
     const std::uint64_t piece = std::min(size, most_bytes);
-    MPI_Send(place, static_cast<int>(piece), MPI_BYTE, to, tag, MPI_COMM_WORLD);
-    place += piece;
+    MPI_Send(next, static_cast<int>(piece), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+    next += piece;
     size -= piece;
   }
 }
 
 void receive(void* bytes, std::uint64_t size, int from) {
-  auto* place = static_cast<std::byte*>(bytes);
+  auto* next = static_cast<std::byte*>(bytes);
   while (size > 0) {
     const std::uint64_t piece = std::min(size, most_bytes);
-    MPI_Recv(place, static_cast<int>(piece), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    place += piece;
+    MPI_Recv(next, static_cast<int>(piece), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    next += piece;
     size -= piece;
   }
 }

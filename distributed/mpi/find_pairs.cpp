@@ -26,7 +26,7 @@ struct Side {
   explicit Side(const BoxView<D, Real>& handed_in) : mine(handed_in) {}
 
   BoxView<D, Real> mine;
-  std::vector<std::uint64_t> ends;  ///< for each rank, the number after its last box's
+  std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box's
 
   std::vector<Box<D, Real>> boxes{};
   std::vector<Id> ids{};
@@ -47,7 +47,7 @@ struct Side {
   }
 };
 
-/// Files the pairs that belong to the part by the ranks that own them.
+/// Collects the pairs that belong to the part, in one list for each rank that owns some.
 template <typename LeftSide, typename Id, typename P>
 class OwnedPairs final : public PairSink {
  public:
@@ -111,7 +111,7 @@ void hand_on(std::span<const Pair> pairs, const PairCallback& take) {
   }
 }
 
-/// A number for all that ranks must agree on (FNV-1a).
+/// A hash (FNV-1a) of everything that must be the same on all ranks.
 template <int D, typename Real>
 std::uint64_t fingerprint(const Options& options, bool is_between) {
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -275,7 +275,7 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
                       const PairCallback& pairs, const Options& options) {
   Communicator comm(mpi_comm);
   comm.check_same(fingerprint<D, Real>(options, right != nullptr),
-                  "spec, threads, sample, size of numbers, sets, dimension or type of coordinate");
+                  "spec, threads, sample, size of ids, sets, dimension or type of coordinate");
   const std::array<BoxView<D, Real>, 2> both{boxes, right == nullptr ? BoxView<D, Real>() : *right};
   const std::span<const BoxView<D, Real>> views = std::span(both).first(right == nullptr ? 1 : 2);
   std::unique_ptr<PairFinder<D, Real>> finder;

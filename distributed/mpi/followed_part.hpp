@@ -33,11 +33,11 @@ struct EnteringBox {
 
 /// One thread at a time. After a call that has thrown, only the destructor may be called.
 ///
-/// The tracker sees boxes while they touch the part. It tells of pairs as well that go on elsewhere, or have
-/// come from there, or that belong to another part, which has both boxes as well. Whether one is an event of
-/// all space is told by the boxes before and now: a pair begins if it did not overlap before, and is told by
-/// the part that it belongs to now; it ends if it does not overlap now, and is told by the part that it
-/// belonged to.
+/// The tracker sees a box while it touches the part. So it also reports pairs that only cross the part's
+/// bounds, and pairs that belong to another part, which has both boxes too. The boxes before and now tell
+/// whether a pair is an event of the whole world: it begins if it did not overlap before, and the part to
+/// which it belongs now reports it; it ends if it does not overlap now, and the part to which it belonged
+/// reports it.
 template <int D, typename Real>
 class FollowedPart {
  public:
@@ -52,7 +52,7 @@ class FollowedPart {
   FollowedPart(const Region& region, std::unique_ptr<PairTracker<D, Real>> tracker)
       : region_(region), tracker_(std::move(tracker)) {}
 
-  /// The box of this number has changed; `owner` is the rank that says so.
+  /// A box that is in the part has changed; `owner` is the rank that owns it.
   void change(const MovedBox<D, Real>& box, std::uint32_t owner) {
     change_slot(slots_.at(box.id), box.now, owner);
   }
@@ -150,7 +150,7 @@ class FollowedPart {
 
   Region region_;
   std::unique_ptr<PairTracker<D, Real>> tracker_;
-  std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // by number
+  std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // by id
   std::vector<std::uint64_t> ids_;                          // by slot, as all that follows
   std::vector<std::uint32_t> owners_;
   std::vector<Box<D, Real>> before_;  // at the last update

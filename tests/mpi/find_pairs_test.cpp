@@ -103,7 +103,7 @@ TEST(MpiFindPairs, FindsThePairsBetweenTwoSets) {
   });
 }
 
-TEST(MpiFindPairs, FindsThePairsBetweenTwoSetsByLargeNumbers) {
+TEST(MpiFindPairs, FindsThePairsBetweenTwoSetsByLargeIds) {
   const std::vector<std::vector<Box2>> sets = scenes<2>();
   EXPECT_EQ(mpi::find_pairs(MPI_COMM_WORLD, own_of(Share::evenly, sets[0]),
                             own_of(Share::some_have_none, sets[2]), {.has_large_ids = true}),

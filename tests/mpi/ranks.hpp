@@ -40,10 +40,10 @@ inline std::size_t begin_of(Share share, std::size_t count, int of_rank) {
 
 template <typename Box>
 std::vector<Box> own_of(Share share, const std::vector<Box>& boxes) {
-  const auto place = [&](int of_rank) {
+  const auto begin = [&](int of_rank) {
     return boxes.begin() + static_cast<std::ptrdiff_t>(begin_of(share, boxes.size(), of_rank));
   };
-  return {place(rank()), place(rank() + 1)};
+  return {begin(rank()), begin(rank() + 1)};
 }
 
 /// The message of what `work` throws as an Error; empty, or that of another exception, where it throws none

@@ -22,8 +22,8 @@
 
 namespace broadside::mpi {
 
-/// What went wrong on another rank, such as a lack of memory, thrown where nothing did. The text begins with
-/// the rank.
+/// Thrown on the other ranks if something fails on one, such as for lack of memory. The text begins with the
+/// rank that failed.
 class BROADSIDE_PUBLIC RankError : public std::runtime_error {
  public:
   RankError(int rank, const std::string& message) : std::runtime_error(message), rank_(rank) {}
@@ -43,8 +43,7 @@ struct Options {
   /// How many boxes of all ranks the cuts are made from; 0: 16,384, or 4,096 a rank where that is more.
   std::size_t sample = 0;
 
-  /// Whether boxes and pairs are sent with numbers of 64 bits although 32 would do. Where there are more
-  /// boxes they always are.
+  /// Whether ids are sent as 64 bits although 32 would do. Above 2^32 boxes they always are.
   bool has_large_ids = false;
 };
 
@@ -87,15 +86,15 @@ BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& bo
 
 /// Finds every pair of overlapping boxes of all ranks. Collective.
 ///
-/// A box's number is its place in `boxes` plus the number of boxes of all ranks before. Each pair is handed
-/// to `pairs` once, with first < second, on the rank that handed in the first; the pairs of a rank are
-/// sorted. So pairs, rank after rank, are the same in the same order for any number of ranks.
+/// A box's id is its index in `boxes` plus the number of boxes of all ranks before. Each pair is handed to
+/// `pairs` once, with first < second, on the rank that handed in the first box; the pairs of a rank are
+/// sorted. So the pairs of all ranks in turn are the same, in the same order, for any number of ranks.
 ///
 /// Boxes are closed and may be absent, as in broadside::find_pairs(). A rank may have none, and up to
 /// 2^32 - 1; in a rank's part of space there may be as many.
 ///
 /// Throws on all ranks or on none, but for what MPI itself makes of its errors: InvalidInput naming rank and
-/// box, with the box's place on that rank; InvalidSpec, also where options, dimension or type differ between
+/// box, with the box's index on that rank; InvalidSpec, also where options, dimension or type differ between
 /// ranks; InvalidFrame for too many boxes. If anything else is thrown on a rank, such as std::bad_alloc, that
 /// rank throws it on and the others RankError. No pair is handed on before all ranks have theirs; where
 /// `pairs` throws, other ranks have handed on their own.
@@ -103,8 +102,9 @@ BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& bo
 /// Cost: boxes are sent to the ranks whose part of space they touch, and pairs to their owners. Memory: that
 /// of a search in the part, with copies of its boxes, and of the pairs, twice.
 ///
-/// Several threads may call it at the same time for different communicators, where MPI_THREAD_MULTIPLE is
-/// provided.
+/// A rank may search by several threads, which do not call MPI: initialise it by MPI_Init_thread() with
+/// MPI_THREAD_FUNNELED. With MPI_THREAD_MULTIPLE, several threads may call this at the same time for
+/// different communicators.
 template <BoxArray Boxes>
 Statistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pairs,
                       const Options& options = {}) {
@@ -112,9 +112,8 @@ Statistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pai
   return detail::find_pairs(comm, View(boxes), static_cast<const View*>(nullptr), pairs, options);
 }
 
-/// Finds every pair of a box of `left` and an overlapping one of `right`, of all ranks, likewise: first is a
-/// number in the left set and second one in the right, and the rank that handed in the left box gets the
-/// pair.
+/// Likewise finds every pair of a box of `left` and an overlapping one of `right`, of all ranks: first is an
+/// id in the left set and second one in the right, and the rank that handed in the left box gets the pair.
 template <BoxArray Left, BoxArray Right>
 requires std::same_as < typename broadside::detail::ViewTraits<Left>::View,
 typename broadside::detail::ViewTraits<Right>::View >
