@@ -96,7 +96,7 @@ class PairsOfRanks {
   int next_ = 1;
 };
 
-void write(std::span<const LargePair> pairs, bool has_large_numbers, lab::PairFile& file) {
+void write(std::span<const LargePair> pairs, bool has_large_ids, lab::PairFile& file) {
   constexpr std::size_t pairs_a_piece = std::size_t{1} << 14;
   std::vector<Pair> small;
   std::vector<std::array<std::uint64_t, 2>> large;
@@ -106,18 +106,18 @@ void write(std::span<const LargePair> pairs, bool has_large_numbers, lab::PairFi
     small.clear();
     large.clear();
     for (const LargePair pair : piece) {
-      if (has_large_numbers)
+      if (has_large_ids)
         large.push_back({pair.first, pair.second});
       else
         small.push_back(
             {BoxId(static_cast<std::uint32_t>(pair.first)), BoxId(static_cast<std::uint32_t>(pair.second))});
     }
-    has_large_numbers ? file.write(large) : file.write(small);
+    has_large_ids ? file.write(large) : file.write(small);
   }
 }
 
 /// Rank 0 writes. If it cannot, all ranks throw.
-void write_all(const MpiPairsArguments& arguments, std::span<const LargePair> own, bool has_large_numbers) {
+void write_all(const MpiPairsArguments& arguments, std::span<const LargePair> own, bool has_large_ids) {
   PairsOfRanks pairs(own);
   on_all([&] {
     if (rank() != 0) {
@@ -127,8 +127,8 @@ void write_all(const MpiPairsArguments& arguments, std::span<const LargePair> ow
     try {
       lab::write_file(arguments.output, [&](std::ostream& stream) {
         lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to),
-                           arguments.files.size() == 2, {}, has_large_numbers);
-        pairs.take_all([&](std::span<const LargePair> some) { write(some, has_large_numbers, file); });
+                           arguments.files.size() == 2, {}, has_large_ids);
+        pairs.take_all([&](std::span<const LargePair> some) { write(some, has_large_ids, file); });
         file.finish();
       });
     } catch (...) {

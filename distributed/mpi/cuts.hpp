@@ -22,7 +22,7 @@ inline std::size_t standard_sample(std::size_t ranks) {
 }
 
 /// Appends about `wanted` of `count` boxes, spread evenly: one from anywhere in each stretch, since boxes may
-/// come in rows and columns that an even step would meet at the same place each time.
+/// come in rows and columns in which an even step would hit the same column each time.
 template <typename Real, int D, typename BoxAt>
 void add_sample(std::size_t count, std::size_t wanted, const BoxAt& box_at,
                 std::vector<Box<D, Real>>& sample) {
