@@ -111,9 +111,15 @@ class OutOfCoreJoin<D, Real>::Work {
     const std::uint64_t all = pairs();
     check_runs();
     std::uint64_t done = 0;
+    // A visitor may copy what it is given, which must be little.
+    constexpr std::size_t max_visited = std::size_t{1} << 16;
     const std::function<void(std::span<const P>)> counted = [&](std::span<const P> pairs) {
-      visit(pairs);
-      report(OutOfCoreStage::sorting, done += pairs.size(), all);
+      while (!pairs.empty()) {
+        const std::span<const P> chunk = pairs.first(std::min(pairs.size(), max_visited));
+        visit(chunk);
+        report(OutOfCoreStage::sorting, done += chunk.size(), all);
+        pairs = pairs.subspan(chunk.size());
+      }
     };
     try {
       std::vector<Run> runs;

@@ -47,7 +47,10 @@ class RunWriter {
         counts_only_(counts_only) {
     part_.runs.clear();
     part_.pairs = 0;
-    if (!counts_only_) pairs_.reserve(max_pairs_);
+    if (counts_only_) return;
+    // Sorting may swap the two, and neither should have to grow.
+    pairs_.reserve(max_pairs_);
+    scratch_.reserve(max_pairs_);
   }
 
   /// May be called by several threads at once.
@@ -116,7 +119,8 @@ void merge_at_once(std::span<const Run> runs, std::uint64_t memory,
   // times as large as what can stay.
   const std::size_t room =
       std::max<std::size_t>(memory / (2 * sizeof(P)), 4 * runs.size() * (run_block_bytes / sizeof(P)));
-  pool.reserve(room + run_block_bytes / sizeof(P));
+  // Sorting may swap the two, and neither should have to grow.
+  for (std::vector<P>* const pairs : {&pool, &scratch}) pairs->reserve(room + run_block_bytes / sizeof(P));
   for (std::size_t run = 0; run < runs.size(); ++run) {
     readers.emplace_back(runs[run].path, runs[run].blocks);
     pool_next(run);

@@ -35,8 +35,9 @@ void join() {
                       .source = "this test",
                       .finder_2d = [](const Settings&) { return std::make_unique<DyingFinder>(); }});
   const std::vector<Box2> boxes(3);
-  mpi::find_pairs(MPI_COMM_WORLD, boxes, [](std::span<const LargePair>) { std::puts("was given pairs"); },
-                  {.algorithm = "dying"});
+  mpi::find_pairs(
+      MPI_COMM_WORLD, boxes, [](std::span<const LargePair>) { std::puts("was given pairs"); },
+      mpi::Options{.algorithm = "dying"});
 }
 
 }  // namespace
