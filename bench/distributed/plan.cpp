@@ -235,8 +235,8 @@ void simulate(const lab::NamedScene& named, const Wishes& wishes, lab::Columns& 
                  lab::rounded(population.pairs_per_box()), std::to_string(steps),
                  lab::grouped(sampled / wishes.ranks), lab::rounded(loads.cost), lab::rounded(loads.boxes),
                  lab::rounded(loads.pairs), lab::rounded(loads.copies), lab::whole(sent), lab::bytes(memory),
-                 lab::rounded(median.boxes), lab::rounded(median.pairs), lab::rounded(median.copies),
-                 lab::rounded(ranks_per_query(drawn, partition))});
+                 lab::rounded(median.cost), lab::rounded(median.boxes), lab::rounded(median.pairs),
+                 lab::rounded(median.copies), lab::rounded(ranks_per_query(drawn, partition))});
   }
 }
 

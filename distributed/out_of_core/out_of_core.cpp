@@ -45,7 +45,7 @@ class OutOfCoreJoin<D, Real>::Work {
         options_(checked(std::move(options))),
         finder_(finder_of(options_)),
         folder_(options_.folder),
-        part_join_(folder_, *finder_, options_.memory, sources_.size(), options_.counts_only) {
+        part_join_(folder_, options_.memory, sources_.size(), options_.counts_only) {
     const std::string kind = std::to_string(D) + "D " + (sizeof(Real) == 4 ? "float" : "double") +
                              (sources_.size() == 2 ? ", two sources" : "") +
                              (options_.has_large_ids ? ", 64-bit ids" : "") +
@@ -110,6 +110,7 @@ class OutOfCoreJoin<D, Real>::Work {
           "OutOfCoreJoin: pairs were counted only, and cannot be visited; expected counts_only = false");
     const std::uint64_t all = pairs();
     check_runs();
+    finder_.reset();  // for the memory that it keeps between searches
     std::uint64_t done = 0;
     // A visitor may copy what it is given, which must be little.
     constexpr std::size_t max_visited = std::size_t{1} << 16;
@@ -441,11 +442,12 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   void join(std::size_t place) {
+    if (!finder_) finder_ = finder_of(options_);
     Part part = manifest_.parts[place];
     if (manifest_.has_large_ids)
-      part_join_.template join<LargePair>(part, region_of(part));
+      part_join_.template join<LargePair>(part, region_of(part), *finder_);
     else
-      part_join_.template join<Pair>(part, region_of(part));
+      part_join_.template join<Pair>(part, region_of(part), *finder_);
     part.is_joined = true;
     manifest_.parts[place] = std::move(part);
     folder_.write(manifest_);

@@ -99,13 +99,8 @@ class PartJoin {
   using Region = typename Partition<D, Real>::Region;
 
   /// `memory` in bytes. Boxes come from one source or from two. With `counts_only` no pairs are kept.
-  PartJoin(const WorkFolder& folder, PairFinder<D, Real>& finder, std::uint64_t memory, std::size_t sources,
-           bool counts_only)
-      : folder_(folder),
-        finder_(finder),
-        memory_(memory),
-        is_between_(sources == 2),
-        counts_only_(counts_only) {}
+  PartJoin(const WorkFolder& folder, std::uint64_t memory, std::size_t sources, bool counts_only)
+      : folder_(folder), memory_(memory), is_between_(sources == 2), counts_only_(counts_only) {}
 
   /// How many boxes a part may have to be joined in one search. Half of the memory is for the boxes and
   /// their search; a quarter is for pairs.
@@ -120,7 +115,7 @@ class PartJoin {
   /// Fills in the runs of `part`, pairs of type P. A part that is too large is joined piece by piece.
   /// Throws CorruptFile and OutOfCoreError.
   template <typename P>
-  void join(Part& part, const Region& region) {
+  void join(Part& part, const Region& region, PairFinder<D, Real>& finder) {
     RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
     const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
@@ -132,10 +127,11 @@ class PartJoin {
     left.reserve(room(0));
     if (is_between_ || is_in_pieces) right.reserve(room(is_between_ ? 1 : 0));
     for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]); load(reader, region, most, left);) {
-      if (!is_between_) join_one(left, runs);
+      if (!is_between_) join_one(left, finder, runs);
       // Within one source: the pieces that follow this one. Between two: all pieces of the other.
       BlockReader others = is_between_ ? BlockReader(folder_.box_file(part, 1), part.blocks[1]) : reader;
-      while ((is_between_ || is_in_pieces) && load(others, region, most, right)) join_two(left, right, runs);
+      while ((is_between_ || is_in_pieces) && load(others, region, most, right))
+        join_two(left, right, finder, runs);
     }
     runs.flush();
   }
@@ -156,22 +152,22 @@ class PartJoin {
   }
 
   template <typename P>
-  void join_one(const PartBoxes<D, Real>& set, RunWriter<P>& runs) {
+  void join_one(const PartBoxes<D, Real>& set, PairFinder<D, Real>& finder, RunWriter<P>& runs) {
     PairsOfIds<P> pairs(
         {set.ids.data(), set.ids.data(), set.begins_before.data(), set.begins_before.data(), true}, runs);
-    finder_.find(set.boxes, pairs);
+    finder.find(set.boxes, pairs);
   }
 
   template <typename P>
-  void join_two(const PartBoxes<D, Real>& left, const PartBoxes<D, Real>& right, RunWriter<P>& runs) {
+  void join_two(const PartBoxes<D, Real>& left, const PartBoxes<D, Real>& right, PairFinder<D, Real>& finder,
+                RunWriter<P>& runs) {
     PairsOfIds<P> pairs({left.ids.data(), right.ids.data(), left.begins_before.data(),
                          right.begins_before.data(), !is_between_},
                         runs);
-    finder_.find_between(left.boxes, right.boxes, pairs);
+    finder.find_between(left.boxes, right.boxes, pairs);
   }
 
   const WorkFolder& folder_;
-  PairFinder<D, Real>& finder_;
   std::uint64_t memory_;
   bool is_between_;
   bool counts_only_;
