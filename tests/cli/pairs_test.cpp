@@ -122,6 +122,15 @@ TEST(PairsVerb, ReadsAFileWithinALimitOfMemoryWhateverItsNameIs) {
   EXPECT_EQ(run({"pairs", file, "--memory", "1G"}).output, run({"pairs", file}).output);
 }
 
+TEST(PairsVerb, LeavesOutInvalidBoxesWithinALimitOfMemory) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.put("boxes.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n5,5,4,6\n1,1,2,2\nnan,0,1,1\n0,0,1,1\n");
+  const std::string expected = run({"pairs", file, "--skip-invalid"}).output;
+  EXPECT_EQ(std::ranges::count(expected, '\n'), 4);
+  EXPECT_EQ(run({"pairs", file, "--skip-invalid", "--memory", "1G"}).output, expected);
+}
+
 TEST(PairsVerb, LeavesNoWorkFolderBehindWhereBoxesCannotBeRead) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes + "1,2,nan,3\n");

@@ -92,9 +92,9 @@ class CsvRows {
 
   /// The row's box, absent where it is invalid and is to be left out.
   Box<D, Real> box() {
-    Box<D, Real> box = absent_box<D, Real>();
-    holds([&] { box = made_box(); });
-    return box;
+    Box<D, Real> box;
+    // g++ 12 drops a value that `box` had before, where made_box() throws.
+    return holds([&] { box = made_box(); }) ? box : absent_box<D, Real>();
   }
 
   const std::string& track() const {
