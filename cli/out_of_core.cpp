@@ -32,7 +32,16 @@ struct FileToRead {
   lab::ReadOptions options;
 };
 
-lab::BoxFile open(const FileToRead& file) { return lab::open_file(file.path, file.options); }
+lab::BoxFile open(const FileToRead& file) {
+  lab::ReadOptions options = file.options;
+  // A reader does not count what it rounds.
+  const bool is_rounded = options.precision == lab::Precision::float32;
+  if (is_rounded) options.precision.reset();
+  lab::BoxFile opened = lab::open_file(file.path, options);
+  if (is_rounded)
+    opened.frames = lab::with_precision(std::move(opened.frames), lab::Precision::float32, opened.name);
+  return opened;
+}
 
 /// The boxes of a file's first frame, piece by piece.
 template <int D, typename Real>
@@ -44,20 +53,17 @@ class FileBoxes final : public BoxSource<D, Real> {
   }
 
   void rewind() override {
-    // The reader is as new until a piece is read.
-    if (std::exchange(has_begun_, false)) open_again();
+    ++pass_;
+    open_again();
   }
 
   bool next(std::vector<Box<D, Real>>& boxes) override {
-    has_begun_ = true;
     if (reader().first_piece(boxes)) return true;
-    if (const std::string warning = reader().warning(); !warning.empty() && !std::exchange(has_warned_, true))
-      say(warning);
+    if (pass_ != told_pass) return false;
     Step<D, Real> step;
-    if (!is_moving_ && reader().next(step)) {
-      is_moving_ = true;
+    if (reader().next(step))
       say(fmt::format("{}: holds several frames; these are the pairs of the first", file_.path));
-    }
+    if (const std::string warning = reader().warning(); !warning.empty()) say(warning);
     return false;
   }
 
@@ -69,16 +75,20 @@ class FileBoxes final : public BoxSource<D, Real> {
   }
 
   void open_again() {
+    FileToRead file = file_;
+    if (file.options.say_invalid && pass_ != told_pass) file.options.say_invalid = [](std::string_view) {};
     frames_.reset();
-    frames_.emplace(open(file_).frames);
+    frames_.emplace(open(file).frames);
   }
+
+  // The first pass only samples the boxes, and the second reads them all: it is the one that says what is
+  // wrong with the file.
+  static constexpr int told_pass = 2;
 
   FileToRead file_;
   std::optional<lab::AnyFrameReader> frames_;
   std::uint64_t estimated_ = 0;
-  bool has_begun_ = false;
-  bool has_warned_ = false;
-  bool is_moving_ = false;
+  int pass_ = 0;
 };
 
 /// A file that can be read again, and that does not need more memory than there may be.

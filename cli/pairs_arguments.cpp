@@ -110,8 +110,10 @@ void check_memory(const PairsArguments& arguments) {
     throw Unusable(
         "--memory in a build without Broadside::out_of_core; expected a POSIX system, and libxxhash-dev "
         "when the program was built");
-  if (arguments.is_swept || !arguments.within.empty() || !arguments.ids.empty() || !arguments.frame.empty())
-    throw Unusable("--swept, --within, --ids or --frame with --memory; expected none of them");
+  for (const auto& [is_given, option] :
+       {std::pair(arguments.is_swept, "--swept"), std::pair(!arguments.within.empty(), "--within"),
+        std::pair(!arguments.ids.empty(), "--ids"), std::pair(!arguments.frame.empty(), "--frame")})
+    if (is_given) throw Unusable(fmt::format("{} with --memory; expected one or the other", option));
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ TEST(PairsVerb, WritesAnArrayIntoAPipe) {
 
 std::string many_boxes(int count) {
   std::string rows = "min_x,min_y,max_x,max_y\n";
-  for (int i = 0; i < count; ++i) {
-    const int x = i * 7919 % 400;
-    const int y = i * 104729 % 397;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t x = i * 7919 % 400;
+    const std::int64_t y = i * 104729 % 397;
     rows += fmt::format("{},{},{},{}\n", x, y, x + 1 + i % 3, y + 1);
   }
   return rows;
@@ -128,7 +128,19 @@ TEST(PairsVerb, LeavesOutInvalidBoxesWithinALimitOfMemory) {
       folder.put("boxes.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n5,5,4,6\n1,1,2,2\nnan,0,1,1\n0,0,1,1\n");
   const std::string expected = run({"pairs", file, "--skip-invalid"}).output;
   EXPECT_EQ(std::ranges::count(expected, '\n'), 4);
-  EXPECT_EQ(run({"pairs", file, "--skip-invalid", "--memory", "1G"}).output, expected);
+  const Ended ended = run({"pairs", file, "--skip-invalid", "--memory", "1G"});
+  EXPECT_EQ(ended.output, expected);
+  // Once, although boxes are read twice.
+  const std::size_t told = ended.errors.find("min <= max");
+  EXPECT_NE(told, std::string::npos);
+  EXPECT_EQ(ended.errors.find("min <= max", told + 1), std::string::npos);
+}
+
+TEST(PairsVerb, SaysWhatItRoundsWithinALimitOfMemory) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", "0,0,1,1.1\n");
+  EXPECT_THAT(run({"pairs", file, "--precision", "float", "--memory", "1G"}).errors,
+              HasSubstr("1 of 4 coordinates was rounded to float"));
 }
 
 TEST(PairsVerb, LeavesNoWorkFolderBehindWhereBoxesCannotBeRead) {
