@@ -9,7 +9,7 @@ soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
 results := paper/results
 published := build/published
 PROCESSES := 10
-sources := find $(wildcard include src bindings integrations paper lab cli tests bench examples) -name '*.[ch]pp'
+sources := find $(wildcard include src bindings distributed integrations paper lab cli tests bench examples) -name '*.[ch]pp'
 # The sources that a build compiles, of which some include several others.
 compiled := sed -n 's/^ *"file": "\(.*\)".*/\1/p'
 
