@@ -2,6 +2,7 @@
 #include "broadside/partition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -15,15 +16,17 @@ namespace broadside {
 namespace {
 
 /// The number of boxes of a sample that are joined at first, to see where the pairs are. If they have fewer
-/// pairs than enough_pairs, more boxes are joined.
+/// pairs than these, more boxes are joined.
 constexpr std::size_t first_joined = 4096;
 constexpr std::size_t enough_pairs = 4096;
+constexpr std::size_t enough_pairs_per_part = 64;
 
 /// A limit, since boxes without extents stay as they are however often they are doubled.
 constexpr int max_doublings = 16;
 
-/// The number of items that a cut is chosen from, evenly of more. Its share is then off by about a hundredth,
-/// and samples for a thousand parts need not be sorted at each level.
+/// The numbers of boxes and of pairs that a cut is chosen from, evenly of more. Its share is then off by
+/// about a hundredth, and samples for a thousand parts need not be sorted at each level. Pairs are chosen
+/// apart from boxes, since there are few, and each costs as much as many boxes.
 constexpr std::size_t max_examined = std::size_t{1} << 14;
 
 /// An item that cuts share out: a box, or the point to which a pair belongs, with its cost.
@@ -38,10 +41,11 @@ class Cutter {
  public:
   using Cut = typename Partition<D, Real>::Cut;
   using Items = std::vector<Weighted<D, Real>>;
+  using BoxesAndPairs = std::array<Items, 2>;
 
   std::vector<Cut> take_cuts() { return std::move(cuts_); }
 
-  void cut(Items items, std::size_t parts, std::size_t depth_left) {
+  void cut(BoxesAndPairs items, std::size_t parts, std::size_t depth_left) {
     const std::size_t own_index = cuts_.size();
     cuts_.emplace_back();
     const std::size_t parts_below = parts / 2;
@@ -51,13 +55,15 @@ class Cutter {
       cuts_[own_index].below = parts_++;
       return;
     }
-    Items below;
-    Items above;
-    for (const Weighted<D, Real>& item : items) {
-      if (item.box.min[choice->axis] < choice->at) below.push_back(item);
-      if (item.box.max[choice->axis] >= choice->at) above.push_back(item);
+    BoxesAndPairs below;
+    BoxesAndPairs above;
+    for (std::size_t kind = 0; kind < items.size(); ++kind) {
+      for (const Weighted<D, Real>& item : items[kind]) {
+        if (item.box.min[choice->axis] < choice->at) below[kind].push_back(item);
+        if (item.box.max[choice->axis] >= choice->at) above[kind].push_back(item);
+      }
+      Items().swap(items[kind]);
     }
-    Items().swap(items);
     const auto index_below = static_cast<std::uint32_t>(cuts_.size());
     cut(std::move(below), parts_below, depth_left - 1);
     const auto index_above = static_cast<std::uint32_t>(cuts_.size());
@@ -74,25 +80,30 @@ class Cutter {
 
   /// The cut that makes the cost per part of the costlier side least; nothing if no cut makes both sides
   /// cheaper than the whole.
-  std::optional<Choice> choose(const Items& items, std::size_t parts_below, std::size_t parts_above) {
-    const std::size_t step = items.size() / max_examined + 1;
+  std::optional<Choice> choose(const BoxesAndPairs& items, std::size_t parts_below, std::size_t parts_above) {
     examined_.clear();
+    for (const Items& some : items) examine(some);
     double all = 0;
-    // One from anywhere in each stretch: boxes may alternate. (Knuth's MMIX generator)
-    std::uint64_t random = 1;
-    for (std::size_t begin = 0; begin < items.size(); begin += step) {
-      random = random * 6364136223846793005U + 1442695040888963407U;
-      const std::size_t i =
-          begin + static_cast<std::size_t>(random >> 33) % std::min(step, items.size() - begin);
-      examined_.push_back(items[i]);
-      all += items[i].cost;
-    }
+    for (const Weighted<D, Real>& item : examined_) all += item.cost;
     std::optional<Choice> best;
     for (std::size_t axis = 0; axis < D; ++axis) {
       const std::optional<Choice> choice = choose_on(axis, all, parts_below, parts_above);
       if (choice && (!best || choice->cost < best->cost)) best = choice;
     }
     return best;
+  }
+
+  /// Adds at most max_examined items that stand for all.
+  void examine(const Items& items) {
+    const std::size_t step = items.size() / max_examined + 1;
+    // One from anywhere in each stretch: boxes may alternate. (Knuth's MMIX generator)
+    std::uint64_t random = 1;
+    for (std::size_t begin = 0; begin < items.size(); begin += step) {
+      random = random * 6364136223846793005U + 1442695040888963407U;
+      const std::size_t stretch = std::min(step, items.size() - begin);
+      const Weighted<D, Real>& item = items[begin + static_cast<std::size_t>(random >> 33) % stretch];
+      examined_.push_back({item.box, item.cost * static_cast<double>(stretch)});
+    }
   }
 
   std::optional<Choice> choose_on(std::size_t axis, double all, std::size_t parts_below,
@@ -143,12 +154,14 @@ Box<D, Real> doubled(Box<D, Real> box) {
   return box;
 }
 
-/// Adds items for the estimated cost of all pairs, each at the greater of its two minima.
+/// The estimated cost of all pairs, as at least `enough` items if there are so many, each at the greater of
+/// its two minima.
 ///
 /// A thin sample has few pairs, and each stands for very many. So its boxes are enlarged until they have
 /// enough pairs. If boxes are spread evenly, twice the extents make 2^D times the pairs.
 template <int D, typename Real>
-void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
+std::vector<Weighted<D, Real>> weighted_pairs(const std::vector<Weighted<D, Real>>& items,
+                                              std::uint64_t boxes, std::size_t enough) {
   std::vector<Box<D, Real>> joined;
   std::vector<Pair> pairs;
   std::size_t step = std::max<std::size_t>(1, items.size() / first_joined);
@@ -156,13 +169,13 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
     joined.clear();
     for (std::size_t i = 0; i < items.size(); i += step) joined.push_back(items[i].box);
     pairs = find_pairs(joined, algorithms().front().name);
-    if (step == 1 || pairs.size() >= enough_pairs) break;
+    if (step == 1 || pairs.size() >= enough) break;
     // Four times the boxes have sixteen times the pairs.
     step = (step + 3) / 4;
   }
   double enlargement = 1;  // of a box's volume
   const bool is_thin = boxes > items.size();
-  for (int doublings = 0; is_thin && doublings < max_doublings && pairs.size() < enough_pairs; ++doublings) {
+  for (int doublings = 0; is_thin && doublings < max_doublings && pairs.size() < enough; ++doublings) {
     for (Box<D, Real>& box : joined) box = doubled(box);
     enlargement *= std::size_t{1} << D;
     pairs = find_pairs(joined, algorithms().front().name);
@@ -172,15 +185,17 @@ void add_pairs(std::vector<Weighted<D, Real>>& items, std::uint64_t boxes) {
                            static_cast<double>(step) * static_cast<double>(boxes) /
                            static_cast<double>(items.size()) / enlargement;
   // Of very many pairs, some are enough to say where they are.
-  const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough_pairs));
+  const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough));
+  std::vector<Weighted<D, Real>> weighted;
   for (std::size_t i = 0; i < pairs.size(); i += pair_step) {
     const Box<D, Real>& first = joined[index(pairs[i].first)];
     const Box<D, Real>& second = joined[index(pairs[i].second)];
     Weighted<D, Real> item{{}, pair_cost * static_cast<double>(pair_step)};
     for (std::size_t axis = 0; axis < D; ++axis)
       item.box.min[axis] = item.box.max[axis] = std::max(first.min[axis], second.min[axis]);
-    items.push_back(item);
+    weighted.push_back(item);
   }
+  return weighted;
 }
 
 }  // namespace
@@ -190,12 +205,13 @@ Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t 
                               const Region& space) {
   if (parts == 0 || parts >= Cut::part / 2)
     throw std::invalid_argument("Partition: 0 or too many parts; expected 1 or more, and less than 2^31");
-  std::vector<Weighted<D, Real>> items;
+  typename Cutter<D, Real>::BoxesAndPairs items;
   if (parts > 1) {
-    items.reserve(sample.size());
+    items[0].reserve(sample.size());
     for (const Box<D, Real>& box : sample)
-      if (is_present(box) && space.touches(box)) items.push_back({box, 1});
-    if (boxes > 0 && items.size() > 1) add_pairs(items, boxes);
+      if (is_present(box) && space.touches(box)) items[0].push_back({box, 1});
+    if (boxes > 0 && items[0].size() > 1)
+      items[1] = weighted_pairs(items[0], boxes, std::max(enough_pairs, enough_pairs_per_part * parts));
   }
   Cutter<D, Real> cutter;
   cutter.cut(std::move(items), parts, max_depth - 1);
