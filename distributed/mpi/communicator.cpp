@@ -13,7 +13,7 @@
 namespace broadside::mpi {
 namespace {
 
-/// MPI's standard is to end all ranks where a call fails; this is for callers who have set another handler.
+/// By default MPI ends all ranks if a call fails. This is for communicators with another error handler.
 void check(int result, const char* call) {
   if (result == MPI_SUCCESS) return;
   std::array<char, MPI_MAX_ERROR_STRING> text{};

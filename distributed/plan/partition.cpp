@@ -154,8 +154,8 @@ Box<D, Real> doubled(Box<D, Real> box) {
   return box;
 }
 
-/// The estimated cost of all pairs, as at least `enough` items if there are so many, each at the greater of
-/// its two minima.
+/// The estimated cost of all pairs, as `enough` items or more if it finds as many pairs, each at the greater
+/// of its two minima.
 ///
 /// A thin sample has few pairs, and each stands for very many. So its boxes are enlarged until they have
 /// enough pairs. If boxes are spread evenly, twice the extents make 2^D times the pairs.

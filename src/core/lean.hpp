@@ -12,7 +12,7 @@ inline constexpr bool is_lean = true;
 inline constexpr bool is_lean = false;
 #endif
 
-/// A text about an algorithm, for people who choose one.
+/// A text that describes an algorithm to users; empty in lean builds.
 constexpr const char* unless_lean(const char* text) noexcept { return is_lean ? "" : text; }
 
 }  // namespace broadside::core

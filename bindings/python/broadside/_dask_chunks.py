@@ -21,7 +21,7 @@ pandas = import_module("pandas")
 Key = Any  # of a task: a str, or a tuple that begins with one
 Tasks = dict[Key, Any]
 
-# Boxes in memory are cut into chunks of so many rows.
+# Rows of a chunk that boxes in memory are cut into.
 ROWS_OF_CHUNK = 2**17
 
 

@@ -33,7 +33,7 @@ __all__ = ["pairs"]
 # How many boxes the cuts are made from: of all, for each part, and at least of each chunk.
 _SAMPLE, _SAMPLE_OF_PART, _SAMPLE_OF_CHUNK = 2**15, 128, 256
 
-# Above so many links of chunks and parts they go by way of groups of both: 2 n sqrt(n) tasks instead of n * n.
+# With more links between chunks and parts, pieces are routed through groups: 2 n sqrt(n) tasks instead of n * n.
 _MOST_DIRECT_LINKS = 2**14
 
 

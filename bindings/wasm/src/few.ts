@@ -64,7 +64,7 @@ export class Few {
     return this.#first(found);
   }
 
-  /** Room for all pairs of so many boxes. */
+  /** Room for all pairs of the largest number of boxes that is handled here. */
   #room(boxes: number): Uint32Array {
     const ids = boxes * (boxes - 1);
     if (ids > this.#pairs.length) {

@@ -26,8 +26,8 @@ const example = "import { load } from \"broadside\";\n" +
   "console.log(broadside.simd, [...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6])].join());\n";
 
 /**
- * What one visitor downloads who needs one dimension: an entry, and its module with SIMD. So that it does not grow unseen;
- * the goals are 60,000 and 40,000, which docs/javascript.md says are missed.
+ * What a visitor who needs one dimension downloads: an entry, and its module with SIMD. The limits keep it from growing
+ * unnoticed; the goals are 60,000 and 40,000 bytes, which are missed (docs/javascript.md).
  */
 const limits: readonly (readonly [string, string, number])[] = [
   ["index.js", "broadside-2d.js", 97_000], ["index.js", "broadside-3d.js", 101_000],
