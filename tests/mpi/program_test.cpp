@@ -18,7 +18,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Runs a shell command line in which $MPI starts the program on `ranks` ranks, with a time limit of a minute.
+/// Runs a shell command line in which $MPI starts the program on `ranks` ranks, with a time limit of a
+/// minute.
 Ended on_ranks(int ranks, const std::string& line) {
   return shell(fmt::format("MPI=\"timeout -k 5 60 {} -n {} {}\"; DYING=\"timeout -k 5 60 {} -n {} {}\"; {}",
                            BROADSIDE_MPIEXEC, ranks, BROADSIDE_MPI_PROGRAM, BROADSIDE_MPIEXEC, ranks,
