@@ -170,7 +170,7 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
   advice.processor_share = share.value();
   progress.clear();
   advice.warning = boxes.warning;
-  if (!advice.warning.empty()) say(advice.warning);
+  say_lines(advice.warning);
   print(lab::text_of(advice) + lab::busy_hint(advice.processor_share));
   flush_output();
   if (!arguments.json.empty()) {

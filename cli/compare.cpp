@@ -202,7 +202,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   on_signal(OnSignal::note_then_end);
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
-  for (const std::string& warning : comparison.warnings) say(warning);
+  for (const std::string& warning : comparison.warnings) say_lines(warning);
   print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::end);

@@ -42,7 +42,7 @@ Exit run(const ConvertArguments& arguments) {
   const std::optional<lab::Precision> precision = std::exchange(options.precision, std::nullopt);
   lab::BoxFile file = lab::open_file(arguments.file, options);
   const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);
-  if (!converted.warning.empty()) say(converted.warning);
+  say_lines(converted.warning);
   const std::string left_out = lab::text_of_left_out(converted, format);
   if (!left_out.empty()) say(left_out);
   say(lab::text_of(converted, arguments.output, format));

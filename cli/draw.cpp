@@ -109,7 +109,7 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
   check_options(verb, {&named, 1}, {"-n"});
-  if (!named.scene.warning.empty()) say(named.scene.warning);
+  say_lines(named.scene.warning);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   const std::size_t boxes = arguments.boxes.empty() ? drawn_boxes : read_count("-n", arguments.boxes);

@@ -24,7 +24,7 @@ lab::FileInfo info_of(const BoxArguments& arguments, const CLI::App& verb) {
 
 Exit run(const BoxArguments& arguments, const CLI::App& verb) {
   const lab::FileInfo info = info_of(arguments, verb);
-  if (!info.warning.empty()) say(info.warning);
+  say_lines(info.warning);
   print(lab::text_of(info));
   return Exit::fine;
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <forward_list>
 #include <string_view>
 
 #include "cli/message.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 std::atomic<bool> noted = false;
 std::atomic<OnSignal> reaction = OnSignal::end;
+std::atomic<const std::string*> said_at_interruption = nullptr;
 std::atomic<bool> is_on_terminal = false;  // where a line of progress may stand
 static_assert(std::atomic<OnSignal>::is_always_lock_free, "a signal's handler must not wait");
 
@@ -36,7 +38,12 @@ void handle() {
   if (what == OnSignal::end || (what == OnSignal::note_then_end && again)) {
     write_message(is_on_terminal ? "\r\x1b[K" : "");
     write_message(program_name());
-    write_message(": interrupted\n");
+    write_message(": interrupted");
+    if (const std::string* const more = said_at_interruption) {
+      write_message("; ");
+      write_message(*more);
+    }
+    write_message("\n");
     end(Exit::interrupted);
   }
   if (what == OnSignal::note_then_end) {
@@ -47,6 +54,12 @@ void handle() {
 }
 
 }  // namespace
+
+void say_at_interruption(const std::string& what) {
+  // A signal may be reading a former text, so all of them are kept.
+  static std::forward_list<std::string> texts;
+  said_at_interruption = what.empty() ? nullptr : &texts.emplace_front(printable(what));
+}
 
 void on_signal(OnSignal what) {
   reaction = what;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <string>
 
 namespace broadside::cli {
 
@@ -11,6 +12,10 @@ enum class OnSignal {
   note_then_end,  ///< the first is noted for interrupted() to tell, the second ends the program: for work
                   ///< that asks
 };
+
+/// From here on, what is said after "interrupted" when a signal ends the program, such as how to go on; empty
+/// for nothing.
+void say_at_interruption(const std::string& what);
 
 /// From here on, signals do this. A file that is being written when a signal ends the program is removed, and
 /// an old one at its place stays (lab/formats/write_file.hpp).

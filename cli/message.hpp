@@ -20,6 +20,9 @@ const char* program_name() noexcept;
 /// Writes "PROGRAM: TEXT" and a line's end to stderr, the text made printable.
 void say(std::string_view text);
 
+/// Likewise each line of a text that holds several messages, such as a reader's warnings; nothing if empty.
+void say_lines(std::string_view text);
+
 /// Prints text to standard output. Throws Unusable where it is not taken.
 void print(std::string_view text);
 

@@ -2,6 +2,7 @@
 #include "cli/out_of_core.hpp"
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,10 +12,12 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "broadside/out_of_core.hpp"
 
+#include "cli/interruption.hpp"
 #include "cli/message.hpp"
 #include "cli/options.hpp"
 #include "lab/formats/format.hpp"
@@ -63,7 +66,7 @@ class FileBoxes final : public BoxSource<D, Real> {
     Step<D, Real> step;
     if (reader().next(step))
       say(fmt::format("{}: holds several frames; these are the pairs of the first", file_.path));
-    if (const std::string warning = reader().warning(); !warning.empty()) say(warning);
+    say_lines(reader().warning());
     return false;
   }
 
@@ -108,13 +111,25 @@ void check_file(const std::string& path, const lab::BoxFile& file, std::uint64_t
                     file.name, lab::grouped(bytes), file.format->name));
 }
 
-/// What tells a file and how it is read from others. Dates are compared for being the same alone.
+/// Tells a file, and how it is read, from others.
 std::string identity_of(const FileToRead& file, const InputOptions& input) {
-  const auto date = std::filesystem::last_write_time(file.path).time_since_epoch().count();
-  return fmt::format("{} ({} bytes, date {}, read as {}:{}:{}:{}:{}:{}:{})",
-                     std::filesystem::absolute(file.path).string(), std::filesystem::file_size(file.path),
-                     date, input.format, input.boxes, input.layer, input.columns, file.options.dimension,
-                     file.options.precision ? lab::name(*file.options.precision) : "", input.skips_invalid);
+  const auto modified = std::chrono::file_clock::to_sys(std::filesystem::last_write_time(file.path));
+  const auto second = std::chrono::floor<std::chrono::seconds>(modified);
+  std::string text =
+      fmt::format("{} of {} bytes, modified {:%Y-%m-%d %H:%M:%S}.{:09} UTC",
+                  std::filesystem::absolute(file.path).string(), std::filesystem::file_size(file.path),
+                  second, std::chrono::nanoseconds(modified - second).count());
+  const auto add = [&text](std::string_view option, std::string_view value) {
+    if (!value.empty()) text += fmt::format(" {} {}", option, value);
+  };
+  add("--format", input.format);
+  add("--boxes", input.boxes);
+  add("--layer", input.layer);
+  add("--columns", input.columns);
+  if (file.options.dimension != 0) add("--dimension", std::to_string(file.options.dimension));
+  if (file.options.precision) add("--precision", lab::name(*file.options.precision));
+  if (input.skips_invalid) text += " --skip-invalid";
+  return text;
 }
 
 /// Beside the output, or the first file.
@@ -135,9 +150,20 @@ void check_output(const PairsArguments& arguments, const std::filesystem::path& 
 
 class Progress {
  public:
+  explicit Progress(const std::filesystem::path& folder) : folder_(folder.string()) {}
+  ~Progress() { say_at_interruption(""); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
   void operator()(OutOfCoreStage stage, std::uint64_t done, std::uint64_t total) {
-    if (stage != stage_ || !line_) line_.emplace();
-    stage_ = stage;
+    if (stage != stage_) {
+      stage_ = stage;
+      line_.emplace();
+      say_at_interruption(stage == OutOfCoreStage::reading
+                              ? fmt::format("{} is left, and the same command starts over in it", folder_)
+                              : fmt::format("{} is left, and the same command resumes from it", folder_));
+    }
+    if (!line_) line_.emplace();
     constexpr std::array<std::string_view, 3> texts = {"reading boxes", "joining parts", "writing pairs"};
     const std::string_view text = texts[static_cast<std::size_t>(stage)];
     if (total == 0 || done > total)
@@ -149,8 +175,9 @@ class Progress {
   void clear() { line_.reset(); }
 
  private:
-  std::optional<ProgressLine> line_{std::in_place};
-  OutOfCoreStage stage_ = OutOfCoreStage::reading;
+  std::string folder_;
+  std::optional<ProgressLine> line_;
+  std::optional<OutOfCoreStage> stage_;
 };
 
 template <int D, typename Real>
@@ -165,6 +192,8 @@ Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const 
     join.emplace(*sources[0], *sources[1], options);
   else
     join.emplace(*sources[0], options);
+  if (join->is_resumed())
+    say(fmt::format("{}: resumes the join that was interrupted", options.folder.string()));
   join->run();
   if (arguments.counts) {
     progress.clear();
@@ -236,7 +265,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
     for (FileToRead& file : files) file.options.precision = lab::Precision::float64;
   for (const FileToRead& file : files)
     options.identity += (options.identity.empty() ? "" : " with ") + identity_of(file, arguments.input);
-  Progress progress;
+  Progress progress(options.folder);
   options.progress = std::ref(progress);
   options.warn = [&progress](std::string_view text) {
     progress.clear();

@@ -43,7 +43,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
   lab::FrameOfFile read = lab::read_frame(lab::open_file(path, options), frame);
-  if (!read.warning.empty()) say(read.warning);
+  say_lines(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
   if (is_rounded) rounding += lab::round_to_float(read.boxes);
@@ -255,8 +255,8 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Name or spec such as grid:cell=2.5; it affects the time, not the pairs")
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads,
-                   "Threads to search with (0: as many as the machine has); they affect the time alone")
-      ->capture_default_str();
+                   "Threads to search with (0: as many as the machine has; default: the spec's, or 1); they "
+                   "affect the time alone");
   verb->add_option("--frame", arguments->frame,
                    "The frame of a file whose boxes move, counted from 0 (default: the first)");
   verb->add_option("-o,--output", arguments->output,

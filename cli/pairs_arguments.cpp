@@ -123,11 +123,12 @@ lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catal
   if (selected.size() != 1)
     throw Unusable(fmt::format("--algorithm is '{}', which is {} algorithms; expected one",
                                arguments.algorithm, selected.size()));
+  if (arguments.threads.empty()) return selected[0];
   const std::size_t threads = read_threads(arguments.threads);
-  if (threads == 1) return selected[0];
   lab::Entry threaded = lab::with_threads(selected, std::span(&threads, 1))[0];
   const std::string spec = threaded.spec.text();
-  if (spec == selected[0].spec.text())
+  const bool is_applied = threads == 1 ? lab::threads_of(threaded) == 1 : spec != selected[0].spec.text();
+  if (!is_applied)
     throw Unusable(
         fmt::format("--threads is {} with --algorithm {}; expected one that can use several and "
                     "does not say how many",

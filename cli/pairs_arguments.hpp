@@ -19,7 +19,7 @@ struct PairsArguments {
   std::vector<std::string> ids;  // of both files, or of each
   std::string within;
   std::string algorithm{default_algorithm};
-  std::string threads = "1";
+  std::string threads{};  ///< empty: as the spec says
   std::string frame;
   std::string output = "-";
   std::string to;

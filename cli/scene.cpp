@@ -79,7 +79,7 @@ Exit run(SceneArguments& arguments, const CLI::App& verb) {
   const lab::NamedScene named =
       lab::find_scene(arguments.scene, read_options(arguments.input, arguments.scene));
   check(arguments, verb, named);
-  if (!named.scene.warning.empty()) say(named.scene.warning);
+  say_lines(named.scene.warning);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   dimension == 2 ? write<2>(arguments, named, format) : write<3>(arguments, named, format);

@@ -48,7 +48,7 @@ Exit run(const VerifyArguments& arguments, const CLI::App& verb, const lab::Cata
   try {
     const lab::Verification verification = lab::verify_file(catalogue, std::move(file), options);
     progress.clear();
-    if (!verification.warning.empty()) say(verification.warning);
+    say_lines(verification.warning);
     print(lab::text_of(verification, program_name()));
     return verification.all_verified() ? Exit::fine : Exit::failed;
   } catch (const lab::Stopped&) {

@@ -1,6 +1,7 @@
 // The program `broadside-mpi`, which mpirun starts: the verb `pairs` on the ranks of an MPI job.
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "cli/message.hpp"
 #include "cli/mpi/pairs.hpp"
 #include "cli/mpi/ranks.hpp"
+#include "cli/parse.hpp"
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/platform/terminal.hpp"
@@ -23,7 +25,7 @@ namespace broadside::cli {
 namespace {
 
 /// All ranks have the same arguments, and refuse them alike. Help and version are printed by one.
-Exit run(std::vector<std::string> arguments) {
+Exit run(const std::vector<std::string>& arguments) {
   const lab::Catalogue catalogue;
   CLI::App program(
       "Finds overlapping boxes by the ranks of an MPI job: mpirun -n 4 broadside-mpi pairs boxes.npy -o "
@@ -38,16 +40,12 @@ Exit run(std::vector<std::string> arguments) {
       "is "
       "killed, and has a status of its own then.");
   const Verb pairs = add_mpi_pairs(program, catalogue);
-  try {
-    // CLI11 takes the arguments in reverse and without the program.
-    program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0)
-      throw EndsOnAll(fmt::format("{}; `{} --help` tells more", error.what(), program_name()));
-    if (rank() == 0) program.exit(error);
-    return Exit::fine;
-  }
-  return pairs();
+  std::optional<std::string> text;
+  on_all([&] {
+    text = parse(program, without_help_verb(arguments));
+    if (text && rank() == 0) print(*text);
+  });
+  return text ? Exit::fine : pairs();
 }
 
 }  // namespace

@@ -243,8 +243,8 @@ Verb add_mpi_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "the time, not the pairs")
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads,
-                   "Threads of each rank (0: as many as the machine has, or as mpirun binds a rank to)")
-      ->capture_default_str();
+                   "Threads of each rank (0: as many as the machine has, or as mpirun binds a rank to; "
+                   "default: the spec's, or 1)");
   verb->add_option(
           "-o,--output", arguments->output,
           "A .csv file with a pair a line, or an .npy file of n x 2 numbers, which rank 0 writes; - is "

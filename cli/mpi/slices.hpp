@@ -144,7 +144,7 @@ std::vector<Box<D, Real>> read_first(lab::BoxFile file) {
       lab::with_precision(std::move(file.frames), lab::precision_of<Real>, file.name);
   lab::FrameReader<D, Real>& frames = *std::get<std::unique_ptr<lab::FrameReader<D, Real>>>(any);
   std::vector<Box<D, Real>> boxes = frames.first();
-  if (const std::string warning = frames.warning(); !warning.empty()) say(warning);
+  say_lines(frames.warning());
   if (lab::Step<D, Real> step; rank() == 0 && frames.next(step))
     say(fmt::format("{}: holds several frames; these are the pairs of the first", file.name));
   return boxes;

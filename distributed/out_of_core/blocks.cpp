@@ -44,8 +44,9 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std:
 
 void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::byte> more) {
   const auto refuse = [this] {
-    throw OutOfCoreError(path_.string() + ": cannot be written: " + std::strerror(errno) +
-                         "; finished parts are kept: make room, then run the same command again to resume");
+    throw OutOfCoreError(
+        path_.string() + ": cannot be written: " + std::strerror(errno) +
+        "; make room, then start the same join again, which keeps the parts that are finished");
   };
   File file(std::fopen(path_.c_str(), blocks_ == 0 ? "wb" : "ab"));
   if (file == nullptr) refuse();

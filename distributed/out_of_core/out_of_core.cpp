@@ -16,18 +16,17 @@
 
 #include "blocks.hpp"
 #include "box_file.hpp"
-#include "distributor.hpp"
 #include "pair_runs.hpp"
+#include "part_files.hpp"
 #include "part_join.hpp"
+#include "sources.hpp"
 #include "work_folder.hpp"
 
 namespace broadside {
 
 using out_of_core::BlockReader;
-using out_of_core::BoxFileWriter;
 using out_of_core::bytes_per_box;
 using out_of_core::CorruptFile;
-using out_of_core::Distributor;
 using out_of_core::for_each_box;
 using out_of_core::Manifest;
 using out_of_core::Part;
@@ -45,6 +44,7 @@ class OutOfCoreJoin<D, Real>::Work {
         options_(checked(std::move(options))),
         finder_(finder_of(options_)),
         folder_(options_.folder),
+        part_files_(folder_, sources_.size(), options_.memory, options_.threads),
         part_join_(folder_, options_.memory, sources_.size(), options_.counts_only) {
     const std::string kind = std::to_string(D) + "D " + (sizeof(Real) == 4 ? "float" : "double") +
                              (sources_.size() == 2 ? ", two sources" : "") +
@@ -60,6 +60,7 @@ class OutOfCoreJoin<D, Real>::Work {
                              "). Name another folder, or remove this one to start over");
       if (!manifest_.is_read) manifest_ = {};
     }
+    is_resumed_ = manifest_.is_read;
     manifest_.kind = kind;
     manifest_.identity = identity;
     folder_.write(manifest_);
@@ -92,6 +93,7 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   const Manifest& manifest() const noexcept { return manifest_; }
+  bool is_resumed() const noexcept { return is_resumed_; }
 
   std::uint64_t pairs() const {
     check_is_finished();
@@ -192,111 +194,42 @@ class OutOfCoreJoin<D, Real>::Work {
   std::size_t parts_for(std::uint64_t boxes) const {
     const std::uint64_t max_boxes = part_join_.max_boxes();
     return static_cast<std::size_t>(
-        std::min<std::uint64_t>(1 + boxes + boxes / 2, max_parts() * max_boxes) / max_boxes + 1);
-  }
-
-  /// With more parts, their blocks would be too small for a disk.
-  std::uint64_t max_parts() const { return std::clamp<std::uint64_t>(options_.memory >> 18, 4, 1024); }
-
-  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<Part>& parts, std::size_t side) const {
-    const std::size_t bytes = std::min<std::size_t>(options_.memory / 4 / parts.size(), std::size_t{1} << 20);
-    std::vector<BoxFileWriter<D, Real>> writers;
-    // A block is copied when it is written.
-    for (const Part& part : parts)
-      writers.emplace_back(folder_.box_file(part, side), bytes / (2 * bytes_per_box<D, Real>)+1);
-    return writers;
-  }
-
-  static std::vector<Part> parts_of(const Partition<D, Real>& partition, const std::string& prefix) {
-    std::vector<Part> parts(partition.size());
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      const Region& region = partition.region(part);
-      parts[part].name = prefix + std::to_string(part);
-      parts[part].low.assign(region.low.begin(), region.low.end());
-      parts[part].high.assign(region.high.begin(), region.high.end());
-    }
-    return parts;
-  }
-
-  void finish(std::vector<Part>& parts, std::size_t side,
-              std::vector<BoxFileWriter<D, Real>>& writers) const {
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      writers[part].flush();
-      parts[part].boxes[side] = writers[part].count();
-      parts[part].blocks[side] = writers[part].blocks();
-    }
-  }
-
-  /// Drops the parts that cannot have pairs, and their files.
-  void drop_empty(std::vector<Part>& parts) const {
-    const bool is_between = sources_.size() == 2;
-    std::erase_if(parts, [&](const Part& part) {
-      if (part.boxes[0] > 0 && (!is_between || part.boxes[1] > 0)) return false;
-      for (std::size_t side = 0; side < sources_.size(); ++side) folder_.remove_boxes(part, side);
-      return true;
-    });
+        std::min<std::uint64_t>(1 + boxes + boxes / 2, part_files_.max_parts() * max_boxes) / max_boxes + 1);
   }
 
   /// Partitions all boxes of the sources, by cuts made from their first boxes.
   void read_all() {
-    std::uint64_t estimated = 0;
-    for (BoxSource<D, Real>* const source : sources_) estimated += source->estimated_size();
+    std::uint64_t estimated = sources_.estimated_boxes();
     check_space(estimated);
     const Partition<D, Real> partition = first_partition(estimated);
-    std::vector<Part> parts = parts_of(partition, "");
-    std::vector<Box<D, Real>> piece;
-    std::uint64_t done = 0;
-    for (std::size_t side = 0; side < sources_.size(); ++side) {
-      std::vector<BoxFileWriter<D, Real>> writers = writers_for(parts, side);
-      Distributor<D, Real> distributor(partition, writers, options_.threads);
-      std::uint64_t first = 0;
-      sources_[side]->rewind();
-      while (sources_[side]->next(piece)) {
-        check(piece, first, side);
-        distributor.add(piece, [first](std::size_t i) { return first + i; });
-        first += piece.size();
-        report(OutOfCoreStage::reading, done += piece.size(), estimated);
-      }
-      manifest_.boxes[side] = first;
-      finish(parts, side, writers);
-    }
-    constexpr std::uint64_t max_small = std::uint64_t{UINT32_MAX} + 1;
-    manifest_.has_large_ids =
-        options_.has_large_ids || std::max(manifest_.boxes[0], manifest_.boxes[1]) > max_small;
-    drop_empty(parts);
     Manifest read = manifest_;
-    read.parts = std::move(parts);
+    std::uint64_t done = 0;
+    read.parts = part_files_.write(partition, "", [&](std::size_t source, const auto& add) {
+      read.boxes[source] =
+          sources_.for_each_piece(source, [&](const std::vector<Box<D, Real>>& boxes, std::uint64_t first) {
+            sources_.check(boxes, first, source);
+            add(boxes, [first](std::size_t i) { return first + i; });
+            report(OutOfCoreStage::reading, done += boxes.size(), estimated);
+          });
+    });
+    constexpr std::uint64_t max_small = std::uint64_t{UINT32_MAX} + 1;
+    read.has_large_ids = options_.has_large_ids || std::max(read.boxes[0], read.boxes[1]) > max_small;
     read.is_read = true;
     folder_.write(read);
     manifest_ = std::move(read);
   }
 
-  /// Cuts made from the first pieces of either source. Where these are not typical of the others, parts come
-  /// out too large, and are cut again.
+  /// Cuts made from the first boxes of either source. Where these are not typical of the others, parts come
+  /// out too large, and are cut again. Sets `estimated` if the sample has all boxes.
   Partition<D, Real> first_partition(std::uint64_t& estimated) const {
-    const std::size_t max_sampled = std::max<std::size_t>(part_join_.max_boxes() / 8, 4096);
-    std::vector<Box<D, Real>> piece;
-    std::vector<Box<D, Real>> sample;
-    bool is_all = true;
-    for (std::size_t side = 0; side < sources_.size(); ++side) {
-      const std::size_t most = max_sampled * (side + 1) / sources_.size();
-      sources_[side]->rewind();
-      while (true) {
-        if (sample.size() >= most) {
-          is_all = false;
-          break;
-        }
-        if (!sources_[side]->next(piece)) break;
-        sample.insert(sample.end(), piece.begin(), piece.end());
-      }
-    }
-    if (is_all) estimated = sample.size();
+    auto sample = sources_.sample(std::max<std::size_t>(part_join_.max_boxes() / 8, 4096));
+    if (sample.is_all) estimated = sample.boxes.size();
     // An unknown number may be large.
-    const std::size_t parts = estimated == 0
-                                  ? static_cast<std::size_t>(std::min<std::uint64_t>(64, max_parts()))
-                              : estimated <= part_join_.max_boxes() ? 1
-                                                                    : parts_for(estimated);
-    return Partition<D, Real>(thinned(std::move(sample)), parts);
+    const std::size_t parts =
+        estimated == 0 ? static_cast<std::size_t>(std::min<std::uint64_t>(64, part_files_.max_parts()))
+        : estimated <= part_join_.max_boxes() ? 1
+                                              : parts_for(estimated);
+    return Partition<D, Real>(thinned(std::move(sample.boxes)), parts);
   }
 
   /// Limits the sample, so that making the cuts costs little beside reading.
@@ -306,17 +239,6 @@ class OutOfCoreJoin<D, Real>::Work {
     std::vector<Box<D, Real>> some(most);
     for (std::size_t i = 0; i < most; ++i) some[i] = sample[i * sample.size() / most];
     return some;
-  }
-
-  void check(std::span<const Box<D, Real>> boxes, std::uint64_t first, std::size_t side) const {
-    const char* const set = sources_.size() == 1 ? "box " : side == 0 ? "left box " : "right box ";
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (is_present(boxes[i]) || is_absent(boxes[i])) continue;
-      const std::uint64_t id = first + i;
-      throw InvalidInput(
-          static_cast<std::size_t>(id),
-          set + std::to_string(id) + " has a NaN or min > max; expected min <= max, or the absent box");
-    }
   }
 
   void check_space(std::uint64_t boxes) const {
@@ -351,22 +273,14 @@ class OutOfCoreJoin<D, Real>::Work {
     if (options_.warn) options_.warn(std::string(corrupt.what()) + "; part " + part.name + " is made again");
     const Region region = region_of(part);
     const std::array<std::uint64_t, 2> boxes_before = part.boxes;
-    for (std::size_t side = 0; side < sources_.size(); ++side) {
-      folder_.remove_boxes(part, side);
-      BoxFileWriter<D, Real> writer(folder_.box_file(part, side), std::size_t{1} << 15);
-      std::vector<Box<D, Real>> piece;
-      std::uint64_t first = 0;
-      sources_[side]->rewind();
-      while (sources_[side]->next(piece)) {
-        for (std::size_t i = 0; i < piece.size(); ++i)
-          if (is_present(piece[i]) && region.touches(piece[i])) writer.add(piece[i], first + i);
-        first += piece.size();
-        report(OutOfCoreStage::reading, first, manifest_.boxes[side]);
-      }
-      writer.flush();
-      part.boxes[side] = writer.count();
-      part.blocks[side] = writer.blocks();
-    }
+    for (std::size_t source = 0; source < sources_.size(); ++source)
+      part_files_.rewrite(part, source, [&](const auto& add) {
+        sources_.for_each_piece(source, [&](const std::vector<Box<D, Real>>& boxes, std::uint64_t first) {
+          for (std::size_t i = 0; i < boxes.size(); ++i)
+            if (is_present(boxes[i]) && region.touches(boxes[i])) add(boxes[i], first + i);
+          report(OutOfCoreStage::reading, first + boxes.size(), manifest_.boxes[source]);
+        });
+      });
     if (part.boxes != boxes_before)
       throw OutOfCoreError(folder_.path().string() + ": part " + part.name + " had " +
                            std::to_string(boxes_before[0] + boxes_before[1]) + " boxes, and now has " +
@@ -384,9 +298,9 @@ class OutOfCoreJoin<D, Real>::Work {
     const Part part = manifest_.parts[place];
     const std::uint64_t count = part.boxes[0] + part.boxes[1];
     const Partition<D, Real> partition(sample_of(part), parts_for(count), 0, region_of(part));
-    std::vector<Part> parts = parts_of(partition, part.name + ".");
-    if (parts.size() > 1) distribute(part, partition, parts);
-    const bool is_help = parts.size() > 1 && std::ranges::all_of(parts, [&](const Part& smaller) {
+    std::vector<Part> parts;
+    if (partition.size() > 1) parts = distribute(part, partition);
+    const bool is_help = partition.size() > 1 && std::ranges::all_of(parts, [&](const Part& smaller) {
                            return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
                          });
     if (is_help) {
@@ -403,8 +317,8 @@ class OutOfCoreJoin<D, Real>::Work {
     const std::uint64_t step = std::max<std::uint64_t>(1, (part.boxes[0] + part.boxes[1]) >> 16);
     std::vector<Box<D, Real>> sample;
     std::uint64_t count = 0;
-    for (std::size_t side = 0; side < sources_.size(); ++side)
-      for_each_block(part, side, [&](std::span<const std::byte> block) {
+    for (std::size_t source = 0; source < sources_.size(); ++source)
+      part_files_.for_each_block(part, source, [&](std::span<const std::byte> block) {
         for_each_box<D, Real>(block, [&](const Box<D, Real>& box, std::uint64_t) {
           if (count++ % step == 0) sample.push_back(box);
         });
@@ -413,32 +327,20 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   /// Writes the boxes of a part to the files of the parts that it is cut into.
-  void distribute(const Part& part, const Partition<D, Real>& partition, std::vector<Part>& parts) const {
-    for (std::size_t side = 0; side < sources_.size(); ++side) {
-      std::vector<BoxFileWriter<D, Real>> writers = writers_for(parts, side);
-      Distributor<D, Real> distributor(partition, writers, options_.threads);
-      std::vector<Box<D, Real>> boxes;
-      std::vector<std::uint64_t> ids;
-      for_each_block(part, side, [&](std::span<const std::byte> block) {
+  std::vector<Part> distribute(const Part& part, const Partition<D, Real>& partition) const {
+    std::vector<Box<D, Real>> boxes;
+    std::vector<std::uint64_t> ids;
+    return part_files_.write(partition, part.name + ".", [&](std::size_t source, const auto& add) {
+      part_files_.for_each_block(part, source, [&](std::span<const std::byte> block) {
         boxes.clear();
         ids.clear();
         for_each_box<D, Real>(block, [&](const Box<D, Real>& box, std::uint64_t id) {
           boxes.push_back(box);
           ids.push_back(id);
         });
-        distributor.add(boxes, [&](std::size_t i) { return ids[i]; });
+        add(boxes, [&](std::size_t i) { return ids[i]; });
       });
-      finish(parts, side, writers);
-    }
-    drop_empty(parts);
-  }
-
-  /// Calls visit(block) for each block of a part's boxes of one source.
-  template <typename Visit>
-  void for_each_block(const Part& part, std::size_t side, const Visit& visit) const {
-    std::vector<std::byte> block;
-    for (BlockReader reader(folder_.box_file(part, side), part.blocks[side]); reader.next(block);)
-      visit(std::span<const std::byte>(block));
+    });
   }
 
   void join(std::size_t place) {
@@ -451,8 +353,8 @@ class OutOfCoreJoin<D, Real>::Work {
     part.is_joined = true;
     manifest_.parts[place] = std::move(part);
     folder_.write(manifest_);
-    for (std::size_t side = 0; side < sources_.size(); ++side)
-      folder_.remove_boxes(manifest_.parts[place], side);
+    for (std::size_t source = 0; source < sources_.size(); ++source)
+      folder_.remove_boxes(manifest_.parts[place], source);
   }
 
   /// Reads all pairs once, so that corrupt runs are made again before any pair is visited.
@@ -475,11 +377,13 @@ class OutOfCoreJoin<D, Real>::Work {
                         " pairs instead of " + std::to_string(part.pairs));
   }
 
-  std::vector<BoxSource<D, Real>*> sources_;
+  out_of_core::Sources<D, Real> sources_;
   OutOfCoreOptions options_;
   std::unique_ptr<PairFinder<D, Real>> finder_;
   WorkFolder folder_;
   Manifest manifest_;
+  bool is_resumed_ = false;
+  out_of_core::PartFiles<D, Real> part_files_;
   PartJoin<D, Real> part_join_;
 };
 
@@ -494,6 +398,11 @@ OutOfCoreJoin<D, Real>::OutOfCoreJoin(BoxSource<D, Real>& left, BoxSource<D, Rea
 
 template <int D, typename Real>
 OutOfCoreJoin<D, Real>::~OutOfCoreJoin() = default;
+
+template <int D, typename Real>
+bool OutOfCoreJoin<D, Real>::is_resumed() const {
+  return work_->is_resumed();
+}
 
 template <int D, typename Real>
 void OutOfCoreJoin<D, Real>::run() {

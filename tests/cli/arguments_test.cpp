@@ -90,6 +90,8 @@ TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
       {{"compare", "--threads", "two"}, {"--threads is 'two'", "expected a whole number from 0"}},
       {{"pairs", "boxes.csv", "--threads", "2", "--algorithm", "paper_grid"},
        {"--threads is 2", "paper_grid"}},
+      {{"pairs", "boxes.csv", "--threads", "1", "--algorithm", "grid:threads=2"},
+       {"--threads is 1", "grid:threads=2"}},
       {{"compare", "--seed", "-1"}, {"--seed", "'-1'", "expected a whole number"}},
       {{"compare", "--scenes", "boxes.csv", "--json", "boxes.csv"}, {"--json is boxes.csv", "another file"}},
       {{"compare", "--budget", "0"}, {"--budget is 0", "expected a number of seconds above 0"}},

@@ -21,6 +21,8 @@ namespace broadside::cli {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 /// A pipe with a name that nothing reads: what is written to it waits once it is full.
 class UnreadPipe {
@@ -90,6 +92,29 @@ TEST(Interruption, DoesNotWaitForTheEndOfAFrame) {
   watch.join();
   EXPECT_EQ(ended.status, 130);
   EXPECT_EQ(ended.errors, "broadside: interrupted\n");
+}
+
+TEST(Interruption, SaysHowToGoOnWithAJoinOnDisk) {
+  const TemporaryFolder folder;
+  const std::string boxes = folder.file("boxes.npy");
+  ASSERT_EQ(run({"scene", "uniform", "-n", "50k", "-o", boxes}).status, 0);
+  const std::vector<std::string> join = {"pairs", boxes, "--memory", "32M"};
+  const Ended whole = run(join);
+  EXPECT_THAT(whole.errors, Not(HasSubstr("resumes")));
+  {
+    UnreadPipe pipe(folder.file("pipe"));
+    Process process({"pairs", boxes, "--memory", "32M", "--to", "csv", "-o", pipe.path()});
+    for (int i = 0; i < 60'000 && !pipe.is_full(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.signal(SIGINT);
+    const Ended ended = process.wait();
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_EQ(ended.errors,
+              "broadside: interrupted; " + boxes + ".work is left, and the same command resumes from it\n");
+  }
+  const Ended resumed = run(join);
+  EXPECT_EQ(resumed.output, whole.output);
+  EXPECT_THAT(resumed.errors, HasSubstr(boxes + ".work: resumes the join that was interrupted\n"));
 }
 
 TEST(ClosedPipe, EndsTheProgramWithoutAMessage) {

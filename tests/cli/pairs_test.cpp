@@ -138,9 +138,10 @@ TEST(PairsVerb, LeavesOutInvalidBoxesWithinALimitOfMemory) {
 
 TEST(PairsVerb, SaysWhatItRoundsWithinALimitOfMemory) {
   const TemporaryFolder folder;
-  const std::string file = folder.put("boxes.csv", "0,0,1,1.1\n");
-  EXPECT_THAT(run({"pairs", file, "--precision", "float", "--memory", "1G"}).errors,
-              HasSubstr("1 of 4 coordinates was rounded to float"));
+  const std::string file = folder.put("boxes.csv", "0,0,1,1.1\n5,5,4,6\n");
+  EXPECT_THAT(run({"pairs", file, "--precision", "float", "--skip-invalid", "--memory", "1G"}).errors,
+              AllOf(HasSubstr("left out 1 invalid box\nbroadside: "),
+                    HasSubstr("1 of 8 coordinates was rounded to float\n")));
 }
 
 TEST(PairsVerb, LeavesNoWorkFolderBehindWhereBoxesCannotBeRead) {

@@ -110,14 +110,16 @@ TEST(MpiProgram, RefusesWhatDoesNotGoTogether) {
     EXPECT_EQ(ended.status, 2) << arguments;
     EXPECT_THAT(ended.errors, HasSubstr(text));
   };
-  expect_refusal("pairs", "files is required");
+  expect_refusal("pairs", "files is missing; expected: A file, or two");
+  expect_refusal("pears " + file, "unknown verb 'pears' (did you mean 'pairs'?)");
+  expect_refusal("pairs " + file + " --conut", "unknown option '--conut' (did you mean '--count'?)");
   expect_refusal("pairs " + file + " --hash -o " + folder.file("a.csv"), "--output");
   expect_refusal("pairs " + file + " --algorithm none", "none");
   expect_refusal("pairs " + file + " -o " + folder.file("no/a.csv"), "a.csv");
   expect_refusal("pairs " + file + " " + folder.put("solid.csv", table(10, 1, 6)),
                  "expected both in the same");
   expect_refusal("pairs " + folder.file("none.csv"), "none.csv");
-  EXPECT_THAT(on_ranks(2, "$MPI pairs --help").output, HasSubstr("--statistics"));
+  EXPECT_THAT(on_ranks(2, "$MPI help pairs").output, HasSubstr("--statistics"));
 }
 
 /// Joins boxes.csv or boxes.npy by two ranks, each of which looks for it in a folder of its own.

@@ -102,6 +102,9 @@ class BROADSIDE_PUBLIC OutOfCoreJoin {
   OutOfCoreJoin(const OutOfCoreJoin&) = delete;
   OutOfCoreJoin& operator=(const OutOfCoreJoin&) = delete;
 
+  /// Whether an earlier run has read all boxes of this join, so that run() resumes it.
+  bool is_resumed() const;
+
   /// Reads and joins the boxes, as far as that is not done yet. Throws OutOfCoreError, InvalidInput with the
   /// box's id, and whatever a source or `progress` throws.
   void run();

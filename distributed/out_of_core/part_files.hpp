@@ -1,0 +1,106 @@
+// The boxes of parts on disk: written for all parts of a partition at once, and read block by block.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/partition.hpp"
+
+#include "blocks.hpp"
+#include "box_file.hpp"
+#include "distributor.hpp"
+#include "work_folder.hpp"
+
+namespace broadside::out_of_core {
+
+template <int D, typename Real>
+class PartFiles {
+ public:
+  /// `memory` in bytes; `threads` as in Workers. Boxes come from one source or from two.
+  PartFiles(const WorkFolder& folder, std::size_t sources, std::uint64_t memory, std::size_t threads)
+      : folder_(folder), sources_(sources), memory_(memory), threads_(threads) {}
+
+  /// How many parts a partition may have. With more, their blocks would be too small for a disk.
+  std::uint64_t max_parts() const { return std::clamp<std::uint64_t>(memory_ >> 18, 4, 1024); }
+
+  /// Writes the boxes of each source to the files of the parts that they touch. Calls
+  /// for_each_piece(source, add), which is to call add(boxes, id) for pieces of its boxes, id(i) being that
+  /// of boxes[i]. Returns the parts that can have pairs, named `prefix` and a number.
+  template <typename ForEachPiece>
+  std::vector<Part> write(const Partition<D, Real>& partition, const std::string& prefix,
+                          const ForEachPiece& for_each_piece) const {
+    std::vector<Part> parts = parts_of(partition, prefix);
+    for (std::size_t source = 0; source < sources_; ++source) {
+      std::vector<BoxFileWriter<D, Real>> writers = writers_for(parts, source);
+      Distributor<D, Real> distributor(partition, writers, threads_);
+      for_each_piece(
+          source, [&](std::span<const Box<D, Real>> boxes, const auto& id) { distributor.add(boxes, id); });
+      for (std::size_t part = 0; part < parts.size(); ++part) finish(parts[part], source, writers[part]);
+    }
+    std::erase_if(parts, [this](const Part& part) { return !keeps(part); });
+    return parts;
+  }
+
+  /// Writes a part's boxes of one source anew: those that visit_all(add) gives to add(box, id).
+  template <typename VisitAll>
+  void rewrite(Part& part, std::size_t source, const VisitAll& visit_all) const {
+    folder_.remove_boxes(part, source);
+    BoxFileWriter<D, Real> writer(folder_.box_file(part, source), std::size_t{1} << 15);
+    visit_all([&writer](const Box<D, Real>& box, std::uint64_t id) { writer.add(box, id); });
+    finish(part, source, writer);
+  }
+
+  /// Calls visit(block) for each block of a part's boxes of one source. Throws CorruptFile.
+  template <typename Visit>
+  void for_each_block(const Part& part, std::size_t source, const Visit& visit) const {
+    std::vector<std::byte> block;
+    for (BlockReader reader(folder_.box_file(part, source), part.blocks[source]); reader.next(block);)
+      visit(std::span<const std::byte>(block));
+  }
+
+ private:
+  static std::vector<Part> parts_of(const Partition<D, Real>& partition, const std::string& prefix) {
+    std::vector<Part> parts(partition.size());
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const auto& region = partition.region(part);
+      parts[part].name = prefix + std::to_string(part);
+      parts[part].low.assign(region.low.begin(), region.low.end());
+      parts[part].high.assign(region.high.begin(), region.high.end());
+    }
+    return parts;
+  }
+
+  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<Part>& parts, std::size_t source) const {
+    const std::size_t bytes = std::min<std::size_t>(memory_ / 4 / parts.size(), std::size_t{1} << 20);
+    std::vector<BoxFileWriter<D, Real>> writers;
+    // A block is copied when it is written.
+    for (const Part& part : parts)
+      writers.emplace_back(folder_.box_file(part, source), bytes / (2 * bytes_per_box<D, Real>)+1);
+    return writers;
+  }
+
+  static void finish(Part& part, std::size_t source, BoxFileWriter<D, Real>& writer) {
+    writer.flush();
+    part.boxes[source] = writer.count();
+    part.blocks[source] = writer.blocks();
+  }
+
+  /// Whether the part can have pairs. Removes its files if not.
+  bool keeps(const Part& part) const {
+    if (part.boxes[0] > 0 && (sources_ == 1 || part.boxes[1] > 0)) return true;
+    for (std::size_t source = 0; source < sources_; ++source) folder_.remove_boxes(part, source);
+    return false;
+  }
+
+  const WorkFolder& folder_;
+  std::size_t sources_;
+  std::uint64_t memory_;
+  std::size_t threads_;
+};
+
+}  // namespace broadside::out_of_core

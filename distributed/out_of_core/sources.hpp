@@ -1,0 +1,78 @@
+// The boxes that a join reads: from one source or from two, checked, and sampled for the first cuts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/error.hpp"
+#include "broadside/out_of_core.hpp"
+
+namespace broadside::out_of_core {
+
+template <int D, typename Real>
+class Sources {
+ public:
+  explicit Sources(std::vector<BoxSource<D, Real>*> sources) : sources_(std::move(sources)) {}
+
+  std::size_t size() const noexcept { return sources_.size(); }
+
+  /// The approximate number of boxes of all; 0 if unknown.
+  std::uint64_t estimated_boxes() const {
+    std::uint64_t estimated = 0;
+    for (const BoxSource<D, Real>* const source : sources_) estimated += source->estimated_size();
+    return estimated;
+  }
+
+  /// Calls visit(boxes, first) for all boxes of a source, piece by piece; `first` is the id of boxes[0].
+  /// Returns their number.
+  template <typename Visit>
+  std::uint64_t for_each_piece(std::size_t source, const Visit& visit) const {
+    std::vector<Box<D, Real>> piece;
+    std::uint64_t first = 0;
+    sources_[source]->rewind();
+    while (sources_[source]->next(piece)) {
+      visit(piece, first);
+      first += piece.size();
+    }
+    return first;
+  }
+
+  /// The first boxes of either source.
+  struct Sample {
+    std::vector<Box<D, Real>> boxes;
+    bool is_all = true;  ///< there are no others
+  };
+  Sample sample(std::size_t most) const {
+    Sample sample;
+    std::vector<Box<D, Real>> piece;
+    for (std::size_t source = 0; source < sources_.size(); ++source) {
+      const std::size_t most_yet = most * (source + 1) / sources_.size();
+      sources_[source]->rewind();
+      while (sample.boxes.size() < most_yet && sources_[source]->next(piece))
+        sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());
+      if (sample.boxes.size() >= most_yet) sample.is_all = false;
+    }
+    return sample;
+  }
+
+  /// Throws InvalidInput unless each box is valid or absent; `first` is the id of boxes[0].
+  void check(const std::vector<Box<D, Real>>& boxes, std::uint64_t first, std::size_t source) const {
+    const char* const set = sources_.size() == 1 ? "box " : source == 0 ? "left box " : "right box ";
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (is_present(boxes[i]) || is_absent(boxes[i])) continue;
+      const std::uint64_t id = first + i;
+      throw InvalidInput(
+          static_cast<std::size_t>(id),
+          set + std::to_string(id) + " has a NaN or min > max; expected min <= max, or the absent box");
+    }
+  }
+
+ private:
+  std::vector<BoxSource<D, Real>*> sources_;
+};
+
+}  // namespace broadside::out_of_core
