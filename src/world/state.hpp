@@ -13,8 +13,8 @@
 #include "broadside/world.hpp"
 
 #include "interface/input_check.hpp"
+#include "interface/margins.hpp"
 #include "world/current_pairs.hpp"
-#include "world/margins.hpp"
 #include "world/pair_graph.hpp"
 #include "world/slot_set.hpp"
 

@@ -28,9 +28,9 @@
 #include "core/sample.hpp"
 #include "doubles/double_finder.hpp"
 #include "doubles/double_follower.hpp"
-#include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
 #include "interface/last_test.hpp"
+#include "interface/margin_tracker.hpp"
 #include "interface/yielding.hpp"
 
 namespace broadside::algorithm {
@@ -222,15 +222,15 @@ std::vector<core::Follower<D, float>> followers() {
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_auto_tracker(const Settings& settings) {
-  return std::make_unique<core::AdaptiveTracker<D>>(core::update_of(settings), std::make_unique<Auto<D>>(),
-                                                    core::grid_finding<D>, followers<D>(),
-                                                    make_tracker<D>("brute_force"));
+  return core::adaptive_tracker<D, float>(core::update_of(settings), std::make_unique<Auto<D>>(),
+                                          core::grid_finding<D>, followers<D>(),
+                                          make_tracker<D>("brute_force"));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D, double>> make_auto_double_tracker(const Settings& settings) {
   const auto follower = [] { return std::make_unique<DoubleFollower<D>>(grid_candidates<D>()); };
-  return std::make_unique<core::AdaptiveTracker<D, double>>(
+  return core::adaptive_tracker<D, double>(
       core::update_of(settings), std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
       core::grid_finding<D>,
       std::vector<core::Follower<D, double>>{{"grid", follower, core::grid_following<D>}});

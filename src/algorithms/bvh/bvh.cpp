@@ -19,9 +19,9 @@
 #include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
-#include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
 #include "interface/last_test.hpp"
+#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/bvh_join.hpp"
@@ -167,7 +167,7 @@ std::unique_ptr<PairFinder<D>> make_bvh(const Settings&) {
 
 template <int D>
 std::unique_ptr<PairTracker<D>> make_bvh_tracking(const Settings& settings) {
-  return std::make_unique<core::AdaptiveTracker<D>>(
+  return core::adaptive_tracker<D, float>(
       core::update_of(settings), make_bvh<D>(settings), core::tree_finding<D>,
       std::vector<core::Follower<D, float>>{{"bvh", make_bvh_tracker<D>, core::bvh_following<D>}});
 }

@@ -30,9 +30,9 @@
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
-#include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
 #include "interface/last_test.hpp"
+#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/run.hpp"
@@ -230,7 +230,7 @@ std::unique_ptr<PairFinder<D>> make_grid(const Settings& settings) {
 template <int D>
 std::unique_ptr<PairTracker<D>> make_grid_tracking(const Settings& settings) {
   const std::optional<double> cell = cell_edge(settings);
-  return std::make_unique<core::AdaptiveTracker<D>>(
+  return core::adaptive_tracker<D, float>(
       core::update_of(settings), make_grid<D>(settings), core::grid_finding<D>,
       std::vector<core::Follower<D, float>>{
           {"grid", [cell] { return std::make_unique<GridTracker<D>>(cell); }, core::grid_following<D>}});

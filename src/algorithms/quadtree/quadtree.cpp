@@ -31,9 +31,9 @@
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
-#include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
 #include "interface/last_test.hpp"
+#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
@@ -278,7 +278,7 @@ std::unique_ptr<PairTracker<D>> make_quadtree_tracking(const Settings& settings)
   const auto capacity = settings.is_auto("capacity")
                             ? tracking_capacity
                             : static_cast<std::uint32_t>(settings.integer("capacity"));
-  return std::make_unique<core::AdaptiveTracker<D>>(
+  return core::adaptive_tracker<D, float>(
       core::update_of(settings), make_quadtree<D>(settings), core::tree_finding<D>,
       std::vector<core::Follower<D, float>>{{"quadtree",
                                              [capacity] { return make_quadtree_tracker<D>(capacity); },

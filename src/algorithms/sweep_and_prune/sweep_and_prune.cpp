@@ -27,9 +27,9 @@
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
-#include "interface/adaptive_tracker.hpp"
 #include "interface/follow_costs.hpp"
 #include "interface/last_test.hpp"
+#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
 #include "interface/yielding.hpp"
 #include "kernels/sweep.hpp"
@@ -222,7 +222,7 @@ std::unique_ptr<PairFinder<D>> make_sweep_and_prune(const Settings& settings) {
 template <int D>
 std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracking(const Settings& settings) {
   const int axis = settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
-  return std::make_unique<core::AdaptiveTracker<D>>(
+  return core::adaptive_tracker<D, float>(
       core::update_of(settings), make_sweep_and_prune<D>(settings), core::sweep_finding<D>,
       std::vector<core::Follower<D, float>>{{"sweep_and_prune",
                                              [axis] { return make_sweep_and_prune_tracker<D>(axis); },

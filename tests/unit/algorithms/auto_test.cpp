@@ -64,9 +64,9 @@ std::string chosen_for_a_pile() {
   return tracker->explanation();
 }
 
-TEST(AutoTracker, TakesCellsForAPileAtRest) {
-  EXPECT_THAT(chosen_for_a_pile<2>(), testing::HasSubstr("grid"));
-  EXPECT_THAT(chosen_for_a_pile<3>(), testing::HasSubstr("grid"));
+TEST(AutoTracker, TestsThePairsOfEnlargedBoxesInAPileAtRest) {
+  EXPECT_THAT(chosen_for_a_pile<2>(), testing::HasSubstr("pairs of boxes enlarged"));
+  EXPECT_THAT(chosen_for_a_pile<3>(), testing::HasSubstr("pairs of boxes enlarged"));
 }
 
 std::vector<Box2> boxes_anywhere(std::size_t count, Rng& random) {

@@ -1,4 +1,4 @@
-// Margins: how far a world enlarges its boxes, and when it does so anew.
+// Margins: how far boxes are enlarged, and when that is done anew.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace broadside::core {
 
-/// The distances of WorldOptions, as numbers of the world's type. A pointer to a velocity may be null: none.
+/// The distances of WorldOptions, as numbers of the boxes' type. A pointer to a velocity may be null: none.
 template <int D, typename Real>
 struct Margins {
   Real margin;

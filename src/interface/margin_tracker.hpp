@@ -1,0 +1,92 @@
+// MarginTracker: where most boxes move and hardly any moves far, keeps the pairs of enlarged boxes and tests
+// only these.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/tracker.hpp"
+
+#include "core/lean.hpp"
+#include "core/parallel.hpp"
+#include "interface/adaptive_tracker.hpp"
+#include "interface/margins.hpp"
+
+namespace broadside::core {
+
+/// Lets another tracker follow the boxes; while most of them move by little, lets it follow enlarged boxes
+/// instead, which change only where a box has left its own. Their pairs are the candidates, of which each
+/// frame tests all (a Verlet list: L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). The
+/// events are the same either way.
+///
+/// Cost of a frame with enlarged boxes: a comparison a changed box, a test a candidate, and the other
+/// tracker's for the boxes that left theirs.
+template <int D, typename Real = float>
+class MarginTracker final : public PairTracker<D, Real> {
+ public:
+  explicit MarginTracker(std::unique_ptr<PairTracker<D, Real>> tracker) : tracker_(std::move(tracker)) {}
+
+  std::string explanation() const override;
+
+ private:
+  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
+  std::size_t algorithm_bytes() const noexcept override;
+  /// An index over enlarged boxes would answer queries wrongly.
+  const BoxIndex<D, Real>* algorithm_index() const noexcept override {
+    return is_enlarged_ ? nullptr : this->index_of(*tracker_);
+  }
+
+  Real relative_margin_for(const Change<D, Real>& change);
+  void start(const Change<D, Real>& change, Real relative_margin);
+  void stop() noexcept;
+  void follow_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void enlarge_anew(const Change<D, Real>& change);
+  void change_candidates(PairSink& ended);
+  void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void judge(std::size_t changed);
+
+  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  Margins<D, Real> margins_{};
+  bool is_enlarged_ = false;   // whether the other tracker has enlarged boxes
+  bool goes_on_ = false;       // whether it gets some in the next frame
+  bool was_enlarged_ = false;  // whether it got some in the last one
+
+  std::vector<Box<D, Real>> before_;  // enlarged, of the frame before
+  std::vector<Box<D, Real>> now_;
+  std::vector<BoxId> left_;          // boxes that left their enlarged ones, or whose filter changed
+  std::vector<std::uint8_t> flags_;  // for each box, 1 if it is in left_; all 0 between updates
+  std::vector<Pair> candidates_;     // sorted
+  std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap
+  std::vector<std::uint8_t> held_;   // likewise, in the frame before
+  std::vector<Pair> begun_;          // candidates
+  std::vector<Pair> ended_;
+  std::vector<Pair> spare_;
+  Parallel parallel_;
+
+  std::size_t candidate_count_ = 0;  // that were tested in the last frame
+  std::size_t bad_frames_ = 0;       // in which too many boxes left
+  std::size_t calm_frames_ = 0;      // in a row, in which few boxes changed
+  std::size_t pause_ = 0;            // frames until the next try
+  std::size_t next_pause_ = 0;       // hysteresis: grows with each try that did not last
+  std::size_t lasted_ = 0;           // frames of this try
+};
+
+/// An AdaptiveTracker, whose boxes are enlarged while most of them move by little; not where `update` asks
+/// for one way, nor in lean builds.
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> adaptive_tracker(
+    Update update, std::unique_ptr<PairFinder<D, Real>> finder, const FindCosts& finding,
+    std::vector<Follower<D, Real>> followers, std::unique_ptr<PairTracker<D, Real>> for_few = nullptr) {
+  auto tracker = std::make_unique<AdaptiveTracker<D, Real>>(update, std::move(finder), finding,
+                                                            std::move(followers), std::move(for_few));
+  if constexpr (!is_lean) {
+    if (update == Update::automatic) return std::make_unique<MarginTracker<D, Real>>(std::move(tracker));
+  }
+  return tracker;
+}
+
+}  // namespace broadside::core

@@ -1,0 +1,247 @@
+// MarginTracker: the events of the boxes themselves, whatever happens while they are enlarged, and what that
+// saves.
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/executor.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
+
+#include "lab/measure/memory.hpp"
+#include "tests/support/rng.hpp"
+#include "tests/support/trackers.hpp"
+
+namespace broadside {
+namespace {
+
+/// Boxes at rest that tremble, some 4 neighbours each.
+template <int D, typename Real>
+class TremblingBoxes {
+ public:
+  TremblingBoxes(std::size_t count, std::uint64_t seed) : random(seed) {
+    for (std::size_t i = 0; i < count; ++i) add();
+    tremble();
+  }
+
+  void add() {
+    rest.push_back(anywhere());
+    boxes.push_back(absent_box<D, Real>());
+  }
+
+  Box<D, Real> anywhere() {
+    constexpr int side = D == 2 ? 24 : 9;
+    Box<D, Real> box;
+    for (int axis = 0; axis < D; ++axis) {
+      // Neighbours that touch at rest meet and part as they tremble.
+      box.min[axis] = static_cast<Real>(random.whole(0, 2 * side)) / 2;
+      box.max[axis] = box.min[axis] + 1;
+    }
+    return box;
+  }
+
+  /// Moves all boxes that are present by up to `part` of their sides.
+  void tremble(float part = 0.005F) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      boxes[i] = rest[i];
+      if (!is_present(rest[i])) continue;
+      for (int axis = 0; axis < D; ++axis) {
+        const Real by = static_cast<Real>(random.between(-part, part));
+        boxes[i].min[axis] += by;
+        boxes[i].max[axis] += by;
+      }
+    }
+  }
+
+  std::vector<BoxId> all() const {
+    std::vector<BoxId> ids;
+    for (std::size_t i = 0; i < boxes.size(); ++i) ids.push_back(BoxId(i));
+    return ids;
+  }
+
+  Rng random;
+  std::vector<Box<D, Real>> rest;
+  std::vector<Box<D, Real>> boxes;
+};
+
+bool is_enlarged(const std::string& explanation) { return explanation.find("enlarged") != std::string::npos; }
+
+/// One frame for a tracker and for brute force; the number of events.
+template <int D, typename Real>
+std::size_t expect_same(PairTracker<D, Real>& tracker, PairTracker<D, Real>& expected,
+                        const Frame<D, Real>& frame, const std::string& what) {
+  std::vector<Pair> begun;
+  std::vector<Pair> ended;
+  std::vector<Pair> expected_begun;
+  std::vector<Pair> expected_ended;
+  const auto update = [&frame](PairTracker<D, Real>& one, std::vector<Pair>& first,
+                               std::vector<Pair>& second) {
+    PairCollector begun_pairs(first);
+    PairCollector ended_pairs(second);
+    one.update(frame, begun_pairs, ended_pairs);
+  };
+  update(tracker, begun, ended);
+  update(expected, expected_begun, expected_ended);
+  EXPECT_TRUE(begun == expected_begun) << what << ", begun; " << tracker.explanation();
+  EXPECT_TRUE(ended == expected_ended) << what << ", ended; " << tracker.explanation();
+  return begun.size() + ended.size();
+}
+
+/// A life in which all may happen that a caller can do. Most frames tremble.
+template <int D, typename Real>
+void live(const std::string& spec, std::size_t threads) {
+  TremblingBoxes<D, Real> world(700, 5);
+  const auto tracker = make_tracker<D, Real>(spec);
+  tracker->set_workers({.threads = threads, .executor = standard_executor()});
+  const auto expected = make_tracker<D, Real>("brute_force:update=rebuild");
+  std::vector<Filter> filters;
+  std::size_t enlarged = 0;
+  std::size_t events = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    std::vector<BoxId> changed;
+    const std::size_t count = world.boxes.size();
+    const bool is_calm = frame >= 60 && frame < 72;
+    if (is_calm) {
+      const std::size_t one = world.random.below(count);
+      world.boxes[one] = world.rest[one] = world.anywhere();
+      changed = {BoxId(one)};
+    } else {
+      for (int i = 0; i < 5; ++i) world.rest[world.random.below(count)] = world.anywhere();
+      if (world.random.one_in(4)) world.rest[world.random.below(count)] = absent_box<D, Real>();
+      if (frame == 30) world.rest.resize(count - 40), world.boxes.resize(count - 40);
+      if (frame >= 40 && frame < 50)
+        for (int i = 0; i < 7; ++i) world.add();
+      // Once all are thrown about, and for a time some are each frame.
+      if (frame == 90)
+        for (auto& box : world.rest) box = world.anywhere();
+      if (frame > 100)
+        for (std::size_t i = 0; i < world.rest.size(); i += 3) world.rest[i] = world.anywhere();
+      world.tremble();
+      changed = world.all();
+    }
+    if (frame == 20) filters.resize(world.boxes.size());
+    if (frame == 80) filters.clear();
+    if (!filters.empty()) {
+      filters.resize(world.boxes.size());
+      for (int i = 0; i < 20 && !is_calm; ++i)
+        filters[world.random.below(filters.size())].group = world.random.whole(-2, 2);
+    }
+    const Frame<D, Real> now{world.boxes, changed, filters};
+    if (frame % 25 == 24) {
+      FailingSink failing;
+      EXPECT_THROW(tracker->update(now, failing, failing), std::runtime_error);
+    }
+    events += expect_same(*tracker, *expected, now, spec + ", frame " + std::to_string(frame));
+    enlarged += static_cast<std::size_t>(is_enlarged(tracker->explanation()));
+  }
+  EXPECT_GT(events, 5000U);
+  EXPECT_GT(enlarged, 60U) << spec;
+  EXPECT_LT(enlarged, 110U) << spec;
+}
+
+TEST(MarginTracker, TellsTheEventsOfTheBoxesThemselves) {
+  for (const std::string spec : {"auto", "grid", "sweep_and_prune", "quadtree", "bvh"}) {
+    live<2, float>(spec, 1);
+    live<3, float>(spec, 1);
+  }
+  live<2, double>("auto", 1);
+  live<3, double>("auto", 1);
+}
+
+TEST(MarginTracker, TellsTheSameWithThreads) {
+  if (standard_executor() == nullptr) GTEST_SKIP() << "this build has no threads";
+  live<2, float>("auto", 4);
+}
+
+TEST(MarginTracker, TestsLittleMoreThanThePairsOfAPileAtRest) {
+  TremblingBoxes<2, float> world(5000, 3);
+  for (Box2& box : world.rest) {  // at random places of their own
+    for (int axis = 0; axis < 2; ++axis) {
+      box.min[axis] = world.random.between(0, 60);
+      box.max[axis] = box.min[axis] + 1;
+    }
+  }
+  const auto tracker = make_tracker<2>("auto");
+  std::int64_t pairs = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    world.tremble();
+    PairCounter begun;
+    PairCounter ended;
+    tracker->update({world.boxes, world.all()}, begun, ended);
+    pairs += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
+  }
+  ASSERT_TRUE(is_enlarged(tracker->explanation())) << tracker->explanation();
+  EXPECT_LT(tracker->statistics()->tests, static_cast<std::uint64_t>(pairs) * 3 / 2);
+  EXPECT_EQ(tracker->box_index(), nullptr) << "an index of enlarged boxes is none of the boxes";
+}
+
+TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
+  const auto is_ever_enlarged = [](std::size_t count, float part, std::size_t every) {
+    TremblingBoxes<2, float> world(count, 1);
+    const auto tracker = make_tracker<2>("auto");
+    bool is = false;
+    for (int frame = 0; frame < 12; ++frame) {
+      std::vector<BoxId> changed;
+      const std::vector<Box2> before = world.boxes;
+      world.tremble(part);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (i % every == 0)
+          changed.push_back(BoxId(i));
+        else
+          world.boxes[i] = before[i];
+      }
+      PairCounter none;
+      tracker->update({world.boxes, changed}, none, none);
+      is |= is_enlarged(tracker->explanation());
+    }
+    return is;
+  };
+  EXPECT_TRUE(is_ever_enlarged(2000, 0.005F, 1));
+  EXPECT_FALSE(is_ever_enlarged(2000, 0.1F, 1));
+  EXPECT_FALSE(is_ever_enlarged(300, 0.005F, 1));
+  EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 10));
+}
+
+TEST(MarginTracker, TriesLessOftenWhereBoxesKeepLeaving) {
+  TremblingBoxes<2, float> world(2000, 9);
+  const auto tracker = make_tracker<2>("auto");
+  std::size_t starts = 0;
+  bool was = false;
+  for (int frame = 0; frame < 600; ++frame) {
+    // Quiet for as long as it takes to begin, then wild.
+    world.tremble(was ? 0.4F : 0.005F);
+    PairCounter none;
+    tracker->update({world.boxes, world.all()}, none, none);
+    const bool is = is_enlarged(tracker->explanation());
+    starts += static_cast<std::size_t>(is && !was);
+    was = is;
+  }
+  EXPECT_GE(starts, 2U);
+  EXPECT_LE(starts, 8U);
+}
+
+TEST(MarginTracker, AllocatesNothingInASteadyState) {
+  if (!lab::AllocationMeter().read()) GTEST_SKIP() << "this build does not count allocations";
+  TremblingBoxes<2, float> world(2000, 2);
+  const auto tracker = make_tracker<2>("auto");
+  const std::vector<BoxId> all = world.all();
+  const auto follow = [&](int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      world.tremble();
+      PairCounter none;
+      tracker->update({world.boxes, all}, none, none);
+    }
+  };
+  follow(60);
+  ASSERT_TRUE(is_enlarged(tracker->explanation()));
+  const lab::AllocationMeter meter;
+  follow(30);
+  EXPECT_EQ(meter.read()->peak, 0);
+}
+
+}  // namespace
+}  // namespace broadside
