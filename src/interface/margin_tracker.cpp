@@ -31,11 +31,14 @@ constexpr std::size_t many_movers = 4;
 constexpr std::size_t few_movers = 8;
 constexpr std::size_t most_calm_frames = 8;
 
-/// A margin is this many times as long as the way of most boxes in a frame, so that they stay within it for
-/// about so many frames; and at most this part of a box, so that candidates are not far more than pairs.
-constexpr double frames_within_margin = 16;
-constexpr double largest_margin = 0.2;
+/// How far most boxes may move in a frame, over their longest side.
+constexpr double longest_way = 0.0125;
+
+/// A margin over the way of most boxes in a frame: they stay within it for at least about so many frames. And
+/// its limits, over a box's longest side: a large one makes far more candidates than pairs.
+constexpr double frames_within_margin = 32;
 constexpr double smallest_margin = 0.01;
+constexpr double largest_margin = 0.2;
 
 /// Boxes whose way is looked at, and which of them, in order, counts as that of most.
 constexpr std::size_t most_sampled = 64;
@@ -96,9 +99,9 @@ Real MarginTracker<D, Real>::relative_margin_for(const Change<D, Real>& change) 
   }
   const auto most = ways.begin() + static_cast<std::ptrdiff_t>(of_most * (most_sampled - 1));
   std::nth_element(ways.begin(), most, ways.end());
-  const auto margin = static_cast<Real>(frames_within_margin) * *most;
-  if (!(margin <= static_cast<Real>(largest_margin))) return 0;
-  return std::max(margin, static_cast<Real>(smallest_margin));
+  if (!(*most <= static_cast<Real>(longest_way))) return 0;
+  return std::clamp(static_cast<Real>(frames_within_margin) * *most, static_cast<Real>(smallest_margin),
+                    static_cast<Real>(largest_margin));
 }
 
 /// Enlarges all boxes of a frame whose events are told, and finds the candidates.
