@@ -35,15 +35,25 @@ template <int D, typename Real>
 std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t most_boxes, Rng& rng) {
   std::vector<WholeFrame<D, Real>> frames;
   WholeFrame<D, Real> frame;
-  frame.boxes = lattice_boxes<D, Real>(rng.below(most_boxes + 1), rng);
+  // Where many boxes move by little, trackers enlarge them.
+  const bool trembles = most_boxes > 600 && rng.one_in(2);
+  frame.boxes = lattice_boxes<D, Real>(trembles ? most_boxes : rng.below(most_boxes + 1), rng);
   std::vector<Filter> filters(most_boxes);
   std::vector<Pair> ignored;
   bool has_filters = rng.one_in(3);
   bool has_ignored = rng.one_in(2);
   while (frames.size() < count) {
-    if (rng.one_in(4)) frame.boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
+    if (rng.one_in(trembles ? 20 : 4)) frame.boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
     std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(frame.boxes.size(), rng);
-    const std::size_t part = rng.one_in(3) ? 1 : rng.one_in(2) ? 4 : 20;
+    const std::size_t part = trembles ? 20 : rng.one_in(3) ? 1 : rng.one_in(2) ? 4 : 20;
+    if (trembles) {
+      const Real by = frames.size() % 2 == 0 ? 0x1p-7F : -0x1p-7F;
+      for (Box<D, Real>& box : frame.boxes) {
+        if (!is_present(box) || rng.one_in(8)) continue;
+        box.min[0] += by;
+        box.max[0] += by;
+      }
+    }
     for (std::size_t i = 0; i < others.size(); ++i) {
       if (rng.one_in(part)) frame.boxes[i] = others[i];
     }
