@@ -25,10 +25,14 @@ namespace {
 /// With fewer boxes, finding all pairs anew takes no longer than keeping candidates.
 constexpr std::size_t least_boxes = 512;
 
-/// Of all boxes, the part that must move for candidates to pay, and the part below which they do not.
-/// Hysteresis: leave a bit later than you enter, so that a count near the limit does not flip each frame.
-constexpr std::size_t many_movers = 4;
-constexpr std::size_t few_movers = 8;
+/// Of all boxes, the part that must move before they are enlarged.
+constexpr std::size_t many_movers = 8;
+
+/// Candidates that are tested in the time that it takes to follow a mover without tests, and each of its
+/// tests; and the frames in a row in which following would have taken less before boxes are no longer
+/// enlarged.
+constexpr double candidates_a_mover = 96;
+constexpr double candidates_a_test = 1.5;
 constexpr std::size_t most_calm_frames = 8;
 
 /// How far most boxes may move in a frame, over their longest side.
@@ -252,17 +256,19 @@ void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& beg
 template <int D, typename Real>
 void MarginTracker<D, Real>::judge(std::size_t changed) {
   ++lasted_;
-  calm_frames_ = changed < now_.size() / few_movers ? calm_frames_ + 1 : 0;
+  const auto candidates = static_cast<double>(candidates_.size());
+  // A mover has the candidates of two boxes: its own, and those of which it is the second.
+  const double tests = 2 * candidates / static_cast<double>(now_.size());
+  const bool is_calm =
+      static_cast<double>(changed) * (candidates_a_mover + candidates_a_test * tests) < candidates;
+  calm_frames_ = is_calm ? calm_frames_ + 1 : 0;
   if (left_.size() > changed / many_left && left_.size() > least_boxes / many_left)
     ++bad_frames_;
   else if (bad_frames_ > 0)
     --bad_frames_;
-  const bool is_bad = bad_frames_ >= most_bad_frames;
-  if (!is_bad && calm_frames_ < most_calm_frames) return;
-  if (is_bad) {
-    next_pause_ = lasted_ > next_pause_ ? shortest_pause : std::min(2 * next_pause_, longest_pause);
-    pause_ = next_pause_;
-  }
+  if (bad_frames_ < most_bad_frames && calm_frames_ < most_calm_frames) return;
+  next_pause_ = lasted_ > next_pause_ ? shortest_pause : std::min(2 * next_pause_, longest_pause);
+  pause_ = next_pause_;
   stop();
 }
 
