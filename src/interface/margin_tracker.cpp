@@ -35,11 +35,11 @@ constexpr double candidates_a_mover = 96;
 constexpr double candidates_a_test = 1.5;
 constexpr std::size_t most_calm_frames = 8;
 
-/// How far most boxes may move in a frame, over their longest side.
+/// How far most boxes may move in a frame, over their shortest side.
 constexpr double longest_way = 0.0125;
 
 /// A margin over the way of most boxes in a frame: they stay within it for at least about so many frames. And
-/// its limits, over a box's longest side: a large one makes far more candidates than pairs.
+/// its limits, over a box's shortest side: a large one makes far more candidates than pairs.
 constexpr double frames_within_margin = 32;
 constexpr double smallest_margin = 0.01;
 constexpr double largest_margin = 0.2;
@@ -75,7 +75,8 @@ void MarginTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSin
   if (const Real margin = relative_margin_for(change); margin > 0) start(change, margin);
 }
 
-/// The margin that suits how far boxes moved, over a box's longest side; 0 where none does.
+/// The margin that suits how far boxes moved, over a box's shortest side; 0 where none does. Over the
+/// longest, the margins of thin boxes would make far more candidates than pairs.
 template <int D, typename Real>
 Real MarginTracker<D, Real>::relative_margin_for(const Change<D, Real>& change) {
   const std::size_t count = change.changed.size();
@@ -91,11 +92,11 @@ Real MarginTracker<D, Real>::relative_margin_for(const Change<D, Real>& change) 
     const Box<D, Real>& before = change.before[place];
     const Box<D, Real>& now = change.now[place];
     Real way = 0;
-    Real side = 0;
+    Real side = std::numeric_limits<Real>::infinity();
     for (int axis = 0; axis < D; ++axis) {
       way = std::max(
           {way, std::abs(now.min[axis] - before.min[axis]), std::abs(now.max[axis] - before.max[axis])});
-      side = std::max(side, now.max[axis] - now.min[axis]);
+      side = std::min(side, now.max[axis] - now.min[axis]);
     }
     // Not for absent boxes, nor for unbounded ones.
     const Real relative = way / side;
@@ -112,7 +113,7 @@ Real MarginTracker<D, Real>::relative_margin_for(const Change<D, Real>& change) 
 template <int D, typename Real>
 void MarginTracker<D, Real>::start(const Change<D, Real>& change, Real relative_margin) {
   const std::optional<Statistics> statistics = this->statistics();
-  margins_ = {.margin = 0, .relative = relative_margin, .frames = 0};
+  margins_ = {.margin = 0, .relative = relative_margin, .frames = 0, .is_of_shortest = true};
   const std::size_t size = change.now.size();
   before_.assign(size, absent_box<D, Real>());
   now_.resize(size);
@@ -290,8 +291,8 @@ std::string MarginTracker<D, Real>::explanation() const {
   if (!was_enlarged_) return tracker_->explanation();
   return std::to_string(candidate_count_) + " pairs of boxes enlarged by " +
          text_of(std::round(1000 * static_cast<double>(margins_.relative)) / 10) +
-         " % were tested, since most boxes move by little and " + std::to_string(left_.size()) +
-         " left their enlarged ones";
+         " % of their shortest side were tested, since most boxes move by little and " +
+         std::to_string(left_.size()) + " left their enlarged ones";
 }
 
 template <int D, typename Real>

@@ -15,6 +15,7 @@ struct Margins {
   Real margin;
   Real relative;
   Real frames;
+  bool is_of_shortest = false;  ///< whether `relative` is of a box's shortest side, instead of its longest
 
   /// Whether boxes are enlarged at all.
   bool any() const noexcept { return margin > 0 || relative > 0 || frames > 0; }
@@ -54,12 +55,15 @@ struct Margins {
   /// A side that is not finite counts for nothing.
   Real margin_of(const Box<D, Real>& box) const noexcept {
     if (relative == 0) return margin;
+    constexpr Real infinity = std::numeric_limits<Real>::infinity();
     Real longest = 0;
+    Real shortest = infinity;
     for (int axis = 0; axis < D; ++axis) {
       const Real side = box.max[axis] - box.min[axis];
-      longest = std::max(longest, side < std::numeric_limits<Real>::infinity() ? side : 0);
+      longest = std::max(longest, side < infinity ? side : 0);
+      shortest = std::min(shortest, side);
     }
-    const Real share = relative * longest;
+    const Real share = relative * (is_of_shortest ? std::min(shortest, longest) : longest);
     return margin > 0 ? std::min(margin, share) : share;
   }
 };

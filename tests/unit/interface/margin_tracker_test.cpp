@@ -208,6 +208,28 @@ TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
   EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 10));
 }
 
+TEST(MarginTracker, EnlargesThinBoxesByTheirThicknessOnly) {
+  std::vector<Box2> boxes;
+  std::vector<BoxId> all;
+  for (int i = 0; i < 2000; ++i) {
+    const float x = static_cast<float>(i % 2) * 150;
+    const float y = static_cast<float>(i / 2) * 2;
+    boxes.push_back({{x, y}, {x + 100, y + 1}});
+    all.push_back(BoxId(std::size_t(i)));
+  }
+  const auto tracker = make_tracker<2>("auto");
+  PairCounter none;
+  for (const float way : {0.005F, 0.3F}) {  // little over their length, either way
+    for (int frame = 0; frame < 20; ++frame) {
+      for (Box2& box : boxes) box.min[1] += frame % 2 == 0 ? way : -way;
+      tracker->update({boxes, all}, none, none);
+      if (frame < 5) continue;  // it takes some to begin and to stop
+      EXPECT_EQ(is_enlarged(tracker->explanation()), way < 0.1F) << way << ", frame " << frame;
+      EXPECT_LT(tracker->statistics()->tests, 20 * boxes.size()) << way << ", frame " << frame;
+    }
+  }
+}
+
 TEST(MarginTracker, TriesLessOftenWhereBoxesKeepLeaving) {
   TremblingBoxes<2, float> world(2000, 9);
   const auto tracker = make_tracker<2>("auto");
