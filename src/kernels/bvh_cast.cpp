@@ -5,8 +5,6 @@
 // the definition, with divisions, lets be met.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_cast.cpp"
-#include <algorithm>
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -83,21 +81,18 @@ struct Cast {
     return hn::And(hits, hn::Le(enter, leave));
   }
 
-  /// Appends the boxes of a leaf that are met (or may be, where the cast is not exact) to what was found.
-  HWY_INLINE void leaf(const Block<D>& node, FoundBoxes& found, FloatVector limit) const {
-    const FloatVector t_max = all(found.t_max);
-    for (std::size_t at = 0; at < fan_out; at += lanes) {
-      FloatVector enter;
-      FloatMask hits = may_meet(node, at, limit, enter);
-      if (cast_.exact) {
-        if (all_false(Floats(), hits)) continue;
-        hits = meets(node, at, t_max, enter);
-      }
-      // Makes -0.0 0.0.
-      const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
-      found.count += append_entries(node, at, hits, entries, found.ids.data() + found.count,
-                                    found.t_enter.data() + found.count);
+  /// Appends the boxes from `at` on that are met (or may be, where the cast is not exact) to what was found,
+  /// of those that may be.
+  HWY_INLINE void add(const Block<D>& leaf, std::size_t at, FloatMask hits, FloatVector enter,
+                      FoundBoxes& found) const {
+    if (cast_.exact) {
+      if (all_false(Floats(), hits)) return;
+      hits = meets(leaf, at, all(found.t_max), enter);
     }
+    // Makes -0.0 0.0.
+    const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
+    found.count += append_entries(leaf, at, hits, entries, found.ids.data() + found.count,
+                                  found.t_enter.data() + found.count);
   }
 
   /// The parameter up to which bounds count, if boxes count up to `t_max`.
@@ -135,79 +130,108 @@ bool met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
     return cast.may_meet(node, at, limit, enter);
   };
   return traverse(tree, may_meet, [&](const Block<D>& node) HWY_ATTR {
-    cast.leaf(node, found, limit);
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
+      FloatVector enter;
+      const FloatMask hits = cast.may_meet(node, at, limit, enter);
+      cast.add(node, at, hits, enter, found);
+    }
     return found.count < found.full || found.take();
   });
 }
 
-/// A node to visit, with the parameter at which it is entered in the high half: the bits of positive floats
-/// sort as the floats do.
-using Waiting = std::uint64_t;
+/// The key of no parameter, and what of a key is its place.
+constexpr std::uint32_t no_key = 0xFFFFFFFFU;
+constexpr std::uint32_t place_bits = fan_out - 1;
 
-HWY_INLINE float t_enter_of(Waiting waiting) {
-  const auto bits = static_cast<std::uint32_t>(waiting >> 32);
-  float value;
-  hwy::CopyBytes<sizeof(value)>(&bits, &value);
-  return value;
+/// Keys that tell which of sixteen parameters is the least: the bits of a float that is not negative sort as
+/// it does, and the last four give way to its place, so a key stands for the parameter or a little less. A
+/// sign, that of -0.0, is lost. no_key outside the mask.
+HWY_INLINE NumberVector keys(FloatVector t_enter, FloatMask mask, std::size_t at) {
+  const auto bits = hn::And(hn::BitCast(Numbers(), t_enter), hn::Set(Numbers(), 0x7FFFFFFFU & ~place_bits));
+  const auto places = hn::Iota(Numbers(), static_cast<std::uint32_t>(at));
+  return hn::IfThenElse(hn::RebindMask(Numbers(), mask), hn::Or(bits, places), hn::Set(Numbers(), no_key));
 }
 
-/// Sorts in descending order. Nearly always there are two or three, which are sorted without branches.
-HWY_INLINE void sort_descending(Waiting* list, std::size_t count) {
-  const auto order = [list](std::size_t i, std::size_t j) HWY_ATTR {
-    const Waiting greater = std::max(list[i], list[j]);
-    list[j] = std::min(list[i], list[j]);
-    list[i] = greater;
-  };
-  if (count < 2) return;
-  order(0, 1);
-  if (count == 2) return;
-  order(1, 2);
-  order(0, 1);
-  for (std::size_t i = 3; i < count; ++i) {
-    const Waiting inserted = list[i];
-    std::size_t to = i;
-    for (; to > 0 && list[to - 1] < inserted; --to) list[to] = list[to - 1];
-    list[to] = inserted;
+/// The nodes that a search for the first box has yet to visit. Beyond sixteen it goes depth first, which
+/// bounds their number.
+class WaitingNodes {
+ public:
+  /// Adds the children of `node` from `at` on that are in `mask`.
+  template <int D>
+  HWY_INLINE void add(const Block<D>& node, std::size_t at, FloatMask mask, FloatVector t_enter) {
+    count_ += append_entries(node, at, mask, t_enter, nodes_ + count_, t_enter_ + count_);
   }
-}
+
+  /// Takes out the node that is entered first, if there are at most sixteen, or one of those added last.
+  /// Those entered beyond `limit` do not count. Returns false if there is none.
+  HWY_INLINE bool take(float limit, std::uint32_t& node) {
+    while (HWY_UNLIKELY(count_ > fan_out)) {
+      node = nodes_[--count_];
+      if (t_enter_[count_] <= limit) return true;
+    }
+    NumberVector nearest = hn::Set(Numbers(), no_key);
+    const auto count = hn::Set(Numbers(), static_cast<std::uint32_t>(count_));
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
+      const auto is_there = hn::Lt(hn::Iota(Numbers(), static_cast<std::uint32_t>(at)), count);
+      nearest = hn::Min(nearest, keys(load(t_enter_, at), hn::RebindMask(Floats(), is_there), at));
+    }
+    nearest = hn::MinOfLanes(Numbers(), nearest);
+    // By the key, since others entered earlier may have the same but for the place. A NaN if there is none.
+    if (!(hn::GetLane(hn::BitCast(Floats(), hn::And(nearest, hn::Set(Numbers(), ~place_bits)))) <= limit))
+      return false;
+    const std::uint32_t place = hn::GetLane(nearest) & place_bits;
+    node = nodes_[place];
+    --count_;
+    nodes_[place] = nodes_[count_];
+    t_enter_[place] = t_enter_[count_];
+    return true;
+  }
+
+ private:
+  std::size_t count_ = 0;
+  alignas(64) std::uint32_t nodes_[(longest_path + 2) * fan_out];
+  alignas(64) float t_enter_[(longest_path + 2) * fan_out];
+};
 
 template <int D>
 void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
+  constexpr std::size_t vectors = fan_out / lanes;
   const Cast<D> cast(query);
   FloatVector limit = Cast<D>::limit(found.t_max);
-  Waiting waiting[(longest_path + 1) * fan_out];
-  std::uint32_t children[2 * fan_out];
-  std::uint32_t entries[2 * fan_out];
-  std::size_t count = 1;
-  waiting[0] = tree.root;
-  while (count > 0) {
-    --count;
-    if (!(t_enter_of(waiting[count]) <= hn::GetLane(limit))) continue;
-    const auto number = static_cast<std::uint32_t>(waiting[count]);
+  WaitingNodes waiting;
+  for (std::uint32_t number = tree.root;;) {
     const Block<D>& node = tree.nodes[number & ~leaf_bit];
-    if ((number & leaf_bit) != 0) {
-      cast.leaf(node, found, limit);
-      if (found.count == 0) continue;
-      found.take();
-      limit = Cast<D>::limit(found.t_max);
-      continue;
+    FloatVector enter[vectors];
+    FloatMask hits[vectors];
+    FloatMask any = hits[0] = cast.may_meet(node, 0, limit, enter[0]);
+    for (std::size_t i = 1; i < vectors; ++i) {
+      hits[i] = cast.may_meet(node, i * lanes, limit, enter[i]);
+      any = hn::Or(any, hits[i]);
     }
-    std::size_t size = 0;
-    for (std::size_t at = 0; at < fan_out; at += lanes) {
-      FloatVector enter;
-      const FloatMask mask = cast.may_meet(node, at, limit, enter);
-      const auto hits = hn::RebindMask(Numbers(), mask);
-      const auto bits = hn::BitCast(Numbers(), hn::Add(enter, hn::Zero(Floats())));  // no -0.0
-      hn::StoreU(compress(Numbers(), bits, hits), Numbers(), entries + size);
-      size += append(node, at, mask, children + size);
+    if (!all_false(Floats(), any)) {
+      if ((number & leaf_bit) == 0) {  // straight on to the nearest child
+        NumberVector key[vectors];
+        NumberVector nearest = hn::Set(Numbers(), no_key);
+        for (std::size_t i = 0; i < vectors; ++i) {
+          key[i] = keys(enter[i], hits[i], i * lanes);
+          nearest = hn::Min(nearest, key[i]);
+        }
+        nearest = hn::MinOfLanes(Numbers(), nearest);
+        number = node.id[hn::GetLane(nearest) & place_bits];
+        prefetch(tree.nodes[number & ~leaf_bit]);
+        for (std::size_t i = 0; i < vectors; ++i) {
+          const auto is_other = hn::RebindMask(Floats(), hn::Ne(key[i], nearest));
+          waiting.add(node, i * lanes, hn::And(hits[i], is_other), enter[i]);
+        }
+        continue;
+      }
+      for (std::size_t i = 0; i < vectors; ++i) cast.add(node, i * lanes, hits[i], enter[i], found);
+      if (found.count > 0) {
+        found.take();
+        limit = Cast<D>::limit(found.t_max);
+      }
     }
-    for (std::size_t i = 0; i < size; ++i) {
-      waiting[count + i] = Waiting{entries[i]} << 32 | children[i];
-      prefetch(tree.nodes[children[i] & ~leaf_bit]);
-    }
-    // The nearest one last, where it is taken from.
-    sort_descending(waiting + count, size);
-    count += size;
+    if (!waiting.take(hn::GetLane(limit), number)) return;
   }
 }
 

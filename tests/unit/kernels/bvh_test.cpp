@@ -154,6 +154,37 @@ TEST(BvhCast, MeetsWhatTheDefinitionSaysAndTheFirstOfThem) {
   });
 }
 
+TEST(BvhCast, MeetsTheFirstOfManyThatDifferInTheLastPlaces) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(17);
+    for (int round = 0; round < 200; ++round) {
+      // A wall of boxes side by side, whose faces towards the cast differ by some steps of a float.
+      std::vector<Box<D>> boxes(256);
+      CastQuery<D> query{.box = {}, .direction = {}, .inverse = {}, .course = {}, .exact = true};
+      query.course.fill(Course::still);
+      query.inverse.fill(1);
+      query.course[0] = Course::forward;
+      query.direction[0] = 1;
+      query.box.min[1] = -1;
+      query.box.max[1] = 300;
+      float first = infinity;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        boxes[i].min[0] = 1 + 0x1p-23F * static_cast<float>(rng.below(100));
+        boxes[i].max[0] = 2;
+        boxes[i].min[1] = boxes[i].max[1] = static_cast<float>(i);
+        first = std::min(first, boxes[i].min[0]);
+      }
+      algorithm::DynamicBvh<D> tree;
+      tree.build(boxes);
+      Collector nearest;
+      nearest.is_first = true;
+      nearest.t_max = infinity;
+      find_first_met(tree.view(), query, nearest);
+      ASSERT_EQ(nearest.t_max, first) << "round " << round;
+    }
+  });
+}
+
 /// Calls `body(boxes, left_count, tree)` for packed trees of 1 to 900 boxes in any order, some places
 /// of which are left empty.
 template <typename Body>
