@@ -5,6 +5,10 @@
 // the definition, with divisions, lets be met.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_cast.cpp"
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -31,17 +35,24 @@ HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, Floa
 
 /// A cast, in every lane.
 template <int D>
-struct Cast {
+class Cast {
+  using Bounds = decltype(Block<D>::min);
+
+ public:
   HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast_(query) {
     for (int axis = 0; axis < D; ++axis) {
-      const bool is_back = query.course[axis] == Course::backward ||
-                           (query.course[axis] == Course::unknown && query.direction[axis] < 0);
+      // Selected without a branch, which no processor would predict.
+      const auto is_back = static_cast<std::size_t>(query.course[axis] == Course::backward) |
+                           (static_cast<std::size_t>(query.course[axis] == Course::unknown) &
+                            std::size_t{query.direction[axis] < 0});
+      const std::array<float, 2> sides = {query.box.max[axis], query.box.min[axis]};
+      constexpr std::array<Bounds Block<D>::*, 2> bounds = {&Block<D>::min, &Block<D>::max};
       // The leading side of the cast box meets the near side of the other one.
-      near_side_[axis] = all(is_back ? query.box.min[axis] : query.box.max[axis]);
-      far_side_[axis] = all(is_back ? query.box.max[axis] : query.box.min[axis]);
+      near_side_[axis] = all(sides[is_back]);
+      far_side_[axis] = all(sides[1 - is_back]);
       inverse_[axis] = all(query.inverse[axis]);
-      near_bounds_[axis] = is_back ? &Block<D>::max : &Block<D>::min;
-      far_bounds_[axis] = is_back ? &Block<D>::min : &Block<D>::max;
+      near_bounds_[axis] = bounds[is_back];
+      far_bounds_[axis] = bounds[1 - is_back];
     }
   }
 
@@ -99,8 +110,6 @@ struct Cast {
   static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + least); }
 
  private:
-  using Bounds = decltype(Block<D>::min);
-
   HWY_INLINE FloatVector near_bound(const Block<D>& node, int axis, std::size_t at) const {
     return load((node.*near_bounds_[axis])[axis], at);
   }
