@@ -88,6 +88,11 @@ struct Change {
 template <int D, typename Real>
 class BoxIndex;
 
+namespace core {
+template <int D>
+class CandidateTracker;
+}  // namespace core
+
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps. Cost of an update
@@ -133,6 +138,9 @@ class BROADSIDE_PUBLIC PairTracker {
   /// Where the algorithm is one that chooses: what it chose for the last update(), and why, in a sentence.
   /// Empty for others.
   virtual std::string explanation() const { return {}; }
+
+  /// For the library: what follows boxes for this tracker, if it can leave it to its caller to judge pairs.
+  virtual core::CandidateTracker<D>* candidate_tracker() { return nullptr; }
 
   /// The bytes it holds: what every tracker keeps, and what the algorithm says that it keeps.
   std::size_t bytes() const noexcept;

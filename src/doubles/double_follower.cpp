@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "interface/candidate_tracker.hpp"
+
 namespace broadside::algorithm {
 namespace {
 
@@ -50,7 +52,7 @@ void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& 
   now_.resize(change.now.size(), absent_box<D>());
   for (const BoxId id : change.changed) now_[index(id)] = rounded(change.now[index(id)]);
   Candidates<D> candidates(change, begun, ended);
-  Statistics statistics = floats_->candidates(
+  Statistics statistics = floats_->candidate_tracker()->candidates(
       {.before = before_, .now = now_, .changed = change.changed, .flags = change.flags, .rebuild = starts},
       candidates);
   candidates.flush();
@@ -88,7 +90,7 @@ template <int D>
 std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
   std::size_t bytes = (before_.capacity() + now_.capacity()) * sizeof(Box<D>);
   for (const core::QuantileRounding& rounding : quantiles_) bytes += rounding.bytes();
-  return bytes + floats_->kept_bytes();
+  return bytes + floats_->bytes();
 }
 
 template class DoubleFollower<2>;

@@ -12,7 +12,6 @@
 #include "broadside/tracker.hpp"
 
 #include "core/rounding.hpp"
-#include "interface/candidate_tracker.hpp"
 
 namespace broadside::algorithm {
 
@@ -23,7 +22,8 @@ namespace broadside::algorithm {
 template <int D>
 class DoubleFollower final : public PairTracker<D, double> {
  public:
-  explicit DoubleFollower(std::unique_ptr<core::CandidateTracker<D>> floats) : floats_(std::move(floats)) {}
+  /// `floats` has a candidate_tracker().
+  explicit DoubleFollower(std::unique_ptr<PairTracker<D>> floats) : floats_(std::move(floats)) {}
 
  private:
   void update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) override;
@@ -36,7 +36,7 @@ class DoubleFollower final : public PairTracker<D, double> {
   std::array<core::QuantileRounding, D> quantiles_;
   bool by_quantiles_ = false;
   std::uint64_t false_candidates_ = 0;  // since all boxes were rounded
-  std::unique_ptr<core::CandidateTracker<D>> floats_;
+  std::unique_ptr<PairTracker<D>> floats_;
   std::vector<Box<D>> before_;
   std::vector<Box<D>> now_;
 };

@@ -39,6 +39,11 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
 
   std::string explanation() const override;
 
+  /// Where it does nothing but follow.
+  core::CandidateTracker<D>* candidate_tracker() override {
+    return policy_.update() == Update::follow ? follower().candidate_tracker() : nullptr;
+  }
+
  private:
   void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }

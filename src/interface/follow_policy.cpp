@@ -13,7 +13,7 @@ namespace {
 // plates, lines and clusters: docs/lab-notes.md.
 constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
-constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide
+constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide, in any structure
 
 /// The part of the way back to its expected value that a structure's cost takes each time another one is
 /// weighed: the boxes may have changed.
@@ -50,16 +50,17 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   const auto movers = static_cast<double>(changed);
   const std::size_t best = cheapest();
   const double finding = static_cast<double>(boxes) * of_box_;
+  const auto following = [&](std::size_t structure) { return of_mover_[structure] + candidates_of_mover_; };
   break_even_ =
-      std::max(few_movers, static_cast<std::size_t>(finding / of_mover_[follows_ ? current_ : best]));
+      std::max(few_movers, static_cast<std::size_t>(finding / following(follows_ ? current_ : best)));
   if (update_ != Update::automatic) return update_ == Update::follow;
   // In the first frame all boxes are new, and after a failed one nothing is known.
   if (rebuild) return false;
   const bool is_best = follows_ && best == current_;
   if (changed <= few_movers && is_best) return true;
-  if (is_best) return finding > movers * of_mover_[current_];
-  const double now = follows_ ? std::min(finding, movers * of_mover_[current_]) : finding;
-  const double saving = now - movers * of_mover_[best];
+  if (is_best) return finding > movers * following(current_);
+  const double now = follows_ ? std::min(finding, movers * following(current_)) : finding;
+  const double saving = now - movers * following(best);
   const bool goes_on = follows_ && now < finding;
   if (saving <= 0) return goes_on;
   // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
@@ -98,8 +99,8 @@ void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>
   const double tests = std::exchange(seen_tests_, 0) / movers;
   const FollowCosts& costs = following_[current_];
   of_mover_[current_] = costs.mover_alone + costs.test * std::min(tests, usual_tests) +
-                        costs.further_test * std::max(0.0, tests - usual_tests) +
-                        cost_of_a_candidate * std::exchange(seen_hits_, 0) / movers;
+                        costs.further_test * std::max(0.0, tests - usual_tests);
+  candidates_of_mover_ = cost_of_a_candidate * std::exchange(seen_hits_, 0) / movers;
 }
 
 void FollowPolicy::lost() {

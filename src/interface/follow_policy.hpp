@@ -74,8 +74,9 @@ class FollowPolicy {
   Update update_;
   FindCosts finding_;
   std::vector<FollowCosts> following_;
-  std::vector<double> of_mover_;  // by structure: the cost of a mover when it was last used, or expected
-  double of_box_;                 // the cost of finding all pairs anew, a box
+  std::vector<double> of_mover_;    // by structure: the cost of a mover when it was last used, or expected
+  double candidates_of_mover_ = 0;  // what a mover's candidates cost besides, in any structure
+  double of_box_;                   // the cost of finding all pairs anew, a box
   bool follows_ = false;
   std::size_t current_ = 0;
   double saved_ = 0;     // what following would have saved since it was last done, or another structure

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -207,14 +208,23 @@ std::unique_ptr<PairFinder<D>> make_auto(const Settings&) {
   return std::make_unique<Auto<D>>();
 }
 
+/// What follows boxes in an algorithm's structure. Boxes of doubles are followed by their floats.
+template <int D, typename Real>
+std::unique_ptr<PairTracker<D, Real>> make_follower(std::string_view spec) {
+  if constexpr (std::is_same_v<Real, float>)
+    return make_tracker<D>(spec);
+  else
+    return std::make_unique<DoubleFollower<D>>(make_tracker<D>(spec));
+}
+
 /// Those that this build has. The later ones take over where the first makes too many tests.
-template <int D>
-std::vector<core::Follower<D, float>> followers() {
-  std::vector<core::Follower<D, float>> followers = {
-      {"grid", [] { return make_tracker<D>("grid:update=follow"); }, core::grid_following<D>},
-      {"quadtree", [] { return make_tracker<D>("quadtree:update=follow"); },
+template <int D, typename Real>
+std::vector<core::Follower<D, Real>> followers() {
+  std::vector<core::Follower<D, Real>> followers = {
+      {"grid", [] { return make_follower<D, Real>("grid:update=follow"); }, core::grid_following<D>},
+      {"quadtree", [] { return make_follower<D, Real>("quadtree:update=follow"); },
        core::quadtree_following_for_auto},
-      {"bvh", [] { return make_tracker<D>("bvh:update=follow"); }, core::bvh_following_for_auto},
+      {"bvh", [] { return make_follower<D, Real>("bvh:update=follow"); }, core::bvh_following_for_auto},
   };
   std::erase_if(followers, [](const auto& follower) { return find_algorithm(follower.name) == nullptr; });
   return followers;
@@ -223,17 +233,15 @@ std::vector<core::Follower<D, float>> followers() {
 template <int D>
 std::unique_ptr<PairTracker<D>> make_auto_tracker(const Settings& settings) {
   return core::adaptive_tracker<D, float>(core::update_of(settings), std::make_unique<Auto<D>>(),
-                                          core::grid_finding<D>, followers<D>(),
+                                          core::grid_finding<D>, followers<D, float>(),
                                           make_tracker<D>("brute_force"));
 }
 
 template <int D>
 std::unique_ptr<PairTracker<D, double>> make_auto_double_tracker(const Settings& settings) {
-  const auto follower = [] { return std::make_unique<DoubleFollower<D>>(grid_candidates<D>()); };
   return core::adaptive_tracker<D, double>(
       core::update_of(settings), std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
-      core::grid_finding<D>,
-      std::vector<core::Follower<D, double>>{{"grid", follower, core::grid_following<D>}});
+      core::grid_finding<D>, followers<D, double>());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "broadside/tracker.hpp"
 
 #include "algorithms/bvh/index.hpp"
+#include "interface/candidate_tracker.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/bvh_follow.hpp"
 
@@ -32,19 +33,22 @@ constexpr std::uint64_t movers_to_judge = 512;
 /// Boxes that are moved in one call of the kernel, so that they stay in the cache.
 constexpr std::size_t moves_at_once = 2048;
 
-/// Takes the pairs that begin, or end, at one box's turn.
+/// Takes the pairs that begin, or end, at one box's turn. Where the caller judges `every_pair`, all are
+/// written to `begun` as they are found.
 template <int D>
 class Toggled final : public PairSink {
  public:
-  Toggled(const Change<D>& change, bool begins, PairSink& begun, PairSink& ended)
+  Toggled(const Change<D>& change, bool begins, PairSink& begun, PairSink& ended, bool every_pair)
       : change_(change),
         is_exact_(change.filters_now.empty()),
+        every_pair_(every_pair),
         begins_(begins),
         begun_(begun),
         ended_(ended) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
+    if (every_pair_) return begun_.put(pairs);
     for (const Pair pair : pairs) {
       if (is_exact_ && (change_.flags[index(pair.first)] & change_.flags[index(pair.second)]) == 0)
         (begins_ ? begun_ : ended_).add(pair.first, pair.second);
@@ -55,24 +59,40 @@ class Toggled final : public PairSink {
 
   const Change<D>& change_;
   bool is_exact_;
+  bool every_pair_;
   bool begins_;
   PairSink& begun_;
   PairSink& ended_;
 };
 
 template <int D>
-class BvhTracker final : public PairTracker<D> {
+class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
+ public:
+  core::CandidateTracker<D>* candidate_tracker() override { return this; }
+  Statistics candidates(const Change<D>& change, PairSink& pairs) override {
+    return follow(change, pairs, pairs, true);
+  }
+
  private:
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    this->count(follow(change, begun, ended, false));
+    // The caller's frame may have dropped its filters, and places at its end with theirs.
+    const bool has_filters = change.frame != nullptr && !change.frame->filters.empty();
+    index_.take_filters(has_filters ? change.filters_now.first(change.frame->filters.size())
+                                    : std::span<const Filter>());
+  }
+
+  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
     if (change.rebuild || needs_rebuild(change)) build(change);
-    Toggled<D> begins(change, true, begun, ended);
-    Toggled<D> ends(change, false, begun, ended);
+    Toggled<D> begins(change, true, begun, ended, every_pair);
+    Toggled<D> ends(change, false, begun, ended, every_pair);
     std::uint64_t tests = 0;
     std::size_t movers = 0;
     for (std::size_t at = 0; at < change.changed.size(); at += moves_at_once) {
       moved_.clear();
-      core::append_moved(
-          change, change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)), moved_);
+      core::append_moved(change,
+                         change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)),
+                         moved_, every_pair);
       if (moved_.empty()) continue;
       insert_arrivals();
       calls_for_.resize(std::max(calls_for_.size(), moved_.size()));
@@ -84,11 +104,7 @@ class BvhTracker final : public PairTracker<D> {
     begins.flush();
     ends.flush();
     judge(tests, movers);
-    // The caller's frame may have dropped its filters, and places at its end with theirs.
-    const bool has_filters = change.frame != nullptr && !change.frame->filters.empty();
-    index_.take_filters(has_filters ? change.filters_now.first(change.frame->filters.size())
-                                    : std::span<const Filter>());
-    this->count(Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()});
+    return {.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
   }
 
   /// Builds the tree anew from the boxes as they were, with new ones where they are now.

@@ -263,12 +263,4 @@ Algorithm grid() {
   };
 }
 
-template <int D>
-std::unique_ptr<core::CandidateTracker<D>> grid_candidates() {
-  return std::make_unique<GridTracker<D>>(std::nullopt);
-}
-
-template std::unique_ptr<core::CandidateTracker<2>> grid_candidates();
-template std::unique_ptr<core::CandidateTracker<3>> grid_candidates();
-
 }  // namespace broadside::algorithm

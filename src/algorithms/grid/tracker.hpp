@@ -19,12 +19,12 @@ namespace broadside::algorithm {
 /// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
 /// longer suit the boxes, and their searches have cost that much more than usual.
 template <int D>
-class GridTracker final : public core::CandidateTracker<D> {
+class GridTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
  public:
   explicit GridTracker(std::optional<double> cell) : cells_(cell) {}
 
+  core::CandidateTracker<D>* candidate_tracker() override { return this; }
   Statistics candidates(const Change<D>& change, PairSink& pairs) override;
-  std::size_t kept_bytes() const noexcept override { return algorithm_bytes(); }
 
  private:
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "algorithms/quadtree/nodes.hpp"
+#include "interface/candidate_tracker.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
@@ -24,11 +25,16 @@ namespace broadside::algorithm {
 namespace {
 
 template <int D>
-class QuadtreeTracker final : public PairTracker<D> {
+class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
   using Nodes = QuadtreeNodes<D>;
 
  public:
   explicit QuadtreeTracker(std::uint32_t capacity) : tree_(capacity) {}
+
+  core::CandidateTracker<D>* candidate_tracker() override { return this; }
+  Statistics candidates(const Change<D>& change, PairSink& pairs) override {
+    return follow(change, pairs, pairs, true);
+  }
 
  private:
   static constexpr std::uint32_t bit(std::uint32_t mask, std::uint32_t child) { return mask >> child & 1U; }
@@ -54,8 +60,12 @@ class QuadtreeTracker final : public PairTracker<D> {
   };
 
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    this->count(follow(change, begun, ended, false));
+  }
+
+  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
     movers_.clear();
-    core::append_moved(change, change.changed, movers_);
+    core::append_moved(change, change.changed, movers_, every_pair);
     const std::size_t boxes = change.now.size();
     moved_since_build_ += movers_.size();
     if (change.rebuild || (tree_.needs_rebuild() && moved_since_build_ > boxes)) {
@@ -63,7 +73,7 @@ class QuadtreeTracker final : public PairTracker<D> {
       moved_since_build_ = 0;
     }
     tree_.resize(boxes);
-    core::EventSinks<D> events(change, begun, ended);
+    core::EventSinks<D> events(change, begun, ended, every_pair);
     std::uint64_t tests = 0;
     // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
     // once would be compared with each other.
@@ -72,7 +82,7 @@ class QuadtreeTracker final : public PairTracker<D> {
     std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
     for (std::uint32_t begin = 0; begin < end; begin = std::exchange(end, std::min(2 * end, count)))
       tests += take(begin, end, events, change);
-    this->count(Statistics{.tests = tests, .references = tree_.references(), .cells = tree_.node_count()});
+    return {.tests = tests, .references = tree_.references(), .cells = tree_.node_count()};
   }
 
   /// Takes some of the movers, by their numbers. Returns how many boxes they were compared with.
