@@ -20,7 +20,7 @@ struct AutoThresholds {
 
   /// Up to this many boxes a grid takes longer to lay out than it saves over a tree, except for shapes for
   /// which a tree's bounds overlap, and for boxes of one size in 3D.
-  static constexpr std::size_t boxes_for_cells = 6000;
+  static constexpr std::size_t boxes_for_cells = D == 2 ? 12'000 : 30'000;
 
   // The shapes for which a grid pays from fewer boxes on, and from how many.
   static constexpr double long_boxes = 4;  ///< a box's longest side over its shortest
