@@ -58,6 +58,7 @@ const face = {
   where: (box: number) => stage.where(box),
   address: () => writeState(state.value, clock.value),
   scriptTimes,
+  get drawn() { return stage.drawn; },
 };
 
 declare global {

@@ -32,7 +32,16 @@ export interface Painting {
   palette: Palette;
 }
 
+/** What a picture took of the graphics card. */
+export interface Drawn {
+  vertices: number;
+  /** Handed over for it. */
+  bytes: number;
+}
+
 export interface Painter {
+  /** What the last picture took, where that is known. */
+  readonly drawn?: Drawn;
   /** Sets the size of the picture, in CSS pixels and in those of the device for each. */
   resize(width: number, height: number, ratio: number): void;
   paint(painting: Painting): void;

@@ -1,75 +1,100 @@
-// The programs that draw boxes: an instance each, so 100,000 boxes are one call.
+// The programs that draw boxes, which they take from textures by the vertex's number: all of a picture's boxes are one
+// or two calls. An instance a box would be simpler, but some drivers draw instances one by one.
+import { rowTexels } from "./batch.ts";
 
-/** Flat boxes: a rectangle with a border of a pixel or so. */
-export const flatVertex = `#version 300 es
-in vec2 corner;
-in vec4 box;
-in float mark;
-uniform mat4 matrix;
-uniform vec2 pixels;
-uniform float least;
+const fetchBox = `
+uniform highp sampler2D boxes;
+uniform highp usampler2D marks;
+uniform int dimension;
+uniform int first;
 uniform vec4 inks[6];
 uniform float fills[6];
-uniform float only;
-out vec2 at;
-out vec2 size;
+ivec2 texel(int at) { return ivec2(at & ${rowTexels - 1}, at >> ${Math.log2(rowTexels)}); }
+void fetchBox(int box, out vec3 low, out vec3 high, out int mark) {
+  int at = dimension * box;
+  vec2 a = texelFetch(boxes, texel(at), 0).xy;
+  vec2 b = texelFetch(boxes, texel(at + 1), 0).xy;
+  if (dimension == 2) {
+    low = vec3(a, 0.0);
+    high = vec3(b, 0.0);
+  } else {
+    low = vec3(a, b.x);
+    high = vec3(b.y, texelFetch(boxes, texel(at + 2), 0).xy);
+  }
+  mark = int(texelFetch(marks, texel(box), 0).x);
+}
+`;
+
+/** Boxes as rectangles with a border of a pixel or so, four vertices each; tiny ones, in 3D as well, as points. */
+export const flatVertex = `#version 300 es
+${fetchBox}
+uniform mat4 matrix;
+uniform vec4 viewport;
+uniform float least;
+uniform bool points;
+flat out vec4 place;
 flat out vec4 ink;
 flat out float fill;
 void main() {
-  int kind = only >= 0.0 ? int(only) : int(mark + 0.5);
-  ink = inks[kind];
-  fill = fills[kind];
-  vec2 low = (matrix * vec4(box.xy, 0.0, 1.0)).xy;
-  vec2 high = (matrix * vec4(box.zw, 0.0, 1.0)).xy;
-  // A border beyond the picture need not be exact, and infinity is no place.
-  low = clamp(low, -4.0, 4.0);
-  high = clamp(high, -4.0, 4.0);
-  // y grows downwards in the world, and upwards here.
-  vec2 bottom = min(low, high);
-  high = max(low, high);
-  low = bottom;
-  vec2 middle = 0.5 * (low + high);
-  vec2 extent = max(0.5 * (high - low), least / pixels);
+  vec3 low, high;
+  int mark;
+  fetchBox(first + (points ? gl_VertexID : gl_VertexID >> 2), low, high, mark);
+  ink = vec4(inks[mark].rgb, 1.0) * inks[mark].a;
+  fill = fills[mark];
+  vec2 pixels = 0.5 * viewport.zw;
+  vec2 middle, extent;
+  if (dimension == 2) {
+    // A border beyond the picture need not be exact, and infinity is no place.
+    vec2 a = clamp((matrix * vec4(low.xy, 0.0, 1.0)).xy, -4.0, 4.0);
+    vec2 b = clamp((matrix * vec4(high.xy, 0.0, 1.0)).xy, -4.0, 4.0);
+    middle = 0.5 * (a + b);
+    extent = 0.5 * abs(b - a);
+  } else {
+    vec4 centre = matrix * vec4(0.5 * (low + high), 1.0);
+    mat3 turn = mat3(matrix);
+    middle = centre.xy / centre.w;
+    extent = (0.5 * (mat3(abs(turn[0]), abs(turn[1]), abs(turn[2])) * (high - low)) / centre.w).xy;
+  }
+  extent = max(extent, least / pixels);
   // A box over all of the picture leaves the others their colours.
   if (extent.x * extent.y > 0.5) fill *= 0.3;
-  size = extent * pixels;
-  at = (corner * 2.0 - 1.0) * size;
-  bool absent = box.x > box.z;
-  gl_Position = absent ? vec4(9.0, 9.0, 9.0, 1.0) : vec4(middle + (corner * 2.0 - 1.0) * extent, 0.0, 1.0);
+  place = vec4(viewport.xy + (middle + 1.0) * pixels, extent * pixels);
+  // What has a part of a pixel is drawn in it, so half a pixel more on each side.
+  gl_PointSize = 2.0 * max(place.z, place.w) + 1.0;
+  vec2 corner = points ? vec2(0.0) : vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) * 2.0 - 1.0;
+  gl_Position = vec4(middle + corner * (extent + 0.5 / pixels), 0.0, 1.0);
 }`;
 
+/** Each pixel by how much of it the box and its inside cover, which is what multisampling would estimate. */
 export const flatFragment = `#version 300 es
 precision highp float;
-in vec2 at;
-in vec2 size;
+flat in vec4 place;
 flat in vec4 ink;
 flat in float fill;
 uniform float border;
 out vec4 colour;
+float covered(vec2 away, vec2 extent) {
+  vec2 part = clamp(min(away + 0.5, extent) - max(away - 0.5, -extent), 0.0, 1.0);
+  return part.x * part.y;
+}
 void main() {
-  vec2 inside = size - abs(at);
-  float edge = min(inside.x, inside.y) < border ? 1.0 : fill;
-  colour = vec4(ink.rgb, 1.0) * (edge * ink.a);
+  vec2 away = gl_FragCoord.xy - place.xy;
+  colour = ink * (covered(away, place.zw) - (1.0 - fill) * covered(away, place.zw - border));
 }`;
 
-/** Boxes in 3D: their faces, translucent, or their edges. */
+/** Boxes in 3D: their faces, translucent, or their edges; eight vertices each. */
 export const solidVertex = `#version 300 es
-in vec3 corner;
-in vec3 low;
-in vec3 high;
-in float mark;
+${fetchBox}
 uniform mat4 matrix;
-uniform vec4 inks[6];
-uniform float fills[6];
-uniform float only;
-uniform float faces;
+uniform bool faces;
 flat out vec4 ink;
 void main() {
-  int kind = only >= 0.0 ? int(only) : int(mark + 0.5);
-  float strength = faces > 0.5 ? fills[kind] * 0.45 : 0.85;
-  ink = vec4(inks[kind].rgb, 1.0) * (inks[kind].a * strength);
-  vec3 place = clamp(mix(low, high, corner), -1e6, 1e6);
-  gl_Position = low.x > high.x ? vec4(9.0, 9.0, 9.0, 1.0) : matrix * vec4(place, 1.0);
+  vec3 low, high;
+  int mark;
+  fetchBox(first + (gl_VertexID >> 3), low, high, mark);
+  ink = vec4(inks[mark].rgb, 1.0) * (inks[mark].a * (faces ? fills[mark] * 0.45 : 0.85));
+  vec3 corner = vec3(gl_VertexID & 1, (gl_VertexID >> 1) & 1, (gl_VertexID >> 2) & 1);
+  gl_Position = matrix * vec4(clamp(mix(low, high, corner), -1e6, 1e6), 1.0);
 }`;
 
 export const solidFragment = `#version 300 es

@@ -1,104 +1,69 @@
-// Paints by WebGL 2: an instance a box. All panels share one canvas, so boxes are handed over once a frame.
+// Paints by WebGL 2. All panels share one canvas, and boxes are handed over anew where panels differ.
 import {
-  createBufferInfoFromArrays, createProgramInfo, drawBufferInfo, setBuffersAndAttributes, setUniforms,
-  type BufferInfo, type ProgramInfo,
+  createBufferInfoFromArrays, createProgramInfo, drawBufferInfo, setAttribInfoBufferFromArray, setBuffersAndAttributes,
+  setUniforms, type BufferInfo, type ProgramInfo,
 } from "twgl.js";
 
 import type { Outline } from "../engine/types.ts";
+import { Batch, type Lens } from "./batch.ts";
 import { flatCamera, flatMatrix, solidMatrix } from "./camera.ts";
-import { fills, levelColour, rgb, type Palette } from "./colours.ts";
-import { overlapStrength, testLines, type Painter, type Painting, type PanelPainting } from "./painting.ts";
+import { fills, levelColour, rgb } from "./colours.ts";
+import {
+  overlapStrength, testLines, type Drawn, type Painter, type Painting, type PanelPainting,
+} from "./painting.ts";
 import {
   flatFragment, flatVertex, lineFragment, lineVertex, solidFragment, solidVertex,
 } from "./shaders.ts";
+import { Indices, Smooth, Texels } from "./webgl_memory.ts";
 
-/** The corners of a unit cube's faces, as triangles, and of its edges, as lines. */
-function cube(): { faces: number[]; edges: number[] } {
-  const faces: number[] = [];
-  const edges: number[] = [];
-  for (let axis = 0; axis < 3; ++axis) {
-    const point = (a: number, b: number, c: number): number[] => {
-      const at = [0, 0, 0];
-      at[axis] = a;
-      at[(axis + 1) % 3] = b;
-      at[(axis + 2) % 3] = c;
-      return at;
-    };
-    for (const side of [0, 1]) {
-      for (const [b, c] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]] as const)
-        faces.push(...point(side, b, c));
-    }
-    for (const [b, c] of [[0, 0], [0, 1], [1, 0], [1, 1]] as const)
-      edges.push(...point(0, b, c), ...point(1, b, c));
-  }
-  return { faces, edges };
-}
+/** The triangles or lines of a shape, by its vertices: bit k of a vertex is its place on axis k. */
+const shapes = {
+  flat: { vertices: 4, indices: [0, 1, 2, 2, 1, 3] },
+  faces: {
+    vertices: 8,
+    indices: [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 3, 6, 7], [0, 2, 4, 6], [1, 3, 5, 7]]
+      .flatMap(([a, b, c, d]) => [a!, b!, c!, c!, b!, d!]),
+  },
+  edges: { vertices: 8, indices: [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7] },
+};
 
-/** A buffer that grows, and is handed data anew. */
-class Stream {
-  readonly buffer: WebGLBuffer;
-  private size = 0;
+/** More cubes than this are drawn without smoothing their edges: by software that takes four times as long. */
+const mostSmooth = 1000;
 
-  constructor(private readonly gl: WebGL2RenderingContext) {
-    this.buffer = gl.createBuffer()!;
-  }
+/** Of more boxes than this, fewer details are drawn. */
+const leastCrowd = 20_000;
 
-  set(data: Float32Array | Uint8Array): void {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    if (data.byteLength > this.size) {
-      this.size = Math.ceil(data.byteLength * 1.5);
-      gl.bufferData(gl.ARRAY_BUFFER, this.size, gl.STREAM_DRAW);
-    }
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, data);
-  }
-}
-
-/** A drawing of boxes: a shape, and the buffers of the instances. */
-class Instances {
-  readonly boxes: Stream;
-  readonly marks: Stream;
-  private readonly flat: BufferInfo;
-  private readonly faces: BufferInfo;
-  private readonly edges: BufferInfo;
+/** A drawing of boxes, as the graphics card has it. */
+class Layer {
+  readonly boxes: Texels;
+  readonly marks: Texels;
+  readonly batches = { 2: new Batch(2), 3: new Batch(3) };
+  private last: unknown[] = [];
 
   constructor(gl: WebGL2RenderingContext) {
-    this.boxes = new Stream(gl);
-    this.marks = new Stream(gl);
-    const { faces, edges } = cube();
-    const mark = { buffer: this.marks.buffer, numComponents: 1, type: gl.UNSIGNED_BYTE, divisor: 1, normalize: false };
-    const solid = (corners: number[]): BufferInfo => createBufferInfoFromArrays(gl, {
-      corner: { numComponents: 3, data: corners },
-      low: { buffer: this.boxes.buffer, numComponents: 3, type: gl.FLOAT, stride: 24, offset: 0, divisor: 1 },
-      high: { buffer: this.boxes.buffer, numComponents: 3, type: gl.FLOAT, stride: 24, offset: 12, divisor: 1 },
-      mark,
-    } as Parameters<typeof createBufferInfoFromArrays>[1]);
-    this.flat = createBufferInfoFromArrays(gl, {
-      corner: { numComponents: 2, data: [0, 0, 1, 0, 0, 1, 1, 1] },
-      box: { buffer: this.boxes.buffer, numComponents: 4, type: gl.FLOAT, stride: 16, offset: 0, divisor: 1 },
-      mark,
-    } as Parameters<typeof createBufferInfoFromArrays>[1]);
-    // Their number is that of corners, whatever buffer twgl has counted.
-    this.flat.numElements = 4;
-    this.faces = solid(faces);
-    this.faces.numElements = faces.length / 3;
-    this.edges = solid(edges);
-    this.edges.numElements = edges.length / 3;
+    this.boxes = new Texels(gl, "coordinates");
+    this.marks = new Texels(gl, "marks");
   }
 
-  shape(name: "flat" | "faces" | "edges"): BufferInfo {
-    return this[name];
+  /** Takes boxes; returns how many bytes were handed over. Most panels show what the one before them showed. */
+  set(dimension: 2 | 3, boxes: Float32Array, marks: Uint8Array | undefined, lens: Lens): number {
+    const now = [boxes, marks, ...Array.from(lens.matrix), ...lens.pixels, lens.mostPoint];
+    if (now.every((one, at) => one === this.last[at])) return 0;
+    this.last = now;
+    const batch = this.batches[dimension];
+    batch.set(boxes, marks, lens);
+    if (batch.count === 0) return 0;
+    return this.boxes.set(batch.boxes, dimension * batch.count) + this.marks.set(batch.marks, batch.count);
   }
 }
 
 interface Style {
-  only: number;
   inks: number[];
   fills: number[];
   border: number;
   least: number;
-  /** Whether edges are drawn, in 3D. */
-  edges: boolean;
+  /** What is drawn of a box in 3D. */
+  parts: readonly ("faces" | "edges")[];
 }
 
 export class WebglPainter implements Painter {
@@ -106,27 +71,31 @@ export class WebglPainter implements Painter {
   private readonly flat: ProgramInfo;
   private readonly solid: ProgramInfo;
   private readonly line: ProgramInfo;
-  private readonly scene: Instances;
-  private readonly overlaps: Instances;
-  private readonly structure: Instances;
-  private readonly lines: Stream;
+  private readonly scene: Layer;
+  private readonly overlaps: Layer;
+  private readonly structure: Layer;
+  private readonly indices: Record<keyof typeof shapes, Indices>;
+  private readonly smooth: Smooth;
   private readonly lineInfo: BufferInfo;
   private ratio = 1;
+  drawn: Drawn = { vertices: 0, bytes: 0 };
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
+    // Flat boxes are smoothed by their own shader; what is not is drawn to `smooth` first, which needs the same format.
+    const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (gl === null) throw new Error("this browser has no WebGL 2");
     this.gl = gl;
     this.flat = createProgramInfo(gl, [flatVertex, flatFragment]);
     this.solid = createProgramInfo(gl, [solidVertex, solidFragment]);
     this.line = createProgramInfo(gl, [lineVertex, lineFragment]);
-    this.scene = new Instances(gl);
-    this.overlaps = new Instances(gl);
-    this.structure = new Instances(gl);
-    this.lines = new Stream(gl);
-    this.lineInfo = createBufferInfoFromArrays(gl, {
-      point: { buffer: this.lines.buffer, numComponents: 3, type: gl.FLOAT },
-    } as Parameters<typeof createBufferInfoFromArrays>[1]);
+    this.scene = new Layer(gl);
+    this.overlaps = new Layer(gl);
+    this.structure = new Layer(gl);
+    this.indices = {
+      flat: new Indices(gl, shapes.flat), faces: new Indices(gl, shapes.faces), edges: new Indices(gl, shapes.edges),
+    };
+    this.smooth = new Smooth(gl);
+    this.lineInfo = createBufferInfoFromArrays(gl, { point: { numComponents: 3, data: [0, 0, 0], drawType: gl.STREAM_DRAW } });
   }
 
   resize(width: number, height: number, ratio: number): void {
@@ -137,8 +106,12 @@ export class WebglPainter implements Painter {
   }
 
   paint(painting: Painting): void {
-    const { gl, ratio } = this;
-    const { boxes, marks, overlaps, palette } = painting;
+    const { gl } = this;
+    const { dimension, boxes, palette, panels } = painting;
+    this.drawn = { vertices: 0, bytes: 0 };
+    const smooth = panels.some(({ tests }) => tests !== undefined) ||
+      dimension === 3 && boxes.length / 6 <= mostSmooth;
+    if (smooth) this.smooth.begin(this.canvas.width, this.canvas.height);
     gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(...rgb(palette.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
@@ -146,50 +119,52 @@ export class WebglPainter implements Painter {
     gl.enable(gl.BLEND);
     // Colours are multiplied by their opacity.
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    this.scene.boxes.set(boxes);
-    this.scene.marks.set(marks);
-    this.overlaps.boxes.set(overlaps);
-    let shared = true;
-    for (const panel of painting.panels) {
-      const { x, y, width, height } = panel.place;
-      if (width < 1 || height < 1) continue;
-      const rectangle = [x * ratio, this.canvas.height - (y + height) * ratio, width * ratio, height * ratio] as const;
-      gl.viewport(...rectangle);
-      gl.scissor(...rectangle);
-      const own = panel.marks?.length === boxes.length / (2 * painting.dimension);
-      if (own) this.scene.marks.set(panel.marks!);
-      else if (!shared) this.scene.marks.set(marks);
-      shared = !own;
-      this.paintPanel(painting, panel);
-    }
+    const strength = overlapStrength(painting);
+    for (const panel of panels) this.paintPanel(painting, panel, strength);
+    if (smooth) this.smooth.end();
   }
 
-  private paintPanel(painting: Painting, panel: PanelPainting): void {
+  private paintPanel(painting: Painting, panel: PanelPainting, strength: number): void {
+    const { gl, ratio } = this;
     const { dimension, bounds, boxes, overlaps, palette, view } = painting;
-    const size = panel.place;
+    const { x, y, width, height } = panel.place;
+    if (width < 1 || height < 1) return;
+    const viewport = [x * ratio, this.canvas.height - (y + height) * ratio, width * ratio, height * ratio]
+      .map(Math.round) as [number, number, number, number];
+    gl.viewport(...viewport);
+    gl.scissor(...viewport);
     const matrix = dimension === 2
-      ? flatMatrix(flatCamera(bounds, size, view), size) : solidMatrix(bounds, size, view);
-    const pixels = [size.width * this.ratio / 2, size.height * this.ratio / 2];
+      ? flatMatrix(flatCamera(bounds, panel.place, view), panel.place) : solidMatrix(bounds, panel.place, view);
     const count = boxes.length / (2 * dimension);
-    if (panel.outline !== undefined) this.paintStructure(panel.outline, dimension, matrix, pixels, palette);
+    const isCrowd = count > leastCrowd;
+    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], mostPoint: (isCrowd ? 16 : 8) * ratio };
+    const draw = (layer: Layer, style: Style): void => this.draw(layer, dimension, matrix, viewport, style);
+    if (panel.outline !== undefined && this.setStructure(panel.outline, dimension, lens)) {
+      const flat = dimension === 2;
+      draw(this.structure, {
+        inks: inksOf(palette.levels.length, (level) => [...rgb(levelColour(palette, level)), flat ? 0.75 : 0.4]),
+        fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), least: 0, parts: ["edges"],
+      });
+    }
     // Borders of crowds would cover what is in them.
-    const crowd = count > 20_000 ? 0.5 : 1;
+    const crowd = isCrowd ? 0.5 : 1;
     const style: Style = {
-      only: -1, inks: palette.marks.flatMap((ink) => [...rgb(ink), crowd]), fills: [...fills],
-      border: Math.max(1, this.ratio), least: 0.75 * this.ratio, edges: true,
+      inks: palette.marks.flatMap((ink) => [...rgb(ink), crowd]), fills: [...fills],
+      border: Math.max(1, ratio), least: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
     };
-    this.draw(this.scene, dimension, count, matrix, pixels, style);
-    const parts = overlaps.length / (2 * dimension);
-    if (parts > 0) {
-      this.draw(this.overlaps, dimension, parts, matrix, pixels, {
-        ...style, only: 0, inks: repeated([...rgb(palette.overlap), overlapStrength(painting)]),
-        fills: Array<number>(6).fill(1), edges: false,
+    const marks = panel.marks?.length === count ? panel.marks : painting.marks;
+    this.drawn.bytes += this.scene.set(dimension, boxes, marks, lens);
+    draw(this.scene, style);
+    if (overlaps.length > 0) {
+      this.drawn.bytes += this.overlaps.set(dimension, overlaps, undefined, lens);
+      draw(this.overlaps, {
+        ...style, inks: inksOf(1, () => [...rgb(palette.overlap), strength]), fills: Array<number>(6).fill(1),
+        least: isCrowd ? 0 : style.least, parts: ["faces"],
       });
     }
     if (panel.tests !== undefined && panel.tests.others.length > 0) {
       const lines = testLines(boxes, dimension, panel.tests.box, panel.tests.others);
-      this.lines.set(lines);
-      const { gl } = this;
+      setAttribInfoBufferFromArray(gl, this.lineInfo.attribs!["point"]!, lines);
       gl.useProgram(this.line.program);
       setBuffersAndAttributes(gl, this.line, this.lineInfo);
       setUniforms(this.line, { matrix, ink: [...rgb(palette.marks[2]!).map((one) => one * 0.8), 0.8] });
@@ -197,43 +172,59 @@ export class WebglPainter implements Painter {
     }
   }
 
-  private paintStructure(outline: Outline, dimension: 2 | 3, matrix: ArrayLike<number>, pixels: number[],
-                         palette: Palette): void {
-    outline.levels.forEach((parts, level) => {
-      const count = parts.length / (2 * dimension);
-      if (count === 0) return;
-      this.structure.boxes.set(parts);
-      this.structure.marks.set(new Uint8Array(count));
-      const ink = rgb(levelColour(palette, level));
-      this.draw(this.structure, dimension, count, matrix, pixels, {
-        only: 0, inks: repeated([...ink, dimension === 2 ? 0.75 : 0.4]),
-        fills: Array<number>(6).fill(dimension === 2 ? 0.05 : 0.02), border: Math.max(1, this.ratio), least: 0, edges: true,
-      });
+  /** All levels at once; a part's mark tells its level's colour. */
+  private setStructure({ levels }: Outline, dimension: 2 | 3, lens: Lens): boolean {
+    const length = levels.reduce((sum, parts) => sum + parts.length, 0);
+    const all = new Float32Array(length);
+    const marks = new Uint8Array(length / (2 * dimension));
+    let end = 0;
+    levels.forEach((parts, level) => {
+      all.set(parts, end);
+      marks.fill(level % 4, end / (2 * dimension), (end += parts.length) / (2 * dimension));
     });
+    this.drawn.bytes += this.structure.set(dimension, all, marks, lens);
+    return length > 0;
   }
 
-  private draw(instances: Instances, dimension: 2 | 3, count: number, matrix: ArrayLike<number>, pixels: number[],
-               style: Style): void {
+  private draw({ batches, boxes, marks }: Layer, dimension: 2 | 3, matrix: ArrayLike<number>,
+               viewport: readonly number[], style: Style): void {
     const { gl } = this;
-    const { only, inks, border, least } = style;
-    const strengths = style.fills;
-    if (dimension === 2) {
+    const batch = batches[dimension];
+    const shared = {
+      boxes: boxes.texture, marks: marks.texture, dimension, matrix, inks: style.inks, fills: style.fills,
+    };
+    const useFlat = (points: boolean, first: number): void => {
       gl.useProgram(this.flat.program);
-      setBuffersAndAttributes(gl, this.flat, instances.shape("flat"));
-      setUniforms(this.flat, { matrix, pixels, only, inks, fills: strengths, border, least });
-      drawBufferInfo(gl, instances.shape("flat"), gl.TRIANGLE_STRIP, 4, 0, count);
+      setUniforms(this.flat, { ...shared, viewport, first, points, border: style.border, least: style.least });
+    };
+    if (batch.points > 0) {
+      useFlat(true, 0);
+      gl.drawArrays(gl.POINTS, 0, batch.points);
+      this.drawn.vertices += batch.points;
+    }
+    if (batch.shapes === 0) return;
+    if (dimension === 2) {
+      useFlat(false, batch.points);
+      this.drawShapes("flat", batch.shapes);
       return;
     }
     gl.useProgram(this.solid.program);
-    for (const shape of style.edges ? ["faces", "edges"] as const : ["faces"] as const) {
-      setBuffersAndAttributes(gl, this.solid, instances.shape(shape));
-      setUniforms(this.solid, { matrix, only, inks, fills: strengths, faces: shape === "faces" ? 1 : 0 });
-      const info = instances.shape(shape);
-      drawBufferInfo(gl, info, shape === "faces" ? gl.TRIANGLES : gl.LINES, info.numElements, 0, count);
+    for (const shape of style.parts) {
+      setUniforms(this.solid, { ...shared, first: batch.points, faces: shape === "faces" });
+      this.drawShapes(shape, batch.shapes);
     }
+  }
+
+  private drawShapes(name: keyof typeof shapes, count: number): void {
+    const { gl } = this;
+    const { vertices, indices } = shapes[name];
+    this.drawn.bytes += this.indices[name].bind(count);
+    this.drawn.vertices += vertices * count;
+    gl.drawElements(name === "edges" ? gl.LINES : gl.TRIANGLES, indices.length * count, gl.UNSIGNED_INT, 0);
   }
 }
 
-function repeated(ink: number[]): number[] {
-  return Array.from({ length: 6 }, () => ink).flat();
+/** Six inks, as many as shaders have; those beyond `count` repeat. */
+function inksOf(count: number, ink: (at: number) => number[]): number[] {
+  return Array.from({ length: 6 }, (_, at) => ink(at % count)).flat();
 }

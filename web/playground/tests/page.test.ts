@@ -323,6 +323,39 @@ describe("the playground", { skip: missing }, () => {
     await page.close();
   });
 
+  test("hands a crowd over once, and draws tiny boxes by one vertex each", async () => {
+    // Without the library a naive engine would take minutes for as many.
+    const count = hasLibrary ? 100_000 : 2000;
+    const { page, problems } = await open(browser, `paused=1&n=${count}&a=grid`);
+    const drawn = async (): Promise<{ vertices: number; bytes: number }> => {
+      // The picture is painted in the frame after the one that asks for it.
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      return page.evaluate(() => window.playground.drawn!);
+    };
+    await settled(page);
+    const first = await drawn();
+    const [overlaps, parts] = await page.evaluate(() => {
+      const { overlaps: of, panels } = window.playground.shown!;
+      return [of.length / 4, (panels[0]!.outline?.levels ?? []).reduce((sum, level) => sum + level.length / 4, 0)] as const;
+    });
+    const boxes = count + overlaps + parts;
+    // A box is 16 bytes and its mark; the last row of a texture is handed over whole. A shape has 24 bytes of indices.
+    assert.ok(first.bytes >= 17 * count && first.bytes <= 17 * (boxes + 3 * 2048) + 24 * 1.5 * 2 * boxes,
+      `${first.bytes} bytes for ${boxes} boxes`);
+    if (hasLibrary) assert.ok(first.vertices >= count && first.vertices <= 1.01 * boxes, `${first.vertices} vertices`);
+    // In other colours, they are the same boxes.
+    await page.getByRole("button", { name: "Dark theme" }).click();
+    const dark = await drawn();
+    assert.equal(dark.vertices, first.vertices);
+    assert.ok(dark.bytes <= 17 * (parts + 2048), `${dark.bytes} bytes for another theme`);
+    // Nearer, what is out of sight is left out.
+    for (let step = 0; step < 10; ++step) await page.getByRole("button", { name: "Zoom in" }).click();
+    const near = await drawn();
+    assert.ok(near.vertices < first.vertices / 2, `${near.vertices} vertices`);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
   test("shows how much of a frame its script takes with 5,000 boxes, and 100,000",
     { skip: hasLibrary ? false : "skipped: the engine is missing" }, async (context) => {
       for (const [count, frames] of [[5000, 20], [100_000, 5]] as const) {

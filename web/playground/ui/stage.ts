@@ -3,7 +3,7 @@ import { effect } from "@preact/signals";
 
 import { flatCamera } from "../draw/camera.ts";
 import { CanvasPainter } from "../draw/canvas_painter.ts";
-import type { Painter, Painting, Place } from "../draw/painting.ts";
+import type { Drawn, Painter, Painting, Place } from "../draw/painting.ts";
 import { WebglPainter } from "../draw/webgl_painter.ts";
 import { shown, state } from "../state/store.ts";
 import { palette } from "./themes.ts";
@@ -79,6 +79,11 @@ export class Stage {
 
   place(panel: number): Place | undefined {
     return this.places[panel];
+  }
+
+  /** What the last picture took of the graphics card. */
+  get drawn(): Drawn | undefined {
+    return this.painter.drawn;
   }
 
   painting(): Painting | undefined {
