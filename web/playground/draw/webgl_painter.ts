@@ -27,7 +27,7 @@ const shapes = {
   edges: { vertices: 8, indices: [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7] },
 };
 
-/** More cubes than this are drawn without smoothing their edges: by software that takes four times as long. */
+/** Lines and edges of cubes are smoothed for up to so many boxes: by software that takes four times as long. */
 const mostSmooth = 1000;
 
 /** Of more boxes than this, fewer details are drawn. */
@@ -109,8 +109,8 @@ export class WebglPainter implements Painter {
     const { gl } = this;
     const { dimension, boxes, palette, panels } = painting;
     this.drawn = { vertices: 0, bytes: 0 };
-    const smooth = panels.some(({ tests }) => tests !== undefined) ||
-      dimension === 3 && boxes.length / 6 <= mostSmooth;
+    const smooth = boxes.length / (2 * dimension) <= mostSmooth &&
+      (dimension === 3 || panels.some(({ tests }) => tests !== undefined));
     if (smooth) this.smooth.begin(this.canvas.width, this.canvas.height);
     gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(...rgb(palette.background), 1);
