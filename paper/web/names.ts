@@ -16,6 +16,9 @@ import { Numbering } from "./numbering.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown, withUnit } from "./words.ts";
 
+/** The playground from docs/paper/, where `make playground` puts it. */
+const playground = "../../build/playground/index.html";
+
 const narrow = 420;
 const wide = 760;
 
@@ -137,9 +140,9 @@ export class Paper {
     return oneOf(this.experiment(experiment).figures, name, `figure in the experiment '${experiment}':`);
   }
 
-  private show(path: string, name: string, caption: string): string {
+  private show(path: string, name: string, caption: string, after = ""): string {
     const alternative = caption.replace(/[[\]]/g, "");
-    return `![${alternative}](${path})\n\n*Figure ${this.figures.next(name)}. ${plain(caption)}*`;
+    return `![${alternative}](${path})\n\n*Figure ${this.figures.next(name)}. ${plain(caption)}${after}*`;
   }
 
   private draw(name: string, drawing: Drawing): string {
@@ -240,9 +243,9 @@ export class Paper {
         any_lost: () => lostOf(this.facts.leads).length > 0,
         any_level: () => levelOf(this.facts.leads).length > 0,
         standings: () => standingsTable(this.facts),
-        picture: (name, caption) => {
+        picture: (name, caption, link) => {
           const path = oneOf(by(this.pictures, (picture) => picture.split("/").at(-1)!), `${name}.svg`, "picture");
-          return this.show(path, `picture ${name}`, caption);
+          return this.show(path, `picture ${name}`, caption, `. [Move boxes in one](${playground}#${link})`);
         },
         comparison_chart: (name) =>
           this.draw(`comparison_${name}`, { ...oneOf(comparison, name, "chart of the comparison"), width: wide }),

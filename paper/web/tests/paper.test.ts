@@ -124,10 +124,10 @@ test("charts are numbered, drawn and referred to before they stand there", () =>
 });
 
 test("pictures that the program drew are figures as well", () => {
-  assert.match(textOf('{{picture "grid" "Cells"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\*\n.*\n\n\*Figure 2/);
+  assert.match(textOf('{{picture "grid" "Cells" "a=grid"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\. \[[^\]]+\]\([^)]+#a=grid\)\*\n.*\n\n\*Figure 2/);
 });
 
-refuses("an unknown picture", '{{picture "x" "X"}}', /no picture 'x\.svg'; there are grid\.svg/);
+refuses("an unknown picture", '{{picture "x" "X" ""}}', /no picture 'x\.svg'; there are grid\.svg/);
 
 test("sources are numbered in their order, and cited by number", () => {
   assert.match(textOf('{{cite "b"}}{{cite "a"}}\n{{source "a"}}A\n{{source "b"}}B'), /^\[\[2\]\]\(#b\)\[\[1\]\]\(#a\)/);
