@@ -39,7 +39,10 @@ export class PairFindingFace implements PairFinding {
   }
 
   pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array {
-    return (options === undefined ? this.#main : this.#of(options)).pairs(boxes as Given, options);
+    if (options === undefined) return this.#main.pairs(boxes as Given, undefined);
+    // Not by #of(): for a box or two, another call would be felt.
+    const space = options?.dimension === 3 ? this.#space : undefined;
+    return (space ?? this.#of(options)).pairs(boxes as Given, options);
   }
 
   join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array {

@@ -5,7 +5,7 @@ import type {
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
-import { Few } from "./few.ts";
+import { fewPairs2, fewPairs3, mostFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
 const enum Mode { counts = 1, sorts = 2, joins = 4 }
@@ -14,6 +14,9 @@ const countOptions = ["dimension", "algorithm", "filters"];
 const pairsOptions = [...countOptions, "sorted"];
 const countJoinOptions = [...countOptions, "rightFilters"];
 const joinOptions = [...pairsOptions, "rightFilters"];
+
+/** Views of fewer ids than this are kept: making one costs as much as comparing ten boxes. */
+const mostKept = 256;
 
 /** Finders of so many kinds are kept; those of a program that makes up more go. */
 const mostFinders = 16;
@@ -26,27 +29,45 @@ export class Pairs {
   #lastChecked: object | undefined;  // options that were looked through for unknown ones
   #lastView: Uint32Array = new Uint32Array(0);
 
-  readonly #few: Few;
+  readonly #isFlat: boolean;
   readonly #mostOfFew: number;  // numbers in an array of few boxes
+  readonly #fewPairs: Uint32Array;  // room for all pairs of few boxes
+  readonly #views: Uint32Array[] = [];  // of its first ids, by their number
   readonly #forFew: string;  // the algorithm that few boxes get where none is named
 
   constructor(core: Core) {
     this.#core = core;
-    this.#few = new Few(core.simd, core.dimension);
-    this.#mostOfFew = 2 * core.dimension * this.#few.most;
+    this.#isFlat = core.dimension === 2;
+    const most = mostFew(core.simd, core.dimension);
+    this.#mostOfFew = 2 * core.dimension * most;
+    this.#fewPairs = new Uint32Array(most * (most - 1));
     this.#forFew = core.algorithmFor(0);
   }
 
   pairs(boxes: Given, options?: PairsOptions): Uint32Array {
-    if (boxes instanceof Float32Array && boxes.length <= this.#mostOfFew) {
-      if (options === undefined || this.#meansFew(options)) {
-        const found = this.#few.pairs(boxes);
-        if (found !== undefined) return found;
-      }
+    // Short, so that engines compile it and the loops that it calls as one function. What #meansFew() says of usual
+    // options is looked at here, for calling it would take as long as comparing two boxes.
+    if (boxes instanceof Float32Array && boxes.length <= this.#mostOfFew && (options === undefined ||
+        options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined ||
+        this.#meansFew(options))) {
+      const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
+      const view = this.#views[found];
+      if (view !== undefined) return view;
+      if (found >= 0) return this.#viewOfFew(found);
     }
+    return this.#pairsByModule(boxes, options);
+  }
+
+  #pairsByModule(boxes: Given, options: PairsOptions | undefined): Uint32Array {
     if (options === undefined) return this.#find(boxes, undefined, {}, 0);
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
+  }
+
+  #viewOfFew(ids: number): Uint32Array {
+    const view = this.#fewPairs.subarray(0, ids);
+    if (ids < mostKept) this.#views[ids] = view;
+    return view;
   }
 
   /** Whether few boxes may be compared in JavaScript. */
