@@ -1,8 +1,10 @@
 // Frames with filters and ignored pairs as a tracker's algorithm sees them, and what a tracker makes of what
 // it writes.
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "broadside/tracker.hpp"
 
 #include "tests/support/message.hpp"
+#include "tests/support/rng.hpp"
 #include "tests/support/trackers.hpp"
 
 namespace broadside {
@@ -100,6 +103,33 @@ TEST(IgnoredPairs, TakePairsInEitherOrderAndNoBoxWithItself) {
   ignored.for_each([](Pair seen) { EXPECT_EQ(seen, pair(2, 5)); });
   EXPECT_TRUE(ignored.erase(pair(5, 2)));
   EXPECT_TRUE(ignored.empty());
+}
+
+TEST(IgnoredPairs, AreASetHoweverManyComeAndGo) {
+  Rng rng(1);
+  IgnoredPairs ignored;
+  std::set<Pair> model;
+  for (int step = 0; step < 20'000; ++step) {
+    // Few boxes, and few enough pairs at times that the table's runs of places are short and long.
+    const auto a = static_cast<std::uint32_t>(rng.below(40));
+    const auto b = static_cast<std::uint32_t>(rng.below(40));
+    const Pair named = pair(a, b);
+    const Pair ordered = pair(std::min(a, b), std::max(a, b));
+    const bool inserts = rng.below(100) < (step / 2000 % 2 == 0 ? 70U : 30U);
+    if (inserts)
+      ASSERT_EQ(ignored.insert(named), a != b && model.insert(ordered).second) << "step " << step;
+    else
+      ASSERT_EQ(ignored.erase(named), model.erase(ordered) != 0) << "step " << step;
+    ASSERT_EQ(ignored.size(), model.size());
+    ASSERT_EQ(ignored.contains(named), model.contains(ordered));
+    if (step % 100 != 0) continue;
+    std::set<Pair> listed;
+    ignored.for_each([&](Pair each) { EXPECT_TRUE(listed.insert(each).second); });
+    ASSERT_EQ(listed, model) << "step " << step;
+  }
+  ignored.clear();
+  EXPECT_TRUE(ignored.empty());
+  EXPECT_FALSE(ignored.contains(pair(1, 2)));
 }
 
 TEST(Change, ReportsAPairToTheSinkItBelongsTo) {
