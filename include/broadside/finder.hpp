@@ -136,7 +136,7 @@ class BROADSIDE_PUBLIC PairFinder {
   void find_valid_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
 
   /// Checks the boxes, and returns how many are absent or quarantined.
-  std::size_t check(std::span<const Box<D, Real>> boxes) const;
+  std::size_t check(std::span<const Box<D, Real>> boxes, const char* which = "") const;
 
   /// The boxes as an array: themselves, or gathered into `scratch`.
   static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& scratch);

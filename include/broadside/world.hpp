@@ -356,6 +356,10 @@ class BROADSIDE_PUBLIC World {
   /// The number of boxes in the world.
   std::size_t size() const noexcept;
 
+  /// The number of slots, free ones among them: the slot of each handle of a box in the world is below it, so
+  /// that arrays of your own by slot need no more places.
+  std::size_t slots() const noexcept;
+
   /// What the world holds and what the last update did. O(1), but for what the tracker says of itself.
   WorldStatistics statistics() const;
 

@@ -11,6 +11,8 @@
 #include "algorithms/descriptions.hpp"
 #include "core/float_environment.hpp"
 #include "core/former_names.hpp"
+#include "core/lean.hpp"
+#include "core/message.hpp"
 #include "doubles/double_finder.hpp"
 
 namespace broadside {
@@ -25,33 +27,33 @@ std::list<std::vector<Algorithm>>& lists() {
 
 const Algorithm& require_algorithm(std::string_view name) {
   if (const Algorithm* const algorithm = find_algorithm(name)) return *algorithm;
-  std::string known;
   std::vector<std::string> names;
-  for (const Algorithm& algorithm : algorithms()) {
-    known += (known.empty() ? "" : ", ") + algorithm.name;
-    names.push_back(algorithm.name);
-  }
-  throw InvalidSpec("unknown algorithm '" + std::string(name) + "'" + did_you_mean(name, names) +
-                    "; expected one of: " + known);
+  for (const Algorithm& algorithm : algorithms()) names.push_back(algorithm.name);
+  throw InvalidSpec(core::message({"unknown algorithm '", name, "'", did_you_mean(name, names),
+                                   "; expected one of: ", core::listed(names)}));
 }
 
 template <int D, typename Made>
 std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Settings&)>& maker,
                            const Algorithm& algorithm, const Spec& spec) {
   if (!maker) {
-    const std::string other = std::to_string(5 - D);
-    throw InvalidSpec(algorithm.name + " does not do " + std::to_string(D) + "D; expected " + other +
-                      "D boxes");
+    throw InvalidSpec(core::message({algorithm.name, " does not do ", D, "D; expected ", 5 - D, "D boxes"}));
   }
   const core::DefaultEnvironment environment;  // how a number is read depends on it
   const Settings settings(spec, algorithm.tunables);
   std::unique_ptr<Made> made = maker(settings);
-  if (made != nullptr && has_threads(algorithm)) {
+  if (!core::is_lean && made != nullptr && has_threads(algorithm)) {
     Workers workers = made->workers();
     workers.threads = static_cast<std::size_t>(settings.integer("threads"));
     made->set_workers(workers);
   }
   return made;
+}
+
+/// Whether there is such a tracker: in lean builds all algorithms have one, if they do the dimension.
+template <typename Maker>
+bool has_own_tracker(const Maker& maker) {
+  return core::is_lean || maker;
 }
 
 }  // namespace
@@ -101,13 +103,13 @@ std::unique_ptr<PairFinder<3>> make_finder(const Algorithm& algorithm, const Spe
 
 template <>
 std::unique_ptr<PairTracker<2>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
-  if (algorithm.tracker_2d) return make<2>(algorithm.tracker_2d, algorithm, spec);
+  if (has_own_tracker(algorithm.tracker_2d)) return make<2>(algorithm.tracker_2d, algorithm, spec);
   return std::make_unique<DiffTracker<2>>(make_finder<2>(algorithm, spec));
 }
 
 template <>
 std::unique_ptr<PairTracker<3>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
-  if (algorithm.tracker_3d) return make<3>(algorithm.tracker_3d, algorithm, spec);
+  if (has_own_tracker(algorithm.tracker_3d)) return make<3>(algorithm.tracker_3d, algorithm, spec);
   return std::make_unique<DiffTracker<3>>(make_finder<3>(algorithm, spec));
 }
 

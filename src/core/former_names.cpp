@@ -8,6 +8,8 @@
 
 #include "broadside/algorithm.hpp"
 
+#include "core/lean.hpp"
+
 namespace broadside::core {
 namespace {
 
@@ -51,16 +53,16 @@ std::string current_spec(std::string_view spec) {
   return current.text();
 }
 
-std::string former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {
-  if (!is_ours(algorithm) || tunable != "update" ||
+std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {
+  if (is_lean || !is_ours(algorithm) || tunable != "update" ||
       std::ranges::find(former_ways, value) == former_ways.end())
     return {};
   return "; each tracker follows in its one fastest way, and the paper's ways are those of "
          "the paper_... algorithms";
 }
 
-std::string former_tunable(std::string_view algorithm, std::string_view tunable) {
-  if (!is_ours(algorithm)) return {};
+std::string_view former_tunable(std::string_view algorithm, std::string_view tunable) {
+  if (is_lean || !is_ours(algorithm)) return {};
   if (tunable == "way") return "; way=rebuild is update=rebuild now, and way=incremental update=follow";
   if (tunable == "span") return "; cells have levels by the sizes of boxes now, and need no span";
   if (tunable == "margin" || tunable == "budget")

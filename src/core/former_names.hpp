@@ -19,9 +19,9 @@ std::string current_spec(std::string_view spec);
 
 /// The reason why a tunable of the library's algorithm no longer has this value, as the end of an error
 /// message; empty if it never had it.
-std::string former_value(std::string_view algorithm, std::string_view tunable, std::string_view value);
+std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value);
 
 /// The reason why algorithms no longer have this tunable, likewise.
-std::string former_tunable(std::string_view algorithm, std::string_view tunable);
+std::string_view former_tunable(std::string_view algorithm, std::string_view tunable);
 
 }  // namespace broadside::core

@@ -243,10 +243,11 @@ Parallel::Parallel() = default;
 Parallel::~Parallel() = default;
 
 void Parallel::start(const Workers& workers, std::size_t boxes) {
+  if constexpr (is_lean) return;
   workers_ = 1;
   boxes_ = boxes;
   checkpoint_ = workers.checkpoint;
-  if (is_lean || workers.threads == 1) return;
+  if (workers.threads == 1) return;
   const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
   if (executor_ == nullptr) return;

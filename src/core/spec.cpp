@@ -7,17 +7,14 @@
 #include "broadside/error.hpp"
 
 #include "core/former_names.hpp"
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 
 namespace broadside {
 namespace {
 
-template <typename Names>
-std::string listed(const Names& names) {
-  std::string list;
-  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  return list.empty() ? "none" : list;
-}
+using core::listed;
+using core::message;
 
 /// The largest value of a tunable; an integer is never beyond what a double holds exactly.
 double most(const Tunable& tunable) {
@@ -26,26 +23,26 @@ double most(const Tunable& tunable) {
 
 /// The values that a tunable takes, for a message about `found`.
 std::string range(const Tunable& tunable, double found) {
-  const std::string kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
+  const char* const kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
   // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
   if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
-    return kind + " above 0";
+    return message({kind, " above 0"});
   if (most(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
-    return kind + " of at least " + core::text_of(tunable.least);
-  return kind + " from " + core::text_of(tunable.least) + " to " + core::text_of(most(tunable));
+    return message({kind, " of at least ", core::text_of(tunable.least)});
+  return message({kind, " from ", core::text_of(tunable.least), " to ", core::text_of(most(tunable))});
 }
 
 void check(const std::string& owner, const Tunable& tunable, const std::string& value) {
   if (value == tunable.standard) return;
   const auto refuse = [&](const std::string& expected) {
-    throw InvalidSpec(owner + ": " + tunable.name + " is '" + value + "'; expected " + expected +
-                      (tunable.standard == "auto" ? ", or auto" : "") +
-                      core::former_value(owner, tunable.name, value));
+    throw InvalidSpec(message({owner, ": ", tunable.name, " is '", value, "'; expected ", expected,
+                               tunable.standard == "auto" ? ", or auto" : "",
+                               core::former_value(owner, tunable.name, value)}));
   };
   if (tunable.type == Tunable::Type::choice) {
     if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
-      refuse("one of: " + listed(tunable.choices));
+      refuse(message({"one of: ", listed(tunable.choices)}));
     return;
   }
   const double number = core::number_in(value);
@@ -58,7 +55,7 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
 
 Spec Spec::parse(std::string_view text) {
   const auto refuse = [text](const std::string& found) {
-    throw InvalidSpec("spec '" + std::string(text) + "': " + found + "; expected name:tunable=value:...");
+    throw InvalidSpec(message({"spec '", text, "': ", found, "; expected name:tunable=value:..."}));
   };
   Spec spec;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -70,10 +67,10 @@ Spec Spec::parse(std::string_view text) {
     } else {
       const std::size_t equals = part.find('=');
       if (equals == std::string_view::npos || equals == 0)
-        refuse("'" + std::string(part) + "' has no " + (equals == 0 ? "name before " : "") + "'='");
+        refuse(message({"'", part, "' has no ", equals == 0 ? "name before " : "", "'='"}));
       const std::string tunable(part.substr(0, equals));
       if (std::ranges::any_of(spec.values, [&](const auto& value) { return value.first == tunable; }))
-        refuse("'" + tunable + "' is given twice");
+        refuse(message({"'", tunable, "' is given twice"}));
       spec.values.emplace_back(tunable, part.substr(equals + 1));
     }
     begin = end + 1;
@@ -95,9 +92,9 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
     if (tunable == tunables.end()) {
       std::vector<std::string> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
-      throw InvalidSpec(spec.name + ": unknown tunable '" + name + "'" + did_you_mean(name, names) +
-                        "; expected " + (names.empty() ? "none" : "one of: " + listed(names)) +
-                        core::former_tunable(spec.name, name));
+      throw InvalidSpec(
+          message({spec.name, ": unknown tunable '", name, "'", did_you_mean(name, names), "; expected ",
+                   names.empty() ? "" : "one of: ", listed(names), core::former_tunable(spec.name, name)}));
     }
     check(spec.name, *tunable, value);
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;
@@ -106,7 +103,7 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
 
 const std::string& Settings::text(std::string_view tunable) const {
   const auto found = std::ranges::find(values_, tunable, &std::pair<std::string, std::string>::first);
-  if (found == values_.end()) throw InvalidSpec("there is no tunable '" + std::string(tunable) + "'");
+  if (found == values_.end()) throw InvalidSpec(message({"there is no tunable '", tunable, "'"}));
   return found->second;
 }
 

@@ -6,6 +6,8 @@
 
 #include "broadside/error.hpp"
 
+#include "core/message.hpp"
+
 namespace broadside {
 namespace {
 
@@ -55,7 +57,7 @@ std::string did_you_mean(std::string_view found, std::span<const std::string> kn
     nearest = distance;
     meant = &name;
   }
-  return meant == nullptr ? "" : " (did you mean '" + *meant + "'?)";
+  return meant == nullptr ? "" : core::message({" (did you mean '", *meant, "'?)"});
 }
 
 }  // namespace broadside

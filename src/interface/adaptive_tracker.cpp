@@ -172,6 +172,7 @@ const BoxIndex<D, Real>* AdaptiveTracker<D, Real>::algorithm_index() const noexc
 
 template <int D, typename Real>
 std::size_t AdaptiveTracker<D, Real>::algorithm_bytes() const noexcept {
+  if constexpr (is_lean) return 0;
   std::size_t bytes = (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
   if (for_few_) bytes += this->kept_bytes(*for_few_);
   if (follower_) bytes += this->kept_bytes(*follower_);

@@ -46,7 +46,9 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
 
  private:
   void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
-  void workers_changed() override { finder_->set_workers(this->workers()); }
+  void workers_changed() override {
+    if constexpr (!is_lean) finder_->set_workers(this->workers());
+  }
   std::size_t algorithm_bytes() const noexcept override;
   const BoxIndex<D, Real>* algorithm_index() const noexcept override;
 

@@ -9,6 +9,7 @@
 #include "broadside/queries.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "interface/input_check.hpp"
 #include "interface/squared_distance.hpp"
@@ -18,10 +19,12 @@ namespace {
 
 template <typename Real>
 [[noreturn]] void refuse(const char* name, const Real* values, int count, const char* expected) {
-  std::string message = std::string(name) + " is ";
-  for (int i = 0; i < count; ++i)
-    message += (i == 0 ? "" : ", ") + core::text_of(values[i], std::numeric_limits<Real>::max_digits10);
-  throw InvalidQuery(message + "; expected " + expected);
+  std::string listed;
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) listed += ", ";
+    listed += core::text_of(values[i], std::numeric_limits<Real>::max_digits10);
+  }
+  throw InvalidQuery(core::message({name, " is ", listed, "; expected ", expected}));
 }
 
 template <int D, typename Real>
@@ -65,24 +68,7 @@ Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const B
 template <int D, typename Real>
 void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
   const core::DefaultEnvironment environment;
-  const std::size_t size = std::max(size_, frame.boxes.size());
-  core::check_count(frame.boxes.size());
-  if (!frame.filters.empty() && frame.filters.size() != frame.boxes.size()) {
-    throw InvalidFrame(std::to_string(frame.filters.size()) + " filters for a frame of " +
-                       std::to_string(frame.boxes.size()) + " boxes; expected one for each box, or none");
-  }
-  std::size_t first = dirty_ ? 0 : std::min(size_, frame.boxes.size());
-  for (const BoxId id : frame.changed) {
-    if (index(id) >= size) {
-      throw InvalidFrame("changed box " + std::to_string(index(id)) + " of a frame of " +
-                         std::to_string(frame.boxes.size()) +
-                         " boxes; expected a place in this frame or the last");
-    }
-    if (index(id) >= first) continue;
-    const Box<D, Real>& box = frame.boxes[index(id)];
-    if (!is_present(box) && !is_absent(box)) first = index(id);
-  }
-  core::check_boxes(frame.boxes, first);
+  core::check_frame(frame, size_, dirty_);
 
   const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
   if (rebuild || frame.filters.empty() || own_filters_.empty()) {
@@ -98,6 +84,7 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
   changed_.clear();
   if (!rebuild) {
     changed_.assign(frame.changed.begin(), frame.changed.end());
+    const std::size_t size = std::max(size_, frame.boxes.size());
     for (std::size_t i = std::min(size_, frame.boxes.size()); i < size; ++i) changed_.push_back(BoxId(i));
   }
   update_valid(frame.boxes, changed_, rebuild);

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 
 namespace broadside::core {
@@ -11,11 +12,13 @@ template <int D, typename Real>
 std::string text_of(const Box<D, Real>& box) {
   const auto point_text = [](const std::array<Real, D>& point) {
     std::string text;
-    for (int axis = 0; axis < D; ++axis)
-      text += (axis == 0 ? "(" : ", ") + text_of(point[axis], std::numeric_limits<Real>::max_digits10);
-    return text + ")";
+    for (int axis = 0; axis < D; ++axis) {
+      text += axis == 0 ? "(" : ", ";
+      text += text_of(point[axis], std::numeric_limits<Real>::max_digits10);
+    }
+    return text += ")";
   };
-  return "min " + point_text(box.min) + " and max " + point_text(box.max);
+  return message({"min ", point_text(box.min), " and max ", point_text(box.max)});
 }
 
 template std::string text_of(const Box2&);

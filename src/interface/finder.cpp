@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
-#include <string>
 
 #include "broadside/error.hpp"
 #include "broadside/tracker.hpp"
 
 #include "core/filter_sink.hpp"
 #include "core/large_array.hpp"
+#include "core/lean.hpp"
+#include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "interface/callers_sink.hpp"
 #include "interface/input_check.hpp"
@@ -96,19 +97,8 @@ class FilteringSink final : public core::FilterSink {
 
 void check_filters(std::span<const Filter> filters, std::size_t boxes, const char* set) {
   if (filters.empty() || filters.size() == boxes) return;
-  throw InvalidFrame(std::to_string(filters.size()) + " filters for " + std::to_string(boxes) + set +
-                     " boxes; expected one for each box, or none");
-}
-
-/// Checks one of two sets by `check` and returns how many boxes are absent; a box at fault is named as one of
-/// `side`.
-template <typename Check>
-std::size_t check_side(const char* side, Check check) {
-  try {
-    return check();
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(error.index(), std::string(side) + " " + error.what());
-  }
+  throw InvalidFrame(core::message(
+      {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
 }
 
 /// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
@@ -187,8 +177,8 @@ void PairFinder<D, Real>::find_between(BoxView<D, Real> left_view, BoxView<D, Re
   }
   const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
   const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
-  const std::size_t absent_left = check_side("left", [&] { return check(left); });
-  const std::size_t absent_right = check_side("right", [&] { return check(right); });
+  const std::size_t absent_left = check(left, "left ");
+  const std::size_t absent_right = check(right, "right ");
   quarantined_.clear();
   if (absent_left > 0) list_invalid(left, 0);
   if (absent_right > 0) list_invalid(right, left.size());
@@ -222,8 +212,7 @@ void PairFinder<D, Real>::find_between(std::span<const Box<D, Real>> boxes, std:
   const std::span<const Box<D, Real>> left = boxes.first(left_count);
   const std::span<const Box<D, Real>> right = boxes.subspan(left_count);
   core::check_count(boxes.size());
-  if (check_side("left", [&] { return check(left); }) + check_side("right", [&] { return check(right); }) >
-      0) {
+  if (check(left, "left ") + check(right, "right ") > 0) {
     find_between(left, right, pairs);
     return;
   }
@@ -245,13 +234,13 @@ void PairFinder<D, Real>::find_valid_between(std::span<const Box<D, Real>> boxes
 }
 
 template <int D, typename Real>
-std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) const {
+std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes, const char* which) const {
   core::Parallel parallel;
   parallel.start(workers_, boxes.size());
   std::atomic<std::size_t> absent = 0;
   // Each range that throws names its first box at fault; the first such range's exception is the one thrown.
   parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input_),
+    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input_, which),
                      std::memory_order_relaxed);
   });
   return absent;
@@ -259,7 +248,7 @@ std::size_t PairFinder<D, Real>::check(std::span<const Box<D, Real>> boxes) cons
 
 template <int D, typename Real>
 void PairFinder<D, Real>::list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
-  if (bad_input_ == BadInput::reject) return;
+  if (core::is_lean || bad_input_ == BadInput::reject) return;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
   }

@@ -1,6 +1,7 @@
 // Refuses boxes that no algorithm may see, before anything has changed.
 #include "interface/input_check.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -10,27 +11,30 @@
 #include "broadside/error.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/lean.hpp"
+#include "core/message.hpp"
 #include "interface/box_text.hpp"
 
 namespace broadside::core {
 
 template <int D, typename Real>
 std::string fault_of(const Box<D, Real>& box, const std::string& name, bool may_be_absent) {
-  return name + " has " + text_of(box) + "; expected numbers with min <= max on every axis" +
-         (may_be_absent ? ", or the absent box (min = +inf, max = -inf)" : "");
+  return message({name, " has ", text_of(box), "; expected numbers with min <= max on every axis",
+                  may_be_absent ? ", or the absent box (min = +inf, max = -inf)" : ""});
 }
 
 template <int D, typename Real>
-void check_box(const Box<D, Real>& box, std::size_t index) {
-  if (is_invalid(box)) throw InvalidInput(index, fault_of(box, "box " + std::to_string(index), true));
+void check_box(const Box<D, Real>& box, std::size_t index, const char* which) {
+  if (is_invalid(box)) throw InvalidInput(index, fault_of(box, message({which, "box ", index}), true));
 }
 
 template <int D, typename Real>
-std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, BadInput bad_input) {
+std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, BadInput bad_input,
+                        const char* which) {
   std::size_t absent = 0;
   for (std::size_t i = from; i < boxes.size(); ++i) {
     if (is_present(boxes[i])) continue;
-    if (bad_input == BadInput::reject) check_box(boxes[i], i);
+    if (bad_input == BadInput::reject) check_box(boxes[i], i, which);
     ++absent;
   }
   return absent;
@@ -38,21 +42,44 @@ std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, B
 
 void check_count(std::size_t count) {
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (count > most)
-    throw InvalidFrame(std::to_string(count) + " boxes; expected at most " + std::to_string(most));
+  if (count > most) throw InvalidFrame(message({count, " boxes; expected at most ", most}));
+}
+
+template <int D, typename Real>
+void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all, BadInput bad_input) {
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
+  const std::size_t size = std::max(boxes.size(), known);
+  check_count(boxes.size());
+  if (!frame.filters.empty() && frame.filters.size() != boxes.size()) {
+    throw InvalidFrame(message({frame.filters.size(), " filters for a frame of ", boxes.size(),
+                                " boxes; expected one for each box, or none"}));
+  }
+  std::size_t first = checks_all ? 0 : std::min(known, boxes.size());
+  for (const BoxId id : frame.changed) {
+    if (index(id) >= size) {
+      throw InvalidFrame(message({"changed box ", index(id), " of a frame of ", boxes.size(),
+                                  " boxes; expected a place in this frame or the last"}));
+    }
+    if (index(id) < first && is_invalid(boxes[index(id)])) first = index(id);
+  }
+  if (is_lean || bad_input == BadInput::reject) check_boxes(boxes, first);
 }
 
 template std::string fault_of(const Box<2>&, const std::string&, bool);
 template std::string fault_of(const Box<3>&, const std::string&, bool);
 template std::string fault_of(const DoubleBox2&, const std::string&, bool);
 template std::string fault_of(const DoubleBox3&, const std::string&, bool);
-template void check_box(const Box<2>&, std::size_t);
-template void check_box(const Box<3>&, std::size_t);
-template void check_box(const DoubleBox2&, std::size_t);
-template void check_box(const DoubleBox3&, std::size_t);
-template std::size_t check_boxes(std::span<const Box<2>>, std::size_t, BadInput);
-template std::size_t check_boxes(std::span<const Box<3>>, std::size_t, BadInput);
-template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t, BadInput);
-template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t, BadInput);
+template void check_frame(const Frame<2>&, std::size_t, bool, BadInput);
+template void check_frame(const Frame<3>&, std::size_t, bool, BadInput);
+template void check_frame(const Frame<2, double>&, std::size_t, bool, BadInput);
+template void check_frame(const Frame<3, double>&, std::size_t, bool, BadInput);
+template void check_box(const Box<2>&, std::size_t, const char*);
+template void check_box(const Box<3>&, std::size_t, const char*);
+template void check_box(const DoubleBox2&, std::size_t, const char*);
+template void check_box(const DoubleBox3&, std::size_t, const char*);
+template std::size_t check_boxes(std::span<const Box<2>>, std::size_t, BadInput, const char*);
+template std::size_t check_boxes(std::span<const Box<3>>, std::size_t, BadInput, const char*);
+template std::size_t check_boxes(std::span<const DoubleBox2>, std::size_t, BadInput, const char*);
+template std::size_t check_boxes(std::span<const DoubleBox3>, std::size_t, BadInput, const char*);
 
 }  // namespace broadside::core

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "broadside/error.hpp"
@@ -13,6 +12,7 @@
 
 #include "core/float_environment.hpp"
 #include "core/grow.hpp"
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sort_pairs.hpp"
 #include "interface/input_check.hpp"
@@ -28,7 +28,9 @@ constexpr std::size_t changes_a_box = 8;
 template <int D, typename Real>
 class BROADSIDE_HIDDEN PairTracker<D, Real>::State {
  public:
-  void check(const Frame<D, Real>& frame) const;
+  void check(const Frame<D, Real>& frame) const {
+    core::check_frame(frame, before_.size(), dirty_, bad_input);
+  }
   void update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once, PairSink& begun,
               PairSink& ended);
   Frame<D, Real> last_frame() const noexcept;
@@ -113,29 +115,6 @@ void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Re
   dirty_ = false;
 }
 
-/// Throws if anything is wrong with the frame, before anything changes. A box beyond the ones known is new
-/// and counts as listed; after a failed update every box does. The first wrong one is named, whatever the
-/// order of the list.
-template <int D, typename Real>
-void PairTracker<D, Real>::State::check(const Frame<D, Real>& frame) const {
-  const std::span<const Box<D, Real>> boxes = frame.boxes;
-  const std::size_t size = std::max(boxes.size(), before_.size());
-  core::check_count(boxes.size());
-  if (!frame.filters.empty() && frame.filters.size() != boxes.size()) {
-    throw InvalidFrame(std::to_string(frame.filters.size()) + " filters for a frame of " +
-                       std::to_string(boxes.size()) + " boxes; expected one for each box, or none");
-  }
-  std::size_t first = dirty_ ? 0 : std::min(before_.size(), boxes.size());
-  for (const BoxId id : frame.changed) {
-    if (index(id) >= size) {
-      throw InvalidFrame("changed box " + std::to_string(index(id)) + " of a frame of " +
-                         std::to_string(boxes.size()) + " boxes; expected a place in this frame or the last");
-    }
-    if (index(id) < first && core::is_invalid(boxes[index(id)])) first = index(id);
-  }
-  if (bad_input == BadInput::reject) core::check_boxes(boxes, first);
-}
-
 /// Sets now_, changed_, invalid_ and flags_, and makes everything as long as the longer frame.
 template <int D, typename Real>
 void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild, bool lists_once) {
@@ -162,7 +141,7 @@ void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild
     if (flags_[i] != 0) return;
     copy(i);
     changed_.push_back(BoxId(i));
-    if (core::is_invalid(now_[i])) {
+    if (!core::is_lean && core::is_invalid(now_[i])) {
       now_[i] = absent_box<D, Real>();
       invalid_.push_back(BoxId(i));
     }
@@ -225,7 +204,7 @@ void PairTracker<D, Real>::State::drop_ignored(const Change<D, Real>& change) {
 template <int D, typename Real>
 void PairTracker<D, Real>::State::keep(const Frame<D, Real>& frame) noexcept {
   const std::size_t size = frame.boxes.size();
-  if (!quarantined_.empty() || !invalid_.empty()) {
+  if (!core::is_lean && (!quarantined_.empty() || !invalid_.empty())) {
     std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
     quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
     std::ranges::sort(quarantined_);
@@ -325,7 +304,7 @@ const std::optional<Statistics>& PairTracker<D, Real>::statistics() const noexce
 
 template <int D, typename Real>
 std::size_t PairTracker<D, Real>::bytes() const noexcept {
-  return state_->bytes() + algorithm_bytes();
+  return core::is_lean ? 0 : state_->bytes() + algorithm_bytes();
 }
 
 template <int D, typename Real>
@@ -335,6 +314,7 @@ const Workers& PairTracker<D, Real>::workers() const noexcept {
 
 template <int D, typename Real>
 void PairTracker<D, Real>::set_workers(const Workers& workers) {
+  if constexpr (core::is_lean) return;
   state_->workers = workers;
   workers_changed();
 }

@@ -12,6 +12,7 @@
 
 #include "broadside/world.hpp"
 
+#include "core/lean.hpp"
 #include "interface/input_check.hpp"
 #include "interface/margins.hpp"
 #include "world/current_pairs.hpp"
@@ -111,6 +112,9 @@ struct BROADSIDE_HIDDEN World<D, Real>::State {
   void deliver(PairEvents& events);
   void recycle() noexcept;
   void settle() noexcept;
+  bool uses_predicate() const noexcept { return !core::is_lean && predicate; }
+  bool keeps_user_data() const noexcept { return !core::is_lean && uses_user_data; }
+  bool quarantines() const noexcept { return !core::is_lean && options.bad_input == BadInput::quarantine; }
   Handle handle(BoxId id) const noexcept { return {index(id), generations[index(id)]}; }
 
   /// A frame that a tracker has taken.

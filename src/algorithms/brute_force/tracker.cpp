@@ -9,6 +9,7 @@
 #include <array>
 #include <vector>
 
+#include "core/lean.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
@@ -69,6 +70,7 @@ class BruteForceTracker final : public PairTracker<D> {
   }
 
   std::size_t algorithm_bytes() const noexcept override {
+    if constexpr (core::is_lean) return 0;
     std::size_t bytes = ids_.capacity() * sizeof(BoxId) + moved_.capacity() * sizeof(core::MovedBox<D>);
     for (int axis = 0; axis < D; ++axis)
       bytes += (min_[axis].capacity() + max_[axis].capacity()) * sizeof(float);

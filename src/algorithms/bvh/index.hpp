@@ -10,6 +10,7 @@
 
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/dynamic_bvh.hpp"
+#include "core/lean.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
@@ -46,6 +47,7 @@ class BvhIndex final : public BoxIndex<D, Real> {
   void find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
                     std::vector<Neighbour<Real>>& found, const Eligible& eligible) const override;
   std::size_t index_bytes() const noexcept override {
+    if constexpr (core::is_lean) return 0;
     return tree_.bytes() + exact_.capacity() * sizeof(Box<D, Real>);
   }
 

@@ -12,6 +12,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/lean.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 
@@ -166,6 +167,7 @@ void GridTracker<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
 
 template <int D>
 std::size_t GridTracker<D>::algorithm_bytes() const noexcept {
+  if constexpr (core::is_lean) return 0;
   std::size_t bytes = cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId);
   for (const Part& part : parts_)
     bytes += part.boxes.capacity() * sizeof(core::MovedBox<D>) +

@@ -11,6 +11,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "world/state.hpp"
 
@@ -19,8 +20,8 @@ namespace {
 
 void check_lengths(std::size_t found, const char* things, std::size_t boxes) {
   if (found == boxes) return;
-  throw std::invalid_argument(std::to_string(found) + " " + things + " for " + std::to_string(boxes) +
-                              " boxes; expected one for each");
+  throw std::invalid_argument(
+      core::message({found, " ", things, " for ", boxes, " boxes; expected one for each"}));
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
   bool has_user_data = false;
   for (const BoxOptions& its : options) {
     has_filters |= its.filter != Filter{};
-    has_user_data |= its.user_data != 0;
+    has_user_data |= !core::is_lean && its.user_data != 0;
   }
   // Where the boxes given are the world's own, they move when its arrays grow.
   std::vector<Box<D, Real>> copies;
@@ -65,8 +66,7 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
     if (!velocities.empty()) state_->check_velocity(velocities[i], i, "of the box number", i);
   }
   state_->reserve_moves(boxes.size());
-  if (!state_->has_margin() && state_->options.bad_input == BadInput::reject)
-    return state_->set_boxes(handles, boxes);
+  if (!state_->has_margin() && !state_->quarantines()) return state_->set_boxes(handles, boxes);
   for (std::size_t i = 0; i < boxes.size(); ++i)
     state_->set_box(handles[i].slot, boxes[i], velocities.empty() ? nullptr : &velocities[i]);
 }
@@ -104,8 +104,8 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   State& state = *state_;
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(origin[axis])) continue;
-    throw std::invalid_argument("coordinate " + std::to_string(axis) + " of a new origin is " +
-                                core::text_of(origin[axis]) + "; expected a finite number");
+    throw std::invalid_argument(core::message({"coordinate ", axis, " of a new origin is ",
+                                               core::text_of(origin[axis]), "; expected a finite number"}));
   }
   state.reserve_moves(state.slots.size());
   const auto shifted = [&origin](Box<D, Real> box) {

@@ -10,6 +10,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "interface/input_check.hpp"
 #include "world/state.hpp"
@@ -78,7 +79,7 @@ const Box<D, Real>& World<D, Real>::enlarged_box(Handle handle) const {
 template <int D, typename Real>
 std::uint64_t World<D, Real>::user_data(Handle handle) const {
   const std::uint32_t slot = state_->readable_slot(handle);
-  return !state_->uses_user_data ? 0 : state_->user_data[slot];
+  return !state_->keeps_user_data() ? 0 : state_->user_data[slot];
 }
 
 template <int D, typename Real>
@@ -91,6 +92,11 @@ void World<D, Real>::set_user_data(Handle handle, std::uint64_t user_data) {
 template <int D, typename Real>
 std::size_t World<D, Real>::size() const noexcept {
   return state_->size;
+}
+
+template <int D, typename Real>
+std::size_t World<D, Real>::slots() const noexcept {
+  return state_->slots.size();
 }
 
 template <int D, typename Real>
@@ -117,16 +123,14 @@ std::uint32_t World<D, Real>::State::readable_slot(Handle handle) const {
 
 template <int D, typename Real>
 void World<D, Real>::State::refuse(Handle handle, const char* action) const {
-  const std::string found = "handle (slot " + std::to_string(handle.slot) + ", generation " +
-                            std::to_string(handle.generation) + ")";
   // A slot that is free has not yet issued a handle of its own generation.
   const bool is_issued = handle.slot < slots.size() ? handle.generation < generations[handle.slot] ||
                                                           (handle.generation == generations[handle.slot] &&
                                                            slots[handle.slot].state != SlotState::free)
                                                     : handle.generation < first_generation;
   const char* const why = is_issued ? " names a box that was removed" : " was never issued by this world";
-  throw InvalidHandle(std::string("cannot ") + action + " a box: " + found + why +
-                      "; expected a box in the world");
+  throw InvalidHandle(core::message({"cannot ", action, " a box: handle (slot ", handle.slot, ", generation ",
+                                     handle.generation, ")", why, "; expected a box in the world"}));
 }
 
 /// Refuses what is no box for add() and move(): an absent one is what remove() is for. `index` is the box's
@@ -135,9 +139,9 @@ template <int D, typename Real>
 void World<D, Real>::State::check_box(const Box<D, Real>& box, std::size_t index, const char* whose,
                                       std::size_t number) const {
   if (is_present(box)) return;
-  if (options.bad_input == BadInput::quarantine && !is_absent(box)) return;
-  const std::string name = std::string("the box ") + whose + " " + std::to_string(number);
-  if (is_absent(box)) throw InvalidInput(index, name + " is absent; expected a box");
+  if (quarantines() && !is_absent(box)) return;
+  const std::string name = core::message({"the box ", whose, " ", number});
+  if (is_absent(box)) throw InvalidInput(index, core::message({name, " is absent; expected a box"}));
   throw InvalidInput(index, core::fault_of(box, name, false));
 }
 
@@ -158,7 +162,7 @@ void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool w
   reserve_moves(count);
   if (has_margin()) make_room(enlarged, added);
   if (with_filters || uses_filters) make_room(filters, slots.size() - filters.size() + added);
-  if (with_user_data || uses_user_data) make_room(user_data, slots.size() - user_data.size() + added);
+  if (with_user_data || keeps_user_data()) make_room(user_data, slots.size() - user_data.size() + added);
   free.reserve(slots.size() + added);
   // Nothing is done yet, but from here on these are in use.
   if (with_filters) filters.resize(slots.size());
@@ -176,13 +180,13 @@ Handle World<D, Real>::State::add_valid(const Box<D, Real>& box, const BoxOption
     generations.push_back(first_generation);
     slots.emplace_back();
     if (uses_filters) filters.emplace_back();
-    if (uses_user_data) user_data.emplace_back();
+    if (keeps_user_data()) user_data.emplace_back();
   } else {
     free.erase(slot);
   }
   slots[slot].state = SlotState::live;
   if (uses_filters) filters[slot] = its_options.filter;
-  if (uses_user_data) user_data[slot] = its_options.user_data;
+  if (keeps_user_data()) user_data[slot] = its_options.user_data;
   set_box(slot, box);
   ++size;
   return {slot, generations[slot]};
@@ -198,9 +202,9 @@ void World<D, Real>::State::check_velocity(const Point<D, Real>& velocity, std::
   }
   for (int axis = 0; axis < D; ++axis) {
     if (std::isfinite(velocity[axis])) continue;
-    throw InvalidInput(index, "coordinate " + std::to_string(axis) + " of the velocity " + whose + " " +
-                                  std::to_string(number) + " is " + core::text_of(velocity[axis]) +
-                                  "; expected a finite number");
+    throw InvalidInput(index,
+                       core::message({"coordinate ", axis, " of the velocity ", whose, " ", number, " is ",
+                                      core::text_of(velocity[axis]), "; expected a finite number"}));
   }
 }
 
@@ -229,8 +233,7 @@ template <int D, typename Real>
 inline void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real>& given,
                                            const Point<D, Real>* velocity) noexcept {
   // Where invalid ones are not quarantined, it has been checked.
-  const Box<D, Real> box =
-      options.bad_input == BadInput::quarantine && !is_present(given) ? absent_box<D, Real>() : given;
+  const Box<D, Real> box = quarantines() && !is_present(given) ? absent_box<D, Real>() : given;
   if (has_margin() && !margins.keeps(enlarged[slot], box, velocity)) return set_outside(slot, box, velocity);
   boxes[slot] = box;
   if (!has_margin() || refines_by_boxes()) {

@@ -13,6 +13,7 @@
 
 #include "core/float_environment.hpp"
 #include "core/lean.hpp"
+#include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "world/state.hpp"
 
@@ -25,8 +26,8 @@ Real checked_distance(const char* name, const double& number) {
   const core::DefaultEnvironment environment;
   const volatile Real rounded = static_cast<Real>(number);
   if (!(rounded >= 0) || !std::isfinite(rounded)) {
-    throw std::invalid_argument(std::string("the ") + name + " of a world is " + core::text_of(number) +
-                                "; expected a finite number of at least 0");
+    throw std::invalid_argument(core::message({"the ", name, " of a world is ", core::text_of(number),
+                                               "; expected a finite number of at least 0"}));
   }
   return rounded;
 }

@@ -8,6 +8,7 @@
 
 #include "broadside/world.hpp"
 
+#include "core/message.hpp"
 #include "world/state.hpp"
 
 namespace broadside {
@@ -16,8 +17,8 @@ namespace {
 /// The pair of two boxes that are in the world.
 Pair pair_of(Handle a, Handle b) {
   if (a.slot == b.slot) {
-    throw std::invalid_argument("a pair to be ignored has slot " + std::to_string(a.slot) +
-                                " twice; expected two different boxes");
+    throw std::invalid_argument(
+        core::message({"a pair to be ignored has slot ", a.slot, " twice; expected two different boxes"}));
   }
   return {BoxId{std::min(a.slot, b.slot)}, BoxId{std::max(a.slot, b.slot)}};
 }
@@ -100,14 +101,14 @@ void World<D, Real>::set_predicate(PairPredicate predicate) {
 template <int D, typename Real>
 void World<D, Real>::refilter(Handle handle) {
   const std::uint32_t slot = state_->live_slot(handle, "refilter");
-  if (!state_->predicate || state_->slots[slot].is_refilter) return;
+  if (!state_->uses_predicate() || state_->slots[slot].is_refilter) return;
   state_->refiltered.push_back(slot);
   state_->slots[slot].is_refilter = true;
 }
 
 template <int D, typename Real>
 void World<D, Real>::refilter() {
-  state_->refilters_all |= static_cast<bool>(state_->predicate);
+  state_->refilters_all |= state_->uses_predicate();
 }
 
 }  // namespace broadside

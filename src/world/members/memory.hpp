@@ -49,7 +49,7 @@ void World<D, Real>::State::trim() noexcept {
     boxes.pop_back();
     if (has_margin()) enlarged.pop_back();
     if (uses_filters) filters.pop_back();
-    if (uses_user_data) user_data.pop_back();
+    if (keeps_user_data()) user_data.pop_back();
   }
 }
 
@@ -98,7 +98,7 @@ WorldStatistics World<D, Real>::statistics() const {
   const State& state = *state_;
   WorldStatistics statistics;
   statistics.boxes = state.size;
-  statistics.slots = state.slots.size();
+  statistics.slots = slots();
   statistics.pairs = state.pair_count;
   statistics.begun = state.begun.size();
   statistics.ended = state.ended.size();

@@ -13,6 +13,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/message.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "world/state.hpp"
 
@@ -54,8 +55,8 @@ template <int D, typename Real>
 void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const {
   const core::DefaultEnvironment environment;
   if (flags.size() != pairs.size()) {
-    throw std::invalid_argument(std::to_string(flags.size()) + " flags for " + std::to_string(pairs.size()) +
-                                " pairs; expected one for each");
+    throw std::invalid_argument(
+        core::message({flags.size(), " flags for ", pairs.size(), " pairs; expected one for each"}));
   }
   const State& state = *state_;
   const std::span<const Box<D, Real>> boxes = state.boxes;

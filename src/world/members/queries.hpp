@@ -42,7 +42,7 @@ Handle World<D, Real>::handle_of(BoxId slot) const noexcept {
 /// The tracker's own index, if it has one of the boxes as they are now.
 template <int D, typename Real>
 const BoxIndex<D, Real>* World<D, Real>::State::trackers_index() const noexcept {
-  if (has_margin() || !changed.empty() || way_back != nullptr) return nullptr;
+  if (has_margin() || !changed.empty() || (!core::is_lean && way_back != nullptr)) return nullptr;
   return tracker->box_index();
 }
 

@@ -49,7 +49,7 @@ constexpr std::size_t many_changed = 4;
 template <int D, typename Real>
 Events World<D, Real>::update() {
   State& state = *state_;
-  state.lead_back();
+  if constexpr (!core::is_lean) state.lead_back();
   state.note_changes_for_index();
   const bool is_again = !state.refined.empty();
   state.ask_tracker();
@@ -146,8 +146,8 @@ void World<D, Real>::State::refine() {
     for (const std::uint32_t slot : refiltered) graph.for_each_of(BoxId{slot}, touch_edge);
   }
 
-  std::ranges::sort(questions, {}, &Question::pair);
-  if (!questions.empty()) {
+  if (uses_predicate()) {
+    std::ranges::sort(questions, {}, &Question::pair);
     const core::CallersEnvironment callers;
     for (const Question& question : questions) {
       touched[question.touched].accepted =
@@ -187,7 +187,6 @@ void World<D, Real>::State::touch_all() {
   std::array<Pair, at_once> pairs;
   std::array<std::uint8_t, at_once> flags;
   flags.fill(1);
-  const bool has_predicate = static_cast<bool>(predicate);
   std::size_t count = 0;
   const auto touch_these = [&] {
     if (refines_by_boxes()) {
@@ -197,7 +196,8 @@ void World<D, Real>::State::touch_all() {
     for (std::size_t i = 0; i < count; ++i) {
       const core::PairGraph::Mark& mark = graph.mark(edges[i]);
       const bool overlaps = flags[i] != 0;
-      if (has_predicate || mark.overlaps != overlaps || mark.accepted != overlaps) touch(edges[i], overlaps);
+      if (uses_predicate() || mark.overlaps != overlaps || mark.accepted != overlaps)
+        touch(edges[i], overlaps);
     }
     count = 0;
   };
@@ -216,11 +216,11 @@ void World<D, Real>::State::touch(core::PairGraph::EdgeId edge, bool overlaps) {
   const Pair pair = graph.pair(edge);
   const std::uint32_t a = index(pair.first);
   const std::uint32_t b = index(pair.second);
-  const bool is_asked = overlaps && predicate &&
+  const bool is_asked = overlaps && uses_predicate() &&
                         (!mark.overlaps || refilters_all || slots[a].is_refilter || slots[b].is_refilter);
   if (is_asked)
     questions.push_back({pair, touched.size()});
-  else if (overlaps == mark.overlaps && (predicate || mark.accepted == overlaps))
+  else if (overlaps == mark.overlaps && (uses_predicate() || mark.accepted == overlaps))
     return;
   touched.push_back({edge, overlaps, overlaps});
 }
@@ -230,7 +230,7 @@ template <int D, typename Real>
 void World<D, Real>::State::deliver(PairEvents& events) {
   begun.reserve(events.begun.size());
   ended.reserve(events.ended.size());
-  if (uses_user_data) {
+  if (keeps_user_data()) {
     begun_data.reserve(events.begun.size());
     ended_data.reserve(events.ended.size());
   }
@@ -242,10 +242,10 @@ void World<D, Real>::State::deliver(PairEvents& events) {
   const auto collect = [this](std::span<const Pair> pairs, std::vector<HandlePair>& handles,
                               std::vector<UserDataPair>& data) {
     handles.clear();
-    data.clear();
+    if (!core::is_lean) data.clear();
     for (const Pair pair : pairs) {
       handles.push_back({handle(pair.first), handle(pair.second)});
-      if (uses_user_data) data.push_back({user_data[index(pair.first)], user_data[index(pair.second)]});
+      if (keeps_user_data()) data.push_back({user_data[index(pair.first)], user_data[index(pair.second)]});
     }
   };
   collect(events.begun, begun, begun_data);
@@ -282,7 +282,7 @@ void World<D, Real>::State::settle() noexcept {
   ignored_changed.clear();
   refilters_all = false;
   is_settled = true;
-  if (is_refining && !predicate && !refines_by_boxes()) {
+  if (is_refining && !uses_predicate() && !refines_by_boxes()) {
     graph = {};
     is_refining = false;
   }

@@ -55,6 +55,7 @@ TEST_F(WorldBatchTest, AddsAllOrNone) {
   EXPECT_EQ(handles, std::vector<Handle>(2, first));
   EXPECT_EQ(world_.size(), 1u);
   EXPECT_EQ(world_.statistics().slots, 1u);
+  EXPECT_EQ(world_.slots(), 1u);
   EXPECT_TRUE(world_.update().begun.empty());
 }
 

@@ -1,0 +1,31 @@
+// Messages of exceptions, put together of texts and numbers.
+#include "core/message.hpp"
+
+#include "core/lean.hpp"
+#include "core/number_text.hpp"
+
+namespace broadside::core {
+
+void MessagePart::append_to(std::string& text) const {
+  if (text_ == nullptr)
+    text += is_lean ? text_of(static_cast<double>(value_), 17) : std::to_string(value_);
+  else
+    text.append(text_, value_);
+}
+
+std::string message(std::initializer_list<MessagePart> parts) {
+  std::string text;
+  for (const MessagePart& part : parts) part.append_to(text);
+  return text;
+}
+
+std::string listed(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names) {
+    if (!list.empty()) list += ", ";
+    list += name;
+  }
+  return list.empty() ? "none" : list;
+}
+
+}  // namespace broadside::core
