@@ -19,6 +19,7 @@
 #include <memory>
 #include <ranges>
 #include <system_error>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -97,6 +98,16 @@ constexpr void sort_by_heap(At first, ptrdiff_t count, Before before) {
   }
 }
 
+template <typename At, typename Before>
+constexpr void sort_by_insertion(At first, At last, Before before) {
+  for (At at = first; at != last; ++at) {
+    auto moved = std::move(*at);
+    At to = at;
+    for (; to != first && before(moved, to[-1]); --to) *to = std::move(to[-1]);
+    *to = std::move(moved);
+  }
+}
+
 /// Introsort in a tenth of the code of libc++'s, which is made for each type anew.
 template <typename At, typename Before>
 constexpr void sort_range(At first, At last, Before before, int depth) {
@@ -120,12 +131,7 @@ constexpr void sort_range(At first, At last, Before before, int depth) {
     sort_range(low, last, before, depth);
     last = low;
   }
-  for (At at = first; at != last; ++at) {
-    auto moved = std::move(*at);
-    At to = at;
-    for (; to != first && before(moved, to[-1]); --to) *to = std::move(to[-1]);
-    *to = std::move(moved);
-  }
+  sort_by_insertion(first, last, before);
 }
 
 template <typename Range, typename Before = less, typename Projection = identity>
@@ -133,9 +139,13 @@ constexpr void sort(Range&& range, Before before = {}, Projection projection = {
   if (begin(range) == end(range)) return;
   auto* const first = std::addressof(*begin(range));
   const auto count = end(range) - begin(range);
-  int depth = 2;
-  for (auto left = count; left > 1; left /= 2) depth += 2;
-  sort_range(first, first + count, projected_order(before, projection), depth);
+  if constexpr (requires { tuple_size<remove_cvref_t<Range>>::value; }) {  // of a fixed length, a few
+    sort_by_insertion(first, first + count, projected_order(before, projection));
+  } else {
+    int depth = 2;
+    for (auto left = count; left > 1; left /= 2) depth += 2;
+    sort_range(first, first + count, projected_order(before, projection), depth);
+  }
 }
 
 template <typename Range, typename Before = less>

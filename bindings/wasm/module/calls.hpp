@@ -15,9 +15,7 @@
 #include "broadside/pair.hpp"
 
 #include "core/dimensions.hpp"
-
-/// Marks a function that the module exports under its own name.
-#define BROADSIDE_EXPORT(name) extern "C" __attribute__((export_name(#name), used))
+#include "module/export.hpp"
 
 namespace broadside::wasm {
 

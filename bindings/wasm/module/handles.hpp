@@ -22,10 +22,14 @@ inline double number_of(const Handle& handle) noexcept {
   return static_cast<double>(std::uint64_t{handle.generation - least_generation} << slot_bits | handle.slot);
 }
 
+/// Whether a number is a handle of some world.
+inline bool is_handle(double number) noexcept {
+  return number >= 0 && number < 0x1p53 && static_cast<double>(static_cast<std::uint64_t>(number)) == number;
+}
+
 /// Throws InvalidHandle if the number is no handle of any world.
 inline Handle handle_of(double number) {
-  if (!(number >= 0) || !(number < 0x1p53) ||
-      static_cast<double>(static_cast<std::uint64_t>(number)) != number)
+  if (!is_handle(number))
     throw InvalidHandle("a handle that no world gave; expected a number that add() returned");
   const auto bits = static_cast<std::uint64_t>(number);
   return {static_cast<std::uint32_t>(bits) & (most_slots - 1),

@@ -1,10 +1,9 @@
 // Parts of the C++ standard library that the module does without, in place of libc++'s: with these, locks for
 // threads that there are not, printf() and the texts of the system's errors would be linked.
-#include <cstdlib>
+#include <bit>
+#include <cstddef>
 #include <mutex>
-
-/// What std::terminate() ends with; JavaScript sees a trap.
-extern "C" __attribute__((noreturn)) void abort_message(const char*, ...) { std::abort(); }
+#include <unordered_set>
 
 namespace std {
 
@@ -14,3 +13,9 @@ bool mutex::try_lock() noexcept { return true; }
 void mutex::unlock() noexcept {}
 
 }  // namespace std
+
+/// How many buckets a hash table gets where `least` are needed: libc++ takes a prime, by a function that is
+/// longer than the table's own, or a power of two.
+std::size_t std::__next_prime(std::size_t least) {  // NOLINT(readability-identifier-naming)
+  return std::bit_ceil(least);
+}

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/message.hpp"
+
 namespace broadside::wasm {
 namespace {
 
@@ -24,11 +26,10 @@ void KeptWorld::take_handles(const double* handles, std::size_t count) {
 }
 
 /// Throws if `more` boxes would take slots that no handle can name.
-void KeptWorld::check_slots(std::size_t more) {
-  if (most_slots_so_far_ + more > most_slots) most_slots_so_far_ = world_.statistics().slots;
-  if (most_slots_so_far_ + more > most_slots)
-    throw InvalidFrame(std::to_string(most_slots_so_far_ + more) + " boxes in a world; expected at most " +
-                       std::to_string(most_slots));
+void KeptWorld::check_slots(std::size_t more) const {
+  const std::size_t slots = world_.slots() + more;
+  if (slots > most_slots)
+    throw InvalidFrame(core::message({slots, " boxes in a world; expected at most ", most_slots}));
 }
 
 void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {
@@ -37,7 +38,6 @@ void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters
   for (std::size_t i = 0; i < options_.size(); ++i) options_[i].filter = filters[i];
   handles_.resize(count);
   world_.add(boxes_at<dimension>(boxes, count), handles_, options_);
-  most_slots_so_far_ += count;
   for (std::size_t i = 0; i < count; ++i) handles[i] = number_of(handles_[i]);
 }
 
@@ -76,12 +76,8 @@ void KeptWorld::box(double handle) {
   }
 }
 
-bool KeptWorld::contains(double handle) {
-  try {
-    return world_.contains(handle_of(handle));
-  } catch (const InvalidHandle&) {
-    return false;
-  }
+bool KeptWorld::contains(double handle) const {
+  return is_handle(handle) && world_.contains(handle_of(handle));
 }
 
 void KeptWorld::set_filter(double handle, const Filter& filter) {

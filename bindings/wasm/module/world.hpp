@@ -25,16 +25,15 @@ class KeptWorld {
   void pairs();
   void box(double handle);
   std::size_t size() { return world_.size(); }
-  bool contains(double handle);
+  bool contains(double handle) const;
   void set_filter(double handle, const Filter& filter);
   void ignore(double a, double b, bool ignores);
 
  private:
   void take_handles(const double* handles, std::size_t count);
-  void check_slots(std::size_t more);
+  void check_slots(std::size_t more) const;
 
   World<dimension> world_;
-  std::size_t most_slots_so_far_ = 0;  // no fewer than there are
   std::vector<Handle> handles_;
   std::vector<BoxOptions> options_;
   Events events_;

@@ -1,9 +1,13 @@
 // Memory: views hold as long as they are said to, memory grows, and none is lost.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 
 import { type Broadside, type Dimension, load } from "broadside";
 
+import type { Exports } from "../../../bindings/wasm/src/core.ts";
+import { importsOf } from "../../../bindings/wasm/src/imports.ts";
 import { at, pairsByDefinition, scenes } from "./support.ts";
 
 const uniform = scenes[0] as (typeof scenes)[0];
@@ -112,6 +116,34 @@ test("finders of many kinds do not pile up", async () => {
   const before = bytesOf(broadside);
   for (let i = 0; i < 300; ++i) search(i);
   assert.equal(bytesOf(broadside), before);
+});
+
+test("memory that runs out within a call", async () => {
+  const wasm = await WebAssembly.compile(readFileSync(join(process.env["BROADSIDE_PACKAGE"] as string, "broadside-2d.wasm")));
+  let memory: WebAssembly.Memory;
+  const { exports } = await WebAssembly.instantiate(wasm, importsOf(() => memory.buffer));
+  const core = exports as unknown as Exports;
+  ({ memory } = core);
+  core._initialize();
+  const reply = () => new Uint32Array(memory.buffer, core.reply(), 4);
+  const count = 3000;
+  const boxes = core.reserve(16 * count);
+  assert.equal(core.finder_make(boxes, new TextEncoder().encodeInto("grid", new Uint8Array(memory.buffer, boxes)).written), 0);
+  const finder = reply()[0] as number;
+  new Float32Array(memory.buffer, boxes, 4 * count).fill(1);
+  const find = () => core.finder_find(finder, boxes, count, 0, 0, 0, 0, 0);
+  const taken: number[] = [];
+  for (let bytes = 2 ** 31; bytes >= 64; bytes /= 2) {
+    for (let address; (address = core.reserve(bytes)) !== 0;) taken.push(address);
+  }
+  const outOfMemory = 7;
+  for (let i = 0; i < 3; ++i) {
+    assert.equal(find(), outOfMemory);
+    assert.equal(Buffer.from(memory.buffer, reply()[2], reply()[3]).toString(), "out of memory");
+  }
+  for (const address of taken) core.release(address);
+  assert.equal(find(), 0, "and then all is well");
+  assert.equal(reply()[1], count * (count - 1) / 2);
 });
 
 test("more memory than there is", async () => {

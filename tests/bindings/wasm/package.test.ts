@@ -30,8 +30,8 @@ const example = "import { load } from \"broadside\";\n" +
  * unnoticed; the goals are 60,000 and 40,000 bytes, which are missed (docs/javascript.md).
  */
 const limits: readonly (readonly [string, string, number])[] = [
-  ["index.js", "broadside-2d.js", 97_000], ["index.js", "broadside-3d.js", 101_000],
-  ["pairs.js", "broadside-pairs-2d.js", 74_000], ["pairs.js", "broadside-pairs-3d.js", 77_000],
+  ["index.js", "broadside-2d.js", 70_600], ["index.js", "broadside-3d.js", 72_200],
+  ["pairs.js", "broadside-pairs-2d.js", 53_200], ["pairs.js", "broadside-pairs-3d.js", 54_100],
 ];
 
 for (const [entry, module, most] of limits) {

@@ -1,0 +1,14 @@
+// How memory is copied and filled: by WebAssembly's instructions for it, which it has wherever it has
+// exceptions.
+#include <cstddef>
+
+extern "C" {
+
+void* memcpy(void* to, const void* from, std::size_t size) {
+  return __builtin_memcpy(to, from, size);  // NOLINT: with -mbulk-memory and a size not known it is no call
+}
+
+void* memmove(void* to, const void* from, std::size_t size) { return __builtin_memmove(to, from, size); }
+
+void* memset(void* to, int byte, std::size_t size) { return __builtin_memset(to, byte, size); }
+}
