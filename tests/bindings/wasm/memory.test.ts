@@ -133,7 +133,7 @@ test("memory that runs out within a call", async () => {
   new Float32Array(memory.buffer, boxes, 4 * count).fill(1);
   const find = () => core.finder_find(finder, boxes, count, 0, 0, 0, 0, 0);
   const taken: number[] = [];
-  for (let bytes = 2 ** 31; bytes >= 64; bytes /= 2) {
+  for (let bytes = 2 ** 31; bytes >= 1; bytes /= 2) {
     for (let address; (address = core.reserve(bytes)) !== 0;) taken.push(address);
   }
   const outOfMemory = 7;
