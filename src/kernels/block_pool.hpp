@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include <hwy/cache_control.h>
+
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
@@ -14,6 +16,9 @@
 #include "kernels/shared_bits.hpp"
 
 namespace broadside::kernels {
+
+/// Brings memory that will be read or written into the cache, while other work goes on.
+inline void prefetch(const void* memory) { hwy::Prefetch(static_cast<const char*>(memory)); }
 
 /// Data about a block that a search can read without its boxes.
 struct BlockHead {
@@ -92,6 +97,17 @@ class BlockPool {
   Box<D> box(std::uint32_t slot) const { return blocks_[slot / width].box(slot % width); }
   BoxId id(std::uint32_t slot) const { return BoxId{blocks_[slot / width].id[slot % width]}; }
   void set(std::uint32_t slot, const Box<D>& box) { blocks_[slot / width].set(slot % width, box); }
+
+  /// Brings a slot that will be set into the cache, while others are.
+  void prefetch(std::uint32_t slot) const {
+    const std::uint32_t block = slot / width;
+    if (block >= blocks_.size()) return;
+    kernels::prefetch(&heads_[block]);
+    for (int axis = 0; axis < D; ++axis) {
+      kernels::prefetch(blocks_[block].min[axis].data());
+      kernels::prefetch(blocks_[block].max[axis].data());
+    }
+  }
 
   /// Says that the box of a slot moves, or no longer does.
   void mark(std::uint32_t slot) {

@@ -160,7 +160,13 @@ class Search {
   }
 
   void write(std::size_t count) {
-    for (const Found& found : std::span(found_).first(count)) {
+    const std::span<const Found> all = std::span(found_).first(count);
+    for (const Found& found : all) hwy::Prefetch(blocks_.blocks[found.block].id.data());
+    for (const Found& found : all) {
+      for (std::uint32_t bits = found.begun | found.ended | found.candidates; bits != 0; bits &= bits - 1)
+        hwy::Prefetch(&sinks_.moves[blocks_.blocks[found.block].id[std::countr_zero(bits)]]);
+    }
+    for (const Found& found : all) {
       write(found, found.begun, sinks_.begun);
       write(found, found.ended, sinks_.ended);
       write(found, found.candidates, sinks_.candidates);

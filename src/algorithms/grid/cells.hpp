@@ -34,6 +34,10 @@ class HierarchicalCells {
   /// is, so a query for either finds it. What is left where it was goes with drop_stale(). O(1).
   void move(core::MovedBox<D>& box);
 
+  /// Bring what a box's move() or settle() reads into the cache: first its slot, and later what is there.
+  void prefetch_slot(BoxId id) const { kernels::prefetch(slot_.data() + index(id)); }
+  void prefetch_entry(BoxId id) const { pool_.prefetch(slot_[index(id)]); }
+
   /// The same for a box that stays in its cell, while other threads move and settle others like it; else
   /// nothing is done, and the box's `slot` stays unset.
   void move_within_cell(core::MovedBox<D>& box);

@@ -30,6 +30,20 @@ constexpr std::size_t boxes_a_mover = 2;
 /// Queries to average over before the cells are judged too slow.
 constexpr std::uint64_t telling_queries = 1024;
 
+constexpr BoxId id_of(BoxId id) { return id; }
+template <int D>
+BoxId id_of(const core::MovedBox<D>& box) {
+  return box.id;
+}
+
+/// Prefetches what the boxes need that come some steps after number i: more steps than memory takes.
+template <int D, typename Boxes>
+void prefetch_ahead(const HierarchicalCells<D>& cells, const Boxes& boxes, std::size_t i) {
+  constexpr std::size_t steps = 8;
+  if (i + 2 * steps < boxes.size()) cells.prefetch_slot(id_of(boxes[i + 2 * steps]));
+  if (i + steps < boxes.size()) cells.prefetch_entry(id_of(boxes[i + steps]));
+}
+
 }  // namespace
 
 template <int D>
@@ -72,6 +86,7 @@ void GridTracker<D>::settle(const Change<D>& change) {
   parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const BoxId id = moved_[i];
+      prefetch_ahead(cells_, moved_, i);
       const Box<D>& box = change.now[index(id)];
       if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
     }
@@ -91,7 +106,9 @@ void GridTracker<D>::move(const Change<D>& change, std::span<const BoxId> ids, b
     for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
   });
   for (Part& part : parts()) {
-    for (core::MovedBox<D>& box : part.boxes) {
+    for (std::size_t i = 0; i < part.boxes.size(); ++i) {
+      core::MovedBox<D>& box = part.boxes[i];
+      prefetch_ahead(cells_, part.boxes, i);
       if (box.slot == kernels::no_slot) cells_.move(box);
       if (box.is_present) moving_.push_back(box.id);
     }
