@@ -196,6 +196,14 @@ class WaitingNodes {
     return true;
   }
 
+  std::size_t count() const { return count_; }
+
+  /// Prefetches the nodes that were added since there were `count`.
+  template <int D>
+  HWY_INLINE void prefetch_from(std::size_t count, const BvhView<D>& tree) const {
+    for (; count < count_; ++count) prefetch(tree.nodes[nodes_[count] & ~leaf_bit]);
+  }
+
  private:
   std::size_t count_ = 0;
   alignas(64) std::uint32_t nodes_[(longest_path + 2) * fan_out];
@@ -227,11 +235,13 @@ void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& fo
         }
         nearest = hn::MinOfLanes(Numbers(), nearest);
         number = node.id[hn::GetLane(nearest) & place_bits];
-        prefetch(tree.nodes[number & ~leaf_bit]);
+        const std::size_t waited = waiting.count();
         for (std::size_t i = 0; i < vectors; ++i) {
           const auto is_other = hn::RebindMask(Floats(), hn::Ne(key[i], nearest));
           waiting.add(node, i * lanes, hn::And(hits[i], is_other), enter[i]);
         }
+        // Most of a tree is leaves, so the nodes above them are in a nearer cache.
+        if ((number & leaf_bit) != 0) waiting.prefetch_from(waited, tree);
         continue;
       }
       for (std::size_t i = 0; i < vectors; ++i) cast.add(node, i * lanes, hits[i], enter[i], found);
