@@ -2,13 +2,30 @@
 #include "world/current_pairs.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <cstdint>
 
 namespace broadside::core {
 namespace {
 
 /// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
+
+/// Up to this part of the array in the log, places are searched for; with more, every pair is looked at.
+constexpr std::size_t part_for_galloping = 8;
+
+/// Merges two sorted ranges without branches: no predictor could foresee which comes next.
+void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair* out) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < begun.size() && j < ended.size()) {
+    const bool ends = key(ended[j]) < key(begun[i]);
+    *out++ = *(ends ? &ended[j] : &begun[i]);
+    i += static_cast<std::size_t>(!ends);
+    j += static_cast<std::size_t>(ends);
+  }
+  out = std::ranges::copy(begun.subspan(i), out).out;
+  std::ranges::copy(ended.subspan(j), out);
+}
 
 Pair slots(const HandlePair& pair) noexcept { return {BoxId{pair.first.slot}, BoxId{pair.second.slot}}; }
 
@@ -37,7 +54,8 @@ void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended,
   const std::size_t events = begun.size() + ended.size();
   if (events == 0) return;
   if (log_.capacity() < old_size + events) log_.reserve(std::max(old_size + events, 2 * log_.capacity()));
-  std::ranges::merge(begun, ended, std::back_inserter(log_));
+  log_.resize(old_size + events);
+  merge_events(begun, ended, log_.data() + old_size);
   size_ += begun.size();
   size_ -= ended.size();
   if (log_.size() <= std::max(short_log, pairs_.size() / 2)) return;
@@ -55,14 +73,61 @@ void CurrentPairs::merge(Generations generations) {
   if (log_.empty()) return;
   // Everything that can throw comes first.
   if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
-  if (pairs_.capacity() < size_) pairs_.reserve(std::max(size_, pairs_.capacity() + pairs_.capacity() / 2));
-  insert_begun(drop_and_refresh(generations), generations);
+  const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
+  const std::size_t most = is_long ? pairs_.size() + log_.size() : size_;
+  if (pairs_.capacity() < most) pairs_.reserve(std::max(most, pairs_.capacity() + pairs_.capacity() / 2));
+  const std::size_t toggled = keep_toggled(generations);
+  if (is_long)
+    toggle(toggled, generations);
+  else
+    insert_begun(drop_ended(toggled), generations);
   log_.clear();
 }
 
-/// Takes from the array what has ended; gives pairs that ended and began again the handles of now, since
-/// slots may have been used again. Pairs that have begun go to the front of the log; returns how many.
-std::size_t CurrentPairs::drop_and_refresh(Generations generations) {
+/// Moves the pairs that the log has an odd number of times to its front, each once; returns how many. Gives
+/// pairs that ended and began again the handles of now, since slots may have been used again.
+std::size_t CurrentPairs::keep_toggled(Generations generations) {
+  std::size_t toggled = 0;
+  for (std::size_t i = 0; i < log_.size();) {
+    const Pair pair = log_[i];
+    const std::size_t first = i;
+    while (i < log_.size() && log_[i] == pair) ++i;
+    if ((i - first) % 2 != 0) {
+      log_[toggled++] = pair;
+      continue;
+    }
+    const auto place = std::ranges::lower_bound(pairs_, pair, {}, slots);
+    if (place != pairs_.end() && slots(*place) == pair) *place = handles(pair, generations);
+  }
+  return toggled;
+}
+
+/// Takes the first `count` pairs of the log from the array, and puts those in that are not there: from the
+/// end on, without branches, as in merge_events(). There is room for all.
+void CurrentPairs::toggle(std::size_t count, Generations generations) {
+  std::size_t left = pairs_.size();
+  pairs_.resize(left + count);
+  HandlePair* const begin = pairs_.data();
+  HandlePair* const end = begin + pairs_.size();
+  HandlePair* out = end;  // at least `count` places above those that are left
+  while (left > 0 && count > 0) {
+    const HandlePair toggled = handles(log_[count - 1], generations);
+    const HandlePair& held = begin[left - 1];
+    const std::uint64_t of_held = key(slots(held));
+    const std::uint64_t of_toggled = key(log_[count - 1]);
+    out[-1] = *(of_held > of_toggled ? &held : &toggled);
+    out -= static_cast<std::ptrdiff_t>(of_held != of_toggled);
+    left -= static_cast<std::size_t>(of_held >= of_toggled);
+    count -= static_cast<std::size_t>(of_toggled >= of_held);
+  }
+  while (count > 0) *--out = handles(log_[--count], generations);
+  const HandlePair* const last = std::copy(out, end, begin + left);
+  pairs_.resize(static_cast<std::size_t>(last - begin));
+}
+
+/// Takes those of the first `count` pairs of the log that are in the array out of it. The others, which have
+/// begun, go to the front of the log; returns how many.
+std::size_t CurrentPairs::drop_ended(std::size_t count) {
   HandlePair* const begin = pairs_.data();
   const HandlePair* const end = begin + pairs_.size();
   const HandlePair* read = begin;
@@ -75,18 +140,12 @@ std::size_t CurrentPairs::drop_and_refresh(Generations generations) {
     read = to;
   };
   std::size_t begun = 0;
-  for (std::size_t i = 0; i < log_.size();) {
-    const Pair pair = log_[i];
-    const std::size_t first = i;
-    while (i < log_.size() && log_[i] == pair) ++i;
-    const bool toggled = (i - first) % 2 != 0;
-    if (read != end) keep_up_to(first_not_before(read, end, pair));
-    if (read != end && slots(*read) == pair) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (read != end) keep_up_to(first_not_before(read, end, log_[i]));
+    if (read != end && slots(*read) == log_[i])
       ++read;
-      if (!toggled) *write++ = handles(pair, generations);
-    } else if (toggled) {
-      log_[begun++] = pair;
-    }
+    else
+      log_[begun++] = log_[i];
   }
   keep_up_to(end);
   pairs_.resize(static_cast<std::size_t>(write - begin));

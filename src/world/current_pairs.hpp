@@ -41,7 +41,9 @@ class CurrentPairs {
   }
 
  private:
-  std::size_t drop_and_refresh(Generations generations);
+  std::size_t keep_toggled(Generations generations);
+  void toggle(std::size_t count, Generations generations);
+  std::size_t drop_ended(std::size_t count);
   void insert_begun(std::size_t count, Generations generations);
 
   std::vector<HandlePair> pairs_;
