@@ -172,7 +172,10 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     std::ranges::sort(overlap);
     tests_ = half * overlap[0];
     if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return Choice::one_axis;
-    if (!shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
+    double expected = half;  // overlaps a box, were the axes independent: stacks of plates have far fewer
+    for (const double part : overlap) expected *= part;
+    const bool are_stacked = size >= Limits::stacked_boxes_for_a_tree && expected >= Limits::many_overlaps;
+    if (are_stacked || !shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
     std::array<float, D> reach = estimate_.range();
     for (float& distance : reach) distance *= Limits::near;
     clustering_ = estimate_.clustering(reach);

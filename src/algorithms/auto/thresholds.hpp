@@ -34,6 +34,10 @@ struct AutoThresholds {
   static constexpr std::size_t flat_boxes_for_cells = 1100;
   static constexpr double most_overlaps_for_their_shape = 50;  ///< overlaps a box
 
+  /// From this many boxes on a tree suits those that would overlap many_overlaps others if axes were
+  /// independent, and do not: of the generated stacks of plates cells make five times the tests.
+  static constexpr std::size_t stacked_boxes_for_a_tree = D == 2 ? 0 : 6000;
+
   /// Boxes stand in a line where at least `in_line` of all pairs overlap on each other axis. Up to this many
   /// tests a box a sweep along the line then beats a tree.
   static constexpr double tests_of_a_line = 16;

@@ -19,6 +19,7 @@
 #include "broadside/tracker.hpp"
 
 #include "core/sample.hpp"
+#include "lab/worst/family.hpp"
 #include "tests/support/found.hpp"
 #include "tests/support/model.hpp"
 #include "tests/support/rng.hpp"
@@ -109,6 +110,22 @@ TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
       EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
     }
   }
+}
+
+/// The tests of a search in two stacks of plates side by side, over the number of boxes.
+template <int D>
+double tests_a_plate(std::size_t count) {
+  lab::Random random(6);
+  const auto finder = make_finder<D, double>("auto");
+  PairCounter pairs;
+  finder->find(lab::make_family<D>(Spec::parse("plates"), count, random), pairs);
+  return static_cast<double>(finder->statistics()->tests) / static_cast<double>(count);
+}
+
+TEST(AutoHandOver, IsNotNeededForSomeThousandPlates) {
+  EXPECT_LE(tests_a_plate<2>(5'000), 30);
+  EXPECT_LE(tests_a_plate<2>(10'000), 30);
+  EXPECT_LE(tests_a_plate<3>(10'000), 30);
 }
 
 TEST(AutoHandOver, FindsEachPairOnce) {
