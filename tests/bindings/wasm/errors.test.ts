@@ -59,6 +59,8 @@ test("arguments of the wrong kind", () => {
   const cases: [() => unknown, string][] = [
     [() => broadside.pairs([0, 0, 1]), "the length of boxes is 3; expected a multiple of 4"],
     [() => broadside.pairs(new Float32Array(5)), "the length of boxes is 5; expected a multiple of 4"],
+    [() => broadside.pairs(new Float32Array(7)), "the length of boxes is 7; expected a multiple of 4"],
+    [() => broadside.pairs(new Float32Array(11), { dimension: 3 }), "the length of boxes is 11; expected a multiple of 6"],
     [() => broadside.pairs([0, 0, 1, 1], { dimension: 3 }), "the length of boxes is 4; expected a multiple of 6"],
     [() => broadside.pairs(wrong(undefined)), "boxes is undefined; expected an array of numbers"],
     [() => broadside.pairs(wrong("four")), "boxes is 'four'; expected an array of numbers"],

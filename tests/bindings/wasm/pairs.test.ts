@@ -111,6 +111,17 @@ for (const dimension of dimensions) {
   });
 }
 
+test("options that were given before are read anew", () => {
+  const boxes = new Float32Array([0, 0, 2, 2, 1, 1, 3, 3]);
+  const options: { filters?: Filters; algorithm?: string } = {};
+  assert.deepEqual([...broadside.pairs(boxes, options)], [0, 1]);
+  options.filters = { group: [-1, -1] };
+  assert.deepEqual([...broadside.pairs(boxes, options)], []);
+  delete options.filters;
+  options.algorithm = "none";
+  assert.throws(() => broadside.pairs(boxes, options), { code: "INVALID_SPEC" });
+});
+
 test("the smaller module has two algorithms, and takes the one for so many boxes", async () => {
   const small = await loadPairs();
   assert.deepEqual(small.algorithms(), ["brute_force", "grid"]);
