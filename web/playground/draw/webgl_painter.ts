@@ -4,6 +4,7 @@ import {
   setUniforms, type BufferInfo, type ProgramInfo,
 } from "twgl.js";
 
+import { Mark } from "../bench/protocol.ts";
 import type { Outline } from "../engine/types.ts";
 import { Batch, type Lens } from "./batch.ts";
 import { flatCamera, flatMatrix, solidMatrix } from "./camera.ts";
@@ -146,10 +147,11 @@ export class WebglPainter implements Painter {
         fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), least: 0, parts: ["edges"],
       });
     }
-    // Borders of crowds would cover what is in them.
-    const crowd = isCrowd ? 0.5 : 1;
+    // Borders of crowds would cover what is in them; the selected box and those tested against it stand out.
+    const strengthOf = (mark: number): number =>
+      isCrowd && (mark === Mark.none || mark === Mark.lit || mark === Mark.faded) ? 0.5 : 1;
     const style: Style = {
-      inks: palette.marks.flatMap((ink) => [...rgb(ink), crowd]), fills: [...fills],
+      inks: palette.marks.flatMap((ink, mark) => [...rgb(ink), strengthOf(mark)]), fills: [...fills],
       border: Math.max(1, ratio), least: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
     };
     const marks = panel.marks?.length === count ? panel.marks : painting.marks;
