@@ -1,12 +1,10 @@
-// How memory is copied and filled: by WebAssembly's instructions for it, which it has wherever it has
-// exceptions.
+// How memory is copied and filled: by WebAssembly's instructions for it, which the compiler makes of these
+// builtins, and which there are wherever there are exceptions.
 #include <cstddef>
 
 extern "C" {
 
-void* memcpy(void* to, const void* from, std::size_t size) {
-  return __builtin_memcpy(to, from, size);  // NOLINT: with -mbulk-memory and a size not known it is no call
-}
+void* memcpy(void* to, const void* from, std::size_t size) { return __builtin_memcpy(to, from, size); }
 
 void* memmove(void* to, const void* from, std::size_t size) { return __builtin_memmove(to, from, size); }
 
