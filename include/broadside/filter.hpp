@@ -38,8 +38,8 @@ constexpr bool accepts(const Filter& a, const Filter& b) noexcept {
 /// A set of pairs that never count, whatever their boxes and filters: bodies that a joint connects. Each may
 /// be named with its boxes in either order.
 ///
-/// Costs: O(1) each, and 16 to 32 bytes a pair. One thread at a time; several may read. A hash table with open
-/// addressing, linear probing and deletion by shifting back (Knuth, TAOCP 3, 6.4, algorithm R).
+/// Costs: O(1) each, and 16 to 32 bytes a pair. One thread at a time; several may read. A hash table with
+/// open addressing, linear probing and deletion by shifting back (Knuth, TAOCP 3, 6.4, algorithm R).
 class IgnoredPairs {
  public:
   /// Whether the pair was not ignored before. A box and itself are no pair, and nothing is inserted.

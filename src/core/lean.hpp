@@ -4,8 +4,9 @@
 namespace broadside::core {
 
 /// A lean build is one that is loaded with a page: it has boxes of floats and one thread, and does not
-/// explain itself. No outlines, explanations, shadows, sizes in bytes, or what became of former tunables; nothing is quarantined, and worlds have neither
-/// predicates nor user data nor snapshots. Code for those asks this, and is left out by the compiler.
+/// explain itself. No outlines, explanations, shadows, sizes in bytes, or what became of former tunables;
+/// nothing is quarantined, and worlds have neither predicates nor user data nor snapshots. Code for those
+/// asks this, and is left out by the compiler.
 #if defined(BROADSIDE_LEAN)
 inline constexpr bool is_lean = true;
 #else
