@@ -52,7 +52,7 @@ std::unique_ptr<Made> make(const std::function<std::unique_ptr<Made>(const Setti
 
 /// Whether there is such a tracker: in lean builds all algorithms have one, if they do the dimension.
 template <typename Maker>
-bool has_own_tracker(const Maker& maker) {
+bool can_track(const Maker& maker) {
   return core::is_lean || maker;
 }
 
@@ -103,13 +103,13 @@ std::unique_ptr<PairFinder<3>> make_finder(const Algorithm& algorithm, const Spe
 
 template <>
 std::unique_ptr<PairTracker<2>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
-  if (has_own_tracker(algorithm.tracker_2d)) return make<2>(algorithm.tracker_2d, algorithm, spec);
+  if (can_track(algorithm.tracker_2d)) return make<2>(algorithm.tracker_2d, algorithm, spec);
   return std::make_unique<DiffTracker<2>>(make_finder<2>(algorithm, spec));
 }
 
 template <>
 std::unique_ptr<PairTracker<3>> make_tracker(const Algorithm& algorithm, const Spec& spec) {
-  if (has_own_tracker(algorithm.tracker_3d)) return make<3>(algorithm.tracker_3d, algorithm, spec);
+  if (can_track(algorithm.tracker_3d)) return make<3>(algorithm.tracker_3d, algorithm, spec);
   return std::make_unique<DiffTracker<3>>(make_finder<3>(algorithm, spec));
 }
 
