@@ -159,9 +159,10 @@ class Progress {
     if (stage != stage_) {
       stage_ = stage;
       line_.emplace();
-      say_at_interruption(stage == OutOfCoreStage::reading
-                              ? fmt::format("{} is left, and the same command starts over in it", folder_)
-                              : fmt::format("{} is left, and the same command resumes from it", folder_));
+      // Once all boxes are read, a part that is corrupt may be read again.
+      is_read_ |= stage != OutOfCoreStage::reading;
+      say_at_interruption(fmt::format("{} is left, and the same command {}", folder_,
+                                      is_read_ ? "resumes from it" : "starts over in it"));
     }
     if (!line_) line_.emplace();
     constexpr std::array<std::string_view, 3> texts = {"reading boxes", "joining parts", "writing pairs"};
@@ -178,6 +179,7 @@ class Progress {
   std::string folder_;
   std::optional<ProgressLine> line_;
   std::optional<OutOfCoreStage> stage_;
+  bool is_read_ = false;
 };
 
 template <int D, typename Real>

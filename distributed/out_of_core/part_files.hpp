@@ -42,7 +42,10 @@ class PartFiles {
           source, [&](std::span<const Box<D, Real>> boxes, const auto& id) { distributor.add(boxes, id); });
       for (std::size_t part = 0; part < parts.size(); ++part) finish(parts[part], source, writers[part]);
     }
-    std::erase_if(parts, [this](const Part& part) { return !keeps(part); });
+    for (const Part& part : parts)
+      for (std::size_t source = 0; source < sources_ && !can_have_pairs(part); ++source)
+        folder_.remove_boxes(part, source);
+    std::erase_if(parts, [this](const Part& part) { return !can_have_pairs(part); });
     return parts;
   }
 
@@ -90,11 +93,8 @@ class PartFiles {
     part.blocks[source] = writer.blocks();
   }
 
-  /// Whether the part can have pairs. Removes its files if not.
-  bool keeps(const Part& part) const {
-    if (part.boxes[0] > 0 && (sources_ == 1 || part.boxes[1] > 0)) return true;
-    for (std::size_t source = 0; source < sources_; ++source) folder_.remove_boxes(part, source);
-    return false;
+  bool can_have_pairs(const Part& part) const noexcept {
+    return part.boxes[0] > 0 && (sources_ == 1 || part.boxes[1] > 0);
   }
 
   const WorkFolder& folder_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,13 +21,17 @@
 namespace broadside::core {
 namespace {
 
-// Thresholds: docs/lab-notes.md, "Enlarged boxes in `auto`", has the measurements.
+// Thresholds: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
 
 /// With fewer boxes, finding all pairs anew takes no longer than keeping candidates.
 constexpr std::size_t least_boxes = 512;
 
 /// Of all boxes, the part that must move before they are enlarged.
 constexpr std::size_t many_movers = 8;
+
+/// The part below which they are no longer enlarged. Hysteresis: leave a bit later than you enter, so that a
+/// count near the limit does not flip each frame.
+constexpr std::size_t few_movers = 16;
 
 /// Candidates that are tested in the time that it takes to follow a mover without tests, and each of its
 /// tests; and the frames in a row in which following would have taken less before boxes are no longer
@@ -35,85 +40,105 @@ constexpr double candidates_a_mover = 96;
 constexpr double candidates_a_test = 1.5;
 constexpr std::size_t most_calm_frames = 8;
 
-/// How far most boxes may move in a frame, over their shortest side.
-constexpr double longest_way = 0.0125;
+/// The displacement in a frame, over their shortest side, up to which boxes are enlarged.
+constexpr double largest_displacement = 0.0125;
 
-/// A margin over the way of most boxes in a frame: they stay within it for at least about so many frames. And
-/// its limits, over a box's shortest side: a large one makes far more candidates than pairs.
-constexpr double frames_within_margin = 32;
+/// A margin over that displacement: boxes stay within it for at least about so many frames. And its limits,
+/// over a box's shortest side: a large one makes far more candidates than pairs.
+constexpr double frames_within_margin = 48;
 constexpr double smallest_margin = 0.01;
 constexpr double largest_margin = 0.2;
 
-/// Boxes whose way is looked at, and which of them, in order, counts as that of most.
+/// How many displacements are sampled, and the quantile of them that counts.
 constexpr std::size_t most_sampled = 64;
-constexpr double of_most = 0.75;
+constexpr double quantile = 0.75;
 
-/// Of the changed boxes, the part that may leave their enlarged ones before the frame is a bad one, and the
-/// bad frames after which boxes are no longer enlarged.
-constexpr std::size_t many_left = 5;
-constexpr std::size_t most_bad_frames = 3;
+/// More candidates than this, a pair that holds and a box, are not kept.
+constexpr std::size_t most_candidates_a_pair = 4;
+constexpr std::size_t most_candidates_a_box = 16;
+
+/// Of the changed boxes, the part that may leave their enlarged ones, and the frames over which it is
+/// averaged: boxes that move alike leave in the same frame.
+constexpr double most_left = 0.1;
+constexpr double averaged_frames = 16;
 constexpr std::size_t shortest_pause = 16;
 constexpr std::size_t longest_pause = 1024;
 
 /// Candidates that take as long as one box of a search.
 constexpr std::size_t pairs_a_box = 8;
-constexpr std::size_t pairs_at_once = 4096;
 
 }  // namespace
 
 template <int D, typename Real>
 void MarginTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  was_enlarged_ = is_enlarged_ && goes_on_ && !change.rebuild;
+  was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild;
   if (was_enlarged_) {
     follow_enlarged(change, begun, ended);
     return;
   }
   Change<D, Real> exact = change;
-  exact.rebuild |= std::exchange(is_enlarged_, false);
+  exact.rebuild |= std::exchange(boxes_, Boxes::exact) != Boxes::exact;
   this->update_with(*tracker_, exact, begun, ended);
-  if (change.rebuild) return;
-  if (const Real margin = relative_margin_for(change); margin > 0) start(change, margin);
+  if (change.rebuild || !suits_margins(change)) return;
+  try {
+    start(change);
+  } catch (const std::bad_alloc&) {
+    // The frame itself is whole.
+    give_up(longest_pause);
+  }
 }
 
-/// The margin that suits how far boxes moved, over a box's shortest side; 0 where none does. Over the
-/// longest, the margins of thin boxes would make far more candidates than pairs.
+/// Whether many boxes moved and hardly any far; sets margins_ then. Margins are a part of a box's shortest
+/// side: by a part of the longest, thin boxes would meet many more. And at most by what boxes move, so that
+/// large ones at rest do not meet all small ones around them.
 template <int D, typename Real>
-Real MarginTracker<D, Real>::relative_margin_for(const Change<D, Real>& change) {
+bool MarginTracker<D, Real>::suits_margins(const Change<D, Real>& change) {
   const std::size_t count = change.changed.size();
-  if (change.now.size() < least_boxes || count < change.now.size() / many_movers) return 0;
+  if (change.now.size() < least_boxes || count < change.now.size() / many_movers) return false;
   if (pause_ > 0) {
     --pause_;
-    return 0;
+    return false;
   }
-  std::array<Real, most_sampled> ways;
-  std::size_t size = 0;
+  struct Displacement {
+    Real relative;
+    Real absolute;
+  };
+  std::array<Displacement, most_sampled> sampled;
   for (std::size_t i = 0; i < most_sampled; ++i) {
     const std::size_t place = index(change.changed[sampled_place(i, count)]);
     const Box<D, Real>& before = change.before[place];
     const Box<D, Real>& now = change.now[place];
-    Real way = 0;
+    Real displacement = 0;
     Real side = std::numeric_limits<Real>::infinity();
     for (int axis = 0; axis < D; ++axis) {
-      way = std::max(
-          {way, std::abs(now.min[axis] - before.min[axis]), std::abs(now.max[axis] - before.max[axis])});
+      displacement = std::max({displacement, std::abs(now.min[axis] - before.min[axis]),
+                               std::abs(now.max[axis] - before.max[axis])});
       side = std::min(side, now.max[axis] - now.min[axis]);
     }
-    // Not for absent boxes, nor for unbounded ones.
-    const Real relative = way / side;
-    ways[size++] = relative >= 0 ? relative : std::numeric_limits<Real>::infinity();
+    const Real over_side = displacement / side;
+    // Not for absent boxes, nor for those without a side.
+    sampled[i] = {over_side >= 0 ? over_side : std::numeric_limits<Real>::infinity(), displacement};
   }
-  const auto most = ways.begin() + static_cast<std::ptrdiff_t>(of_most * (most_sampled - 1));
-  std::nth_element(ways.begin(), most, ways.end());
-  if (!(*most <= static_cast<Real>(longest_way))) return 0;
-  return std::clamp(static_cast<Real>(frames_within_margin) * *most, static_cast<Real>(smallest_margin),
-                    static_cast<Real>(largest_margin));
+  const auto at = sampled.begin() + static_cast<std::ptrdiff_t>(quantile * (most_sampled - 1));
+  std::ranges::nth_element(sampled, at, {}, &Displacement::absolute);
+  const Real absolute = at->absolute;
+  std::ranges::nth_element(sampled, at, {}, &Displacement::relative);
+  // None where the boxes that are listed did not move.
+  if (!(at->relative <= static_cast<Real>(largest_displacement)) || !(absolute > 0)) return false;
+  const Real relative = std::clamp(static_cast<Real>(frames_within_margin) * at->relative,
+                                   static_cast<Real>(smallest_margin), static_cast<Real>(largest_margin));
+  margins_ = {.margin = absolute * (relative / at->relative),
+              .relative = relative,
+              .frames = 0,
+              .is_of_shortest = true};
+  return true;
 }
 
 /// Enlarges all boxes of a frame whose events are told, and finds the candidates.
 template <int D, typename Real>
-void MarginTracker<D, Real>::start(const Change<D, Real>& change, Real relative_margin) {
-  const std::optional<Statistics> statistics = this->statistics();
-  margins_ = {.margin = 0, .relative = relative_margin, .frames = 0, .is_of_shortest = true};
+void MarginTracker<D, Real>::start(const Change<D, Real>& change) {
+  Statistics statistics = this->statistics().value_or(Statistics{});
+  boxes_ = Boxes::ending;  // until all is made
   const std::size_t size = change.now.size();
   before_.assign(size, absent_box<D, Real>());
   now_.resize(size);
@@ -133,14 +158,16 @@ void MarginTracker<D, Real>::start(const Change<D, Real>& change, Real relative_
     all.flush();
   }
   sort_unique(candidates_, spare_);
-  holds_.resize(candidates_.size());
-  kernels::set_overlap_flags(change.now, std::span<const Pair>(candidates_), holds_.data());
+  test_candidates(change.now);
+  statistics.tests += this->statistics().value_or(Statistics{}).tests + candidates_.size();
+  this->count(statistics);
+  const auto pairs = static_cast<std::size_t>(std::ranges::count(holds_, std::uint8_t{1}));
+  if (candidates_.size() > most_candidates_a_pair * pairs + most_candidates_a_box * size)
+    return give_up(longest_pause);
   before_ = now_;
   flags_.assign(size, 0);
-  this->count(statistics);
-  is_enlarged_ = true;
-  goes_on_ = true;
-  bad_frames_ = 0;
+  boxes_ = Boxes::enlarged;
+  left_share_ = 0;
   calm_frames_ = 0;
   lasted_ = 0;
 }
@@ -148,6 +175,11 @@ void MarginTracker<D, Real>::start(const Change<D, Real>& change, Real relative_
 template <int D, typename Real>
 void MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, PairSink& begun,
                                              PairSink& ended) {
+  left_.clear();
+  candidate_count_ = 0;
+  changed_ = change.changed.size();
+  this->count(Statistics{});
+  if (change.changed.empty()) return;
   enlarge_anew(change);
   Statistics statistics;
   if (!left_.empty()) {
@@ -171,7 +203,7 @@ void MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, Pair
   candidate_count_ = candidates_.size();
   statistics.tests += candidate_count_;
   this->count(statistics);
-  judge(change.changed.size());
+  judge();
 }
 
 /// Sets left_ and flags_, and enlarges the boxes that are in left_.
@@ -228,17 +260,23 @@ void MarginTracker<D, Real>::change_candidates(PairSink& ended) {
   std::swap(holds_, held_);
 }
 
-/// Tests the candidates, and reports those that hold now and did not, or the other way round.
+/// Sets holds_.
 template <int D, typename Real>
-void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  std::swap(held_, holds_);
+void MarginTracker<D, Real>::test_candidates(std::span<const Box<D, Real>> boxes) {
   holds_.resize(candidates_.size());
   parallel_.start(this->workers(), candidates_.size() / pairs_a_box);
   parallel_.for_ranges(candidates_.size(), [&](Range range, std::size_t) {
     kernels::set_overlap_flags(
-        change.now, std::span<const Pair>(candidates_).subspan(range.begin, range.end - range.begin),
+        boxes, std::span<const Pair>(candidates_).subspan(range.begin, range.end - range.begin),
         holds_.data() + range.begin);
   });
+}
+
+/// Tests the candidates, and reports those that hold now and did not, or the other way round.
+template <int D, typename Real>
+void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  std::swap(held_, holds_);
+  test_candidates(change.now);
   const auto compare = [&](std::size_t i) {
     if (holds_[i] != held_[i])
       (holds_[i] != 0 ? begun : ended).add(candidates_[i].first, candidates_[i].second);
@@ -255,34 +293,34 @@ void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& beg
 
 /// Decides whether boxes stay enlarged, by how many changed and how many of them left.
 template <int D, typename Real>
-void MarginTracker<D, Real>::judge(std::size_t changed) {
+void MarginTracker<D, Real>::judge() {
   ++lasted_;
+  const auto boxes = static_cast<double>(now_.size());
   const auto candidates = static_cast<double>(candidates_.size());
-  // A mover has the candidates of two boxes: its own, and those of which it is the second.
-  const double tests = 2 * candidates / static_cast<double>(now_.size());
-  const bool is_calm =
-      static_cast<double>(changed) * (candidates_a_mover + candidates_a_test * tests) < candidates;
+  // A mover has the candidates of which it is the first, and those of which it is the second.
+  const double following =
+      static_cast<double>(changed_) * (candidates_a_mover + candidates_a_test * 2 * candidates / boxes);
+  const bool is_calm = following < candidates || changed_ < now_.size() / few_movers;
   calm_frames_ = is_calm ? calm_frames_ + 1 : 0;
-  if (left_.size() > changed / many_left && left_.size() > least_boxes / many_left)
-    ++bad_frames_;
-  else if (bad_frames_ > 0)
-    --bad_frames_;
-  if (bad_frames_ < most_bad_frames && calm_frames_ < most_calm_frames) return;
-  next_pause_ = lasted_ > next_pause_ ? shortest_pause : std::min(2 * next_pause_, longest_pause);
-  pause_ = next_pause_;
-  stop();
+  const double left = static_cast<double>(left_.size()) / static_cast<double>(changed_);
+  left_share_ += (left - left_share_) / averaged_frames;
+  if (left_share_ <= most_left && calm_frames_ < most_calm_frames) return;
+  give_up(lasted_ > next_pause_ ? shortest_pause : std::min(2 * next_pause_, longest_pause));
 }
 
-/// The other tracker gets the boxes themselves from the next frame on.
+/// From the next frame on, the other tracker gets the boxes themselves.
 template <int D, typename Real>
-void MarginTracker<D, Real>::stop() noexcept {
-  goes_on_ = false;
+void MarginTracker<D, Real>::give_up(std::size_t pause) noexcept {
+  boxes_ = Boxes::ending;
+  pause_ = next_pause_ = pause;
   before_ = {};
   now_ = {};
   flags_ = {};
   candidates_ = {};
   holds_ = {};
   held_ = {};
+  begun_ = {};
+  ended_ = {};
   spare_ = {};
 }
 
@@ -291,8 +329,8 @@ std::string MarginTracker<D, Real>::explanation() const {
   if (!was_enlarged_) return tracker_->explanation();
   return std::to_string(candidate_count_) + " pairs of boxes enlarged by " +
          text_of(std::round(1000 * static_cast<double>(margins_.relative)) / 10) +
-         " % of their shortest side were tested, since most boxes move by little and " +
-         std::to_string(left_.size()) + " left their enlarged ones";
+         " % of their shortest side were tested, since only " + std::to_string(left_.size()) + " of the " +
+         std::to_string(changed_) + " boxes that changed left their enlarged ones";
 }
 
 template <int D, typename Real>

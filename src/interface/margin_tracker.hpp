@@ -1,10 +1,11 @@
-// MarginTracker: where most boxes move and hardly any moves far, keeps the pairs of enlarged boxes and tests
+// MarginTracker: where many boxes move and hardly any moves far, keeps the pairs of enlarged boxes and tests
 // only these.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,9 +19,9 @@
 
 namespace broadside::core {
 
-/// Lets another tracker follow the boxes; while most of them move by little, lets it follow enlarged boxes
-/// instead, which change only where a box has left its own. Their pairs are the candidates, of which each
-/// frame tests all (a Verlet list: L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). The
+/// Lets another tracker follow the boxes; while many of them move and hardly any far, lets it follow enlarged
+/// boxes instead, which change only where a box has left its own. Their pairs are the candidates, of which
+/// each frame tests all (a Verlet list: L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). The
 /// events are the same either way.
 ///
 /// Cost of a frame with enlarged boxes: a comparison a changed box, a test a candidate, and the other
@@ -37,23 +38,30 @@ class MarginTracker final : public PairTracker<D, Real> {
   std::size_t algorithm_bytes() const noexcept override;
   /// An index over enlarged boxes would answer queries wrongly.
   const BoxIndex<D, Real>* algorithm_index() const noexcept override {
-    return is_enlarged_ ? nullptr : this->index_of(*tracker_);
+    return boxes_ == Boxes::exact ? this->index_of(*tracker_) : nullptr;
   }
 
-  Real relative_margin_for(const Change<D, Real>& change);
-  void start(const Change<D, Real>& change, Real relative_margin);
-  void stop() noexcept;
+  bool suits_margins(const Change<D, Real>& change);
+  void start(const Change<D, Real>& change);
+  void give_up(std::size_t pause) noexcept;
   void follow_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void enlarge_anew(const Change<D, Real>& change);
   void change_candidates(PairSink& ended);
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
-  void judge(std::size_t changed);
+  void test_candidates(std::span<const Box<D, Real>> boxes);
+  void judge();
+
+  /// The boxes that the other tracker knows.
+  enum class Boxes : std::uint8_t {
+    exact,
+    enlarged,
+    ending  ///< enlarged ones of former frames: it has to be rebuilt
+  };
 
   std::unique_ptr<PairTracker<D, Real>> tracker_;
   Margins<D, Real> margins_{};
-  bool is_enlarged_ = false;   // whether the other tracker has enlarged boxes
-  bool goes_on_ = false;       // whether it gets some in the next frame
-  bool was_enlarged_ = false;  // whether it got some in the last one
+  Boxes boxes_ = Boxes::exact;
+  bool was_enlarged_ = false;  // whether the last update tested candidates
 
   std::vector<Box<D, Real>> before_;  // enlarged, of the frame before
   std::vector<Box<D, Real>> now_;
@@ -67,15 +75,16 @@ class MarginTracker final : public PairTracker<D, Real> {
   std::vector<Pair> spare_;
   Parallel parallel_;
 
-  std::size_t candidate_count_ = 0;  // that were tested in the last frame
-  std::size_t bad_frames_ = 0;       // in which too many boxes left
+  std::size_t changed_ = 0;          // boxes, in the last update with candidates
+  std::size_t candidate_count_ = 0;  // candidates that it tested
+  double left_share_ = 0;            // of the changed boxes, on average
   std::size_t calm_frames_ = 0;      // in a row, in which few boxes changed
-  std::size_t pause_ = 0;            // frames until the next try
+  std::size_t pause_ = 1;            // frames with many movers until the next try
   std::size_t next_pause_ = 0;       // hysteresis: grows with each try that did not last
   std::size_t lasted_ = 0;           // frames of this try
 };
 
-/// An AdaptiveTracker, whose boxes are enlarged while most of them move by little; not where `update` asks
+/// An AdaptiveTracker, whose boxes are enlarged while many move and hardly any far; not where `update` asks
 /// for one way, nor in lean builds.
 template <int D, typename Real>
 std::unique_ptr<PairTracker<D, Real>> adaptive_tracker(

@@ -55,7 +55,7 @@ TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
 template <int D>
 std::string chosen_for_a_pile() {
   const lab::NamedScene named = lab::find_scene("pile");
-  const History<D> history = lab::make_history<D>(named.scene, named.spec, {.boxes = 5'051, .frames = 3});
+  const History<D> history = lab::make_history<D>(named.scene, named.spec, {.boxes = 5'051, .frames = 6});
   const auto tracker = make_tracker<D>("auto");
   PairCounter none;
   Replay<D> replay(history);

@@ -96,7 +96,7 @@ template <int D, typename Real>
 void live(const std::string& spec, std::size_t threads) {
   TremblingBoxes<D, Real> world(700, 5);
   const auto tracker = make_tracker<D, Real>(spec);
-  tracker->set_workers({.threads = threads, .executor = standard_executor()});
+  tracker->set_workers({.threads = threads, .executor = standard_executor(), .boxes_per_thread = 1});
   const auto expected = make_tracker<D, Real>("brute_force:update=rebuild");
   std::vector<Filter> filters;
   std::size_t enlarged = 0;
@@ -203,9 +203,29 @@ TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
     return is;
   };
   EXPECT_TRUE(is_ever_enlarged(2000, 0.005F, 1));
+  EXPECT_TRUE(is_ever_enlarged(2000, 0.005F, 7));
+  EXPECT_FALSE(is_ever_enlarged(2000, 0, 1)) << "listed, and at rest";
   EXPECT_FALSE(is_ever_enlarged(2000, 0.1F, 1));
   EXPECT_FALSE(is_ever_enlarged(300, 0.005F, 1));
   EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 10));
+}
+
+TEST(MarginTracker, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
+  // Small boxes tremble beside large ones on top of each other, which rest.
+  TremblingBoxes<2, float> world(2000, 4);
+  for (std::size_t i = 0; i < 50; ++i) world.rest[i] = {{-1000, -500}, {-1, 500}};
+  const auto tracker = make_tracker<2>("auto");
+  std::int64_t pairs = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    world.tremble();
+    for (std::size_t i = 0; i < 50; ++i) world.boxes[i] = world.rest[i];
+    PairCounter begun;
+    PairCounter ended;
+    tracker->update({world.boxes, world.all()}, begun, ended);
+    pairs += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
+  }
+  ASSERT_TRUE(is_enlarged(tracker->explanation())) << tracker->explanation();
+  EXPECT_LT(tracker->statistics()->tests, 2 * (static_cast<std::uint64_t>(pairs) + world.boxes.size()));
 }
 
 TEST(MarginTracker, EnlargesThinBoxesByTheirThicknessOnly) {
