@@ -16,6 +16,7 @@
 #include "core/number_text.hpp"
 #include "core/sample.hpp"
 #include "core/sort_pairs.hpp"
+#include "interface/pair_difference.hpp"
 #include "kernels/overlap_flags.hpp"
 
 namespace broadside::core {
@@ -31,7 +32,7 @@ constexpr std::size_t many_movers = 8;
 
 /// The part below which they are no longer enlarged. Hysteresis: leave a bit later than you enter, so that a
 /// count near the limit does not flip each frame.
-constexpr std::size_t few_movers = 16;
+constexpr std::size_t too_few_movers = 16;
 
 /// Candidates that are tested in the time that it takes to follow a mover without tests, and each of its
 /// tests; and the frames in a row in which following would have taken less before boxes are no longer
@@ -63,9 +64,6 @@ constexpr double most_left = 0.1;
 constexpr double averaged_frames = 16;
 constexpr std::size_t shortest_pause = 16;
 constexpr std::size_t longest_pause = 1024;
-
-/// Candidates that take as long as one box of a search.
-constexpr std::size_t pairs_a_box = 8;
 
 }  // namespace
 
@@ -300,7 +298,7 @@ void MarginTracker<D, Real>::judge() {
   // A mover has the candidates of which it is the first, and those of which it is the second.
   const double following =
       static_cast<double>(changed_) * (candidates_a_mover + candidates_a_test * 2 * candidates / boxes);
-  const bool is_calm = following < candidates || changed_ < now_.size() / few_movers;
+  const bool is_calm = following < candidates || changed_ < now_.size() / too_few_movers;
   calm_frames_ = is_calm ? calm_frames_ + 1 : 0;
   const double left = static_cast<double>(left_.size()) / static_cast<double>(changed_);
   left_share_ += (left - left_share_) / averaged_frames;

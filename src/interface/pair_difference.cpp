@@ -14,9 +14,6 @@ namespace {
 /// Pairs that one of several threads compares at a time.
 constexpr std::size_t pairs_at_once = 4096;
 
-/// Pairs that take as long as one box of a search.
-constexpr std::size_t pairs_a_box = 8;
-
 /// Whether a filter has changed: then a pair may differ whose boxes overlap in both frames.
 template <int D, typename Real>
 bool has_changed_filter(const Change<D, Real>& change) {

@@ -1,6 +1,7 @@
 // The difference between the pairs of two frames.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "broadside/pair.hpp"
@@ -9,6 +10,9 @@
 #include "core/parallel.hpp"
 
 namespace broadside::core {
+
+/// Pairs that are tested in the time that a search takes for a box.
+inline constexpr std::size_t pairs_a_box = 8;
 
 /// Writes what began and what ended, given `found`, all pairs that overlap now, and `kept`, all those that
 /// held in the frame before and perhaps others, each once or more often.
