@@ -55,8 +55,11 @@ const std::vector<Rule>& rules() {
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"distributed/out_of_core/",
-       library + R"(|"[a-z_]+\.hpp"|<nlohmann/json\.hpp>|<xxhash\.h>|<(sys/)?[a-z]+\.h>)"},
-      {"distributed/mpi/", library + R"(|"[a-z_]+\.hpp"|<mpi\.h>)"},
+       library +
+           R"(|"(blocks|box_file|distributor|pair_runs|part_files|part_join|sources|work_folder)\.hpp")" +
+           R"(|<nlohmann/json\.hpp>|<xxhash\.h>|<(sys/)?[a-z]+\.h>)"},
+      {"distributed/mpi/",
+       library + R"(|"(communicator|cuts|followed_part|owned_boxes)\.hpp")" + R"(|<mpi\.h>)"},
       {"distributed/include/broadside/distributed_world", library + R"(|<mpi\.h>)"},
       {"distributed/include/broadside/mpi", library + R"(|<mpi\.h>)"},
       {"distributed/", library},
