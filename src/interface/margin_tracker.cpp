@@ -118,9 +118,11 @@ bool MarginTracker<D, Real>::suits_margins(const Change<D, Real>& change) {
     sampled[i] = {over_side >= 0 ? over_side : std::numeric_limits<Real>::infinity(), displacement};
   }
   const auto at = sampled.begin() + static_cast<std::ptrdiff_t>(quantile * (most_sampled - 1));
-  std::ranges::nth_element(sampled, at, {}, &Displacement::absolute);
+  std::nth_element(sampled.begin(), at, sampled.end(),
+                   [](const auto& a, const auto& b) { return a.absolute < b.absolute; });
   const Real absolute = at->absolute;
-  std::ranges::nth_element(sampled, at, {}, &Displacement::relative);
+  std::nth_element(sampled.begin(), at, sampled.end(),
+                   [](const auto& a, const auto& b) { return a.relative < b.relative; });
   // None where the boxes that are listed did not move.
   if (!(at->relative <= static_cast<Real>(largest_displacement)) || !(absolute > 0)) return false;
   const Real relative = std::clamp(static_cast<Real>(frames_within_margin) * at->relative,
