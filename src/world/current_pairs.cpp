@@ -23,8 +23,8 @@ void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair
     i += static_cast<std::size_t>(!ends);
     j += static_cast<std::size_t>(ends);
   }
-  out = std::ranges::copy(begun.subspan(i), out).out;
-  std::ranges::copy(ended.subspan(j), out);
+  std::copy(ended.begin() + static_cast<std::ptrdiff_t>(j), ended.end(),
+            std::copy(begun.begin() + static_cast<std::ptrdiff_t>(i), begun.end(), out));
 }
 
 Pair slots(const HandlePair& pair) noexcept { return {BoxId{pair.first.slot}, BoxId{pair.second.slot}}; }
@@ -96,7 +96,9 @@ std::size_t CurrentPairs::keep_toggled(Generations generations) {
       log_[toggled++] = pair;
       continue;
     }
-    const auto place = std::ranges::lower_bound(pairs_, pair, {}, slots);
+    const auto place =
+        std::lower_bound(pairs_.begin(), pairs_.end(), pair,
+                         [](const HandlePair& kept, Pair searched) { return slots(kept) < searched; });
     if (place != pairs_.end() && slots(*place) == pair) *place = handles(pair, generations);
   }
   return toggled;
