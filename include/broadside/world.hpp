@@ -298,8 +298,8 @@ class BROADSIDE_PUBLIC World {
   /// handle that is not in the world leaves out nothing. Rays and cast boxes are Ray and BoxCast.
   ///
   /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
-  /// update, and does not enlarge them), the queries use it. Otherwise the first one builds an index, which follows the boxes from then
-  /// on, and each one after changes pays for what changed.
+  /// update, and does not enlarge them), the queries use it. Otherwise the first one builds an index, which
+  /// follows the boxes from then on, and each one after changes pays for what changed.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* query_filter = nullptr,
                    const Handle& except = {}) const {
