@@ -395,6 +395,14 @@ BROADSIDE_API broadside_status broadside_world_nearest(const broadside_world* wo
                                                        broadside_neighbour* neighbours, size_t room,
                                                        size_t* count, broadside_error* error);
 
+/** Those of them that are not farther away than `max_distance`, which is 0, more, or infinity, and is rounded to
+ * the world's type: distance_squared <= max_distance * max_distance, rounded likewise. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_nearest_within(const broadside_world* world, const void* point,
+                                                              double max_distance,
+                                                              const broadside_query* query,
+                                                              broadside_neighbour* neighbours, size_t room,
+                                                              size_t* count, broadside_error* error);
+
 /** An index over an array of boxes, for queries alone. */
 typedef struct broadside_index broadside_index;
 
@@ -423,6 +431,11 @@ BROADSIDE_API broadside_status broadside_index_nearest(const broadside_index* in
                                                        const broadside_query* query,
                                                        broadside_neighbour* neighbours, size_t room,
                                                        size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_nearest_within(const broadside_index* index, const void* point,
+                                                              double max_distance,
+                                                              const broadside_query* query,
+                                                              broadside_neighbour* neighbours, size_t room,
+                                                              size_t* count, broadside_error* error);
 
 #ifdef __cplusplus
 }

@@ -120,12 +120,12 @@ broadside_status first_hit(const Queried* queried, const char* name, const void*
   });
 }
 
-broadside_status nearest(const Queried* queried, const char* name, const void* point,
+broadside_status nearest(const Queried* queried, const char* name, const void* point, double max_distance,
                          const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
                          std::size_t* count, broadside_error* error) noexcept {
   return guarded(error, [&] {
     Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
-    required(queried, name).nearest(point, room, Eligible(query), buffer);
+    required(queried, name).nearest(point, room, max_distance, Eligible(query), buffer);
     buffer.finish();
   });
 }

@@ -275,7 +275,7 @@ class Queried {
                     Buffer<broadside_hit>& hits) const = 0;
   virtual std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
                                                  const Eligible& eligible) const = 0;
-  virtual void nearest(const void* point, std::size_t count, const Eligible& eligible,
+  virtual void nearest(const void* point, std::size_t count, double max_distance, const Eligible& eligible,
                        Buffer<broadside_neighbour>& neighbours) const = 0;
 };
 
@@ -286,7 +286,7 @@ broadside_status hits(const Queried* queried, const char* name, const void* box,
 broadside_status first_hit(const Queried* queried, const char* name, const void* box, const void* direction,
                            double t_max, const broadside_query* query, broadside_hit* hit, int* found,
                            broadside_error* error) noexcept;
-broadside_status nearest(const Queried* queried, const char* name, const void* point,
+broadside_status nearest(const Queried* queried, const char* name, const void* point, double max_distance,
                          const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
                          std::size_t* count, broadside_error* error) noexcept;
 

@@ -41,13 +41,14 @@ class KeptIndex final : public broadside_index {
     return hit ? std::optional(hit_of(*hit)) : std::nullopt;
   }
 
-  void nearest(const void* point, std::size_t count, const Eligible& eligible,
+  void nearest(const void* point, std::size_t count, double max_distance, const Eligible& eligible,
                Buffer<broadside_neighbour>& neighbours) const override {
-    std::vector<Neighbour<Real>> found;
-    index_->nearest(value_of<Point<D, Real>>(point, "point"), count, found, eligible.filter(),
-                    std::numeric_limits<Real>::infinity(), eligible.place);
-    for (const Neighbour<Real>& neighbour : found)
-      neighbours.add({{index(neighbour.box), 0}, static_cast<double>(neighbour.distance_squared)});
+    index_->nearest(
+        value_of<Point<D, Real>>(point, "point"), count,
+        [&](const Neighbour<Real>& neighbour) {
+          neighbours.add({{index(neighbour.box), 0}, static_cast<double>(neighbour.distance_squared)});
+        },
+        {eligible.filter(), eligible.place, static_cast<Real>(max_distance)});
   }
 
  private:
@@ -106,5 +107,13 @@ broadside_status broadside_index_first_hit(const broadside_index* index, const v
 broadside_status broadside_index_nearest(const broadside_index* index, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return c::nearest(index, "index", point, query, neighbours, room, count, error);
+  return c::nearest(index, "index", point, std::numeric_limits<double>::infinity(), query, neighbours, room,
+                    count, error);
+}
+
+broadside_status broadside_index_nearest_within(const broadside_index* index, const void* point,
+                                                double max_distance, const broadside_query* query,
+                                                broadside_neighbour* neighbours, size_t room, size_t* count,
+                                                broadside_error* error) {
+  return c::nearest(index, "index", point, max_distance, query, neighbours, room, count, error);
 }

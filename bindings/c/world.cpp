@@ -171,11 +171,11 @@ class KeptWorld final : public broadside_world {
     return broadside_hit{handle_of(hit->handle), static_cast<double>(hit->t_enter)};
   }
 
-  void nearest(const void* point, std::size_t count, const Eligible& eligible,
+  void nearest(const void* point, std::size_t count, double max_distance, const Eligible& eligible,
                Buffer<broadside_neighbour>& neighbours) const override {
     std::vector<HandleNeighbour<Real>> found;
-    world_.nearest(value_of<Point<D, Real>>(point, "point"), count, found, eligible.filter(),
-                   eligible.handle.value_or(Handle{}));
+    world_.nearest(value_of<Point<D, Real>>(point, "point"), count, found,
+                   {eligible.filter(), eligible.handle, static_cast<Real>(max_distance)});
     for (const HandleNeighbour<Real>& neighbour : found)
       neighbours.add({handle_of(neighbour.handle), static_cast<double>(neighbour.distance_squared)});
   }
@@ -370,5 +370,13 @@ broadside_status broadside_world_first_hit(const broadside_world* world, const v
 broadside_status broadside_world_nearest(const broadside_world* world, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return c::nearest(world, "world", point, query, neighbours, room, count, error);
+  return c::nearest(world, "world", point, std::numeric_limits<double>::infinity(), query, neighbours, room,
+                    count, error);
+}
+
+broadside_status broadside_world_nearest_within(const broadside_world* world, const void* point,
+                                                double max_distance, const broadside_query* query,
+                                                broadside_neighbour* neighbours, size_t room, size_t* count,
+                                                broadside_error* error) {
+  return c::nearest(world, "world", point, max_distance, query, neighbours, room, count, error);
 }

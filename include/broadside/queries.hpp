@@ -102,7 +102,26 @@ struct Neighbour {
   friend constexpr bool operator==(const Neighbour&, const Neighbour&) = default;
 };
 
-/// Takes what a query finds, BoxIds or Hits, in chunks.
+/// Which boxes a query may find; all, unless told otherwise. `Id` is what names a box: a BoxId, or a Handle.
+template <typename Id>
+struct QueryOptions {
+  const Filter* filter = nullptr;  ///< only boxes whose filters accept this one
+  std::optional<Id> except{};      ///< a box that is not found, such as the one that a ray starts from
+};
+
+/// Which boxes nearest() may find; all, unless told otherwise.
+template <typename Id, typename Real>
+struct NearestOptions {
+  const Filter* filter = nullptr;  ///< as in QueryOptions
+  std::optional<Id> except{};
+
+  /// Boxes that are farther away are not found; 0, more, or infinity. A box is near enough if
+  /// distance_squared() <= max_distance * max_distance, the product rounded to Real. So one whose distance
+  /// along one axis is max_distance is found, and with 0 those that contain the point are.
+  Real max_distance = std::numeric_limits<Real>::infinity();
+};
+
+/// Takes what a query finds, BoxIds, Hits or Neighbours, in chunks.
 template <typename Found>
 class Visitor {
  public:
@@ -121,14 +140,16 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// Answers queries to the boxes of a frame, exactly as the definitions above and in box.hpp say.
 ///
 /// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
-/// With a `query_filter`, only boxes whose filter accepts it are. Results have an order that the boxes'
-/// history fixes, and that means nothing but where it is said. A query takes some tens of nanoseconds and
-/// what it finds; none allocates. Each throws InvalidQuery if something asked about is NaN, or infinite where
-/// it must not be, and what the visitor throws.
+/// Results have an order that the boxes' history fixes, and that means nothing but where it is said. A query
+/// takes some tens of nanoseconds and what it finds; none allocates, but nearest() where it finds more than
+/// 64. Each throws InvalidQuery if something asked about is NaN, or infinite where it must not be, and what
+/// the visitor throws.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC BoxIndex {
  public:
   using Point = broadside::Point<D, Real>;
+  using QueryOptions = broadside::QueryOptions<BoxId>;
+  using NearestOptions = broadside::NearestOptions<BoxId, Real>;
 
   BoxIndex() = default;
   BoxIndex(const BoxIndex&) = delete;
@@ -142,71 +163,97 @@ class BROADSIDE_PUBLIC BoxIndex {
   void update(const Frame<D, Real>& frame);
 
   /// The boxes that overlap `box`; false if the visitor ended the search. Nothing overlaps an absent box.
-  bool overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const Filter* query_filter = nullptr,
-                   std::optional<BoxId> except = {}) const;
+  bool overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const QueryOptions& options = {}) const;
 
   /// The boxes that contain the point, which may be infinite.
-  bool containing(const Point& point, Visitor<BoxId>& visitor, const Filter* query_filter = nullptr,
-                  std::optional<BoxId> except = {}) const {
-    return overlapping({point, point}, visitor, query_filter, except);
+  bool containing(const Point& point, Visitor<BoxId>& visitor, const QueryOptions& options = {}) const {
+    return overlapping({point, point}, visitor, options);
   }
 
   /// All boxes that the moved box, or the ray, meets.
-  bool hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor, const Filter* query_filter = nullptr,
-            std::optional<BoxId> except = {}) const;
-  bool hits(const Ray<D, Real>& ray, Visitor<Hit<Real>>& visitor, const Filter* query_filter = nullptr,
-            std::optional<BoxId> except = {}) const {
-    return hits(as_cast(ray), visitor, query_filter, except);
+  bool hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
+            const QueryOptions& options = {}) const;
+  bool hits(const Ray<D, Real>& ray, Visitor<Hit<Real>>& visitor, const QueryOptions& options = {}) const {
+    return hits(as_cast(ray), visitor, options);
   }
 
   /// The one that it meets first: of the least t_enter, of several such the one with the least id.
-  std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast, const Filter* query_filter = nullptr,
-                                     std::optional<BoxId> except = {}) const;
-  std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray, const Filter* query_filter = nullptr,
-                                     std::optional<BoxId> except = {}) const {
-    return first_hit(as_cast(ray), query_filter, except);
+  std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast, const QueryOptions& options = {}) const;
+  std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray, const QueryOptions& options = {}) const {
+    return first_hit(as_cast(ray), options);
   }
 
-  /// Sets `found` to the `count` boxes nearest to the point, or all if there are fewer: by distance, equally
-  /// distant ones by id. Those farther than `max_distance_squared`, a square, do not count.
+  /// The `count` boxes nearest to the point, or all if there are fewer, in one chunk: by distance, equally
+  /// distant ones by id.
+  bool nearest(const Point& point, std::size_t count, Visitor<Neighbour<Real>>& visitor,
+               const NearestOptions& options = {}) const;
+
+  /// The same in a vector: a new one, or `found`, which is emptied first.
+  std::vector<Neighbour<Real>> nearest(const Point& point, std::size_t count,
+                                       const NearestOptions& options = {}) const {
+    std::vector<Neighbour<Real>> found;
+    nearest(point, count, found, options);
+    return found;
+  }
   void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
-               const Filter* query_filter = nullptr,
-               Real max_distance_squared = std::numeric_limits<Real>::infinity(),
-               std::optional<BoxId> except = {}) const;
+               const NearestOptions& options = {}) const {
+    found.clear();
+    nearest(
+        point, count, [&found](const Neighbour<Real>& one) { found.push_back(one); }, options);
+  }
 
-  /// The same with a function for each BoxId or Hit.
+  /// The same with a function for each BoxId, Hit or Neighbour.
   template <VisitFunction<BoxId> Function>
-  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* query_filter = nullptr,
-                   std::optional<BoxId> except = {}) const {
+  bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
     Calls<BoxId, Function> calls(function);
-    return overlapping(box, static_cast<Visitor<BoxId>&>(calls), query_filter, except);
+    return overlapping(box, static_cast<Visitor<BoxId>&>(calls), options);
   }
   template <VisitFunction<BoxId> Function>
-  bool containing(const Point& point, Function&& function, const Filter* query_filter = nullptr,
-                  std::optional<BoxId> except = {}) const {
-    return overlapping({point, point}, function, query_filter, except);
+  bool containing(const Point& point, Function&& function, const QueryOptions& options = {}) const {
+    return overlapping({point, point}, function, options);
   }
   template <typename Shape, VisitFunction<Hit<Real>> Function>
-  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* query_filter = nullptr,
-            std::optional<BoxId> except = {}) const {
+  bool hits(const Shape& ray_or_cast, Function&& function, const QueryOptions& options = {}) const {
     Calls<Hit<Real>, Function> calls(function);
-    return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(calls), query_filter, except);
+    return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(calls), options);
+  }
+  template <VisitFunction<Neighbour<Real>> Function>
+  bool nearest(const Point& point, std::size_t count, Function&& function,
+               const NearestOptions& options = {}) const {
+    Calls<Neighbour<Real>, Function> calls(function);
+    return nearest(point, count, static_cast<Visitor<Neighbour<Real>>&>(calls), options);
+  }
+
+  /// The form of version 0.2: the filter and the box left out, one by one.
+  template <typename Function>
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* filter,
+                   std::optional<BoxId> except = {}) const {
+    return overlapping(box, function, QueryOptions{filter, except});
+  }
+  template <typename Function>
+  bool containing(const Point& point, Function&& function, const Filter* filter,
+                  std::optional<BoxId> except = {}) const {
+    return overlapping({point, point}, function, QueryOptions{filter, except});
+  }
+  template <typename Shape, typename Function>
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* filter,
+            std::optional<BoxId> except = {}) const {
+    return hits(ray_or_cast, function, QueryOptions{filter, except});
+  }
+  template <typename Shape>
+  std::optional<Hit<Real>> first_hit(const Shape& ray_or_cast, const Filter* filter,
+                                     std::optional<BoxId> except = {}) const {
+    return first_hit(ray_or_cast, QueryOptions{filter, except});
   }
 
   /// The bytes held.
   std::size_t bytes() const noexcept { return own_filters_.capacity() * sizeof(Filter) + index_bytes(); }
 
  protected:
-  /// Which boxes a query may find.
-  struct Eligible {
-    const Filter* query_filter = nullptr;  ///< null: all
-    std::optional<BoxId> except{};
-  };
-
-  bool may_find(BoxId id, const Eligible& eligible) const noexcept {
-    if (eligible.except && id == *eligible.except) return false;
-    return eligible.query_filter == nullptr ||
-           accepts(*eligible.query_filter, filters_.empty() ? Filter{} : filters_[index(id)]);
+  bool may_find(BoxId id, const QueryOptions& options) const noexcept {
+    if (options.except && id == *options.except) return false;
+    return options.filter == nullptr ||
+           accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
   }
 
   /// For an index whose boxes a tracker keeps up to date, instead of update(): these are their filters, which
@@ -244,13 +291,13 @@ class BROADSIDE_PUBLIC BoxIndex {
 
   /// Likewise, the questions being valid; the box is not absent.
   virtual bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                                const Eligible& eligible) const = 0;
+                                const QueryOptions& options) const = 0;
   virtual bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                         const Eligible& eligible) const = 0;
+                         const QueryOptions& options) const = 0;
   virtual std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast,
-                                                  const Eligible& eligible) const = 0;
-  virtual void find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                            std::vector<Neighbour<Real>>& found, const Eligible& eligible) const = 0;
+                                                  const QueryOptions& options) const = 0;
+  virtual bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
+                            Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const = 0;
   virtual std::size_t index_bytes() const noexcept = 0;
 
   std::span<const Filter> filters_;  // of the last frame; empty if it had none

@@ -292,42 +292,77 @@ class BROADSIDE_PUBLIC World {
   /// between two sets, whose memory is kept for the next join.
   void join(const World& other, std::vector<HandlePair>& pairs) const;
 
+  using QueryOptions = broadside::QueryOptions<Handle>;
+  using NearestOptions = broadside::NearestOptions<Handle, Real>;
+
   /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
   /// whose costs and exceptions they have. `function` takes a Handle, or a Handle and its t_enter; the search
-  /// ends when it returns false. The box `except` is not found, such as the one that a ray starts from; a
-  /// handle that is not in the world leaves out nothing. Rays and cast boxes are Ray and BoxCast.
+  /// ends when it returns false. As the box that is not found, a handle that is not in the world leaves out
+  /// nothing. Rays and cast boxes are Ray and BoxCast.
   ///
   /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
   /// update, and does not enlarge them), the queries use it. Otherwise the first one builds an index, which
   /// follows the boxes from then on, and each one after changes pays for what changed.
   template <typename Function>
-  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* query_filter = nullptr,
-                   const Handle& except = {}) const {
-    return box_index().overlapping(
-        box, [&](BoxId id) { return function(handle_of(id)); }, query_filter, slot_of(except));
+  bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
+    return box_index().overlapping(box, [&](BoxId id) { return function(handle_of(id)); },
+                                   {options.filter, slot_of(options.except)});
   }
   template <typename Function>
-  bool containing(const Point<D, Real>& point, Function&& function, const Filter* query_filter = nullptr,
-                  const Handle& except = {}) const {
-    return overlapping({point, point}, function, query_filter, except);
+  bool containing(const Point<D, Real>& point, Function&& function, const QueryOptions& options = {}) const {
+    return overlapping({point, point}, function, options);
   }
   template <typename Shape, typename Function>
-  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* query_filter = nullptr,
-            const Handle& except = {}) const {
+  bool hits(const Shape& ray_or_cast, Function&& function, const QueryOptions& options = {}) const {
     const auto call = [&](const Hit<Real>& hit) { return function(handle_of(hit.box), hit.t_enter); };
-    return box_index().hits(ray_or_cast, call, query_filter, slot_of(except));
+    return box_index().hits(ray_or_cast, call, {options.filter, slot_of(options.except)});
   }
   template <typename Shape>
-  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* query_filter = nullptr,
-                                           const Handle& except = {}) const {
-    const std::optional<Hit<Real>> hit = box_index().first_hit(ray_or_cast, query_filter, slot_of(except));
+  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const QueryOptions& options = {}) const {
+    const std::optional<Hit<Real>> hit =
+        box_index().first_hit(ray_or_cast, {options.filter, slot_of(options.except)});
     if (!hit) return std::nullopt;
     return HandleHit<Real>{handle_of(hit->box), hit->t_enter};
   }
 
-  /// Sets `found` to the nearest boxes, as BoxIndex::nearest() does; equally distant ones by slot.
+  /// The `count` nearest boxes, or all if there are fewer, as BoxIndex::nearest() finds them; equally distant
+  /// ones by slot. In a new vector, or in `found`, which is emptied first.
+  std::vector<HandleNeighbour<Real>> nearest(const Point<D, Real>& point, std::size_t count,
+                                             const NearestOptions& options = {}) const {
+    std::vector<HandleNeighbour<Real>> found;
+    nearest(point, count, found, options);
+    return found;
+  }
   void nearest(const Point<D, Real>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
-               const Filter* query_filter = nullptr, const Handle& except = {}) const;
+               const NearestOptions& options = {}) const {
+    found.clear();
+    const auto add = [&](const Neighbour<Real>& one) {
+      found.push_back({handle_of(one.box), one.distance_squared});
+    };
+    box_index().nearest(point, count, add, {options.filter, slot_of(options.except), options.max_distance});
+  }
+
+  /// The form of version 0.2: the filter and the box left out, one by one.
+  template <typename Function>
+  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* filter,
+                   const Handle& except = {}) const {
+    return overlapping(box, function, QueryOptions{filter, except});
+  }
+  template <typename Function>
+  bool containing(const Point<D, Real>& point, Function&& function, const Filter* filter,
+                  const Handle& except = {}) const {
+    return overlapping({point, point}, function, QueryOptions{filter, except});
+  }
+  template <typename Shape, typename Function>
+  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* filter,
+            const Handle& except = {}) const {
+    return hits(ray_or_cast, function, QueryOptions{filter, except});
+  }
+  template <typename Shape>
+  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* filter,
+                                           const Handle& except = {}) const {
+    return first_hit(ray_or_cast, QueryOptions{filter, except});
+  }
 
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
   /// the world changes.
@@ -390,8 +425,8 @@ class BROADSIDE_PUBLIC World {
   struct State;
 
   /// The slot of a box that is in the world.
-  std::optional<BoxId> slot_of(const Handle& handle) const noexcept {
-    return contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;
+  std::optional<BoxId> slot_of(const std::optional<Handle>& handle) const noexcept {
+    return handle && contains(*handle) ? std::optional(BoxId{handle->slot}) : std::nullopt;
   }
 
   std::unique_ptr<State> state_;

@@ -94,50 +94,51 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                                    const Filter* query_filter, std::optional<BoxId> except) const {
+                                    const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
     throw InvalidQuery(core::fault_of(box, "the box or point asked about", true));
   }
   if (dirty_) return true;
-  if (!environment.is_foreign()) return find_overlapping(box, visitor, {query_filter, except});
+  if (!environment.is_foreign()) return find_overlapping(box, visitor, options);
   CallersVisitor callers(visitor);
-  return find_overlapping(box, callers, {query_filter, except});
+  return find_overlapping(box, callers, options);
 }
 
 template <int D, typename Real>
 bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                             const Filter* query_filter, std::optional<BoxId> except) const {
+                             const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
   check(cast);
   if (dirty_) return true;
-  if (!environment.is_foreign()) return find_hits(cast, visitor, {query_filter, except});
+  if (!environment.is_foreign()) return find_hits(cast, visitor, options);
   CallersVisitor callers(visitor);
-  return find_hits(cast, callers, {query_filter, except});
+  return find_hits(cast, callers, options);
 }
 
 template <int D, typename Real>
 std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& cast,
-                                                      const Filter* query_filter,
-                                                      std::optional<BoxId> except) const {
+                                                      const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
   check(cast);
-  return dirty_ ? std::nullopt : find_first_hit(cast, {query_filter, except});
+  return dirty_ ? std::nullopt : find_first_hit(cast, options);
 }
 
 template <int D, typename Real>
-void BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
-                                const Filter* query_filter, Real max_distance_squared,
-                                std::optional<BoxId> except) const {
+bool BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, Visitor<Neighbour<Real>>& visitor,
+                                const NearestOptions& options) const {
   const core::DefaultEnvironment environment;
   for (const Real coordinate : point) {
     if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
   }
-  if (!(max_distance_squared >= 0))
-    refuse("the square of the greatest distance", &max_distance_squared, 1, "0, more, or infinity");
-  found.clear();
-  if (count > 0 && !dirty_) find_nearest(point, count, max_distance_squared, found, {query_filter, except});
+  if (!(options.max_distance >= 0)) refuse("max_distance", &options.max_distance, 1, "0, more, or infinity");
+  if (count == 0 || dirty_) return true;
+  const Real max_squared = options.max_distance * options.max_distance;
+  const QueryOptions eligible{options.filter, options.except};
+  if (!environment.is_foreign()) return find_nearest(point, count, max_squared, visitor, eligible);
+  CallersVisitor callers(visitor);
+  return find_nearest(point, count, max_squared, callers, eligible);
 }
 
 template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;

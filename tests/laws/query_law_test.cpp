@@ -202,20 +202,30 @@ class QueryLaw : public testing::Test {
   template <typename Counts>
   void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const Point& point,
                       const Filter* filter, std::optional<BoxId> except, Counts counts) {
-    constexpr Real infinity = std::numeric_limits<Real>::infinity();
     const std::size_t count = rng_.one_in(10) ? boxes.size() : rng_.below(12);
-    const Real max_distance_squared = rng_.one_in(3) ? Real(rng_.whole(0, 9)) : infinity;
+    const Real max_distance = any_distance(boxes, point);
     std::vector<Neighbour<Real>> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!counts(i)) continue;
       const Real distance = distance_squared(point, boxes[i]);
-      if (distance <= max_distance_squared) expected.push_back({BoxId(i), distance});
+      if (distance <= max_distance * max_distance) expected.push_back({BoxId(i), distance});
     }
     std::ranges::stable_sort(expected, {}, &Neighbour<Real>::distance_squared);
     if (expected.size() > count) expected.resize(count);
     std::vector<Neighbour<Real>> found = {{BoxId(7), 7}};
-    index.nearest(point, count, found, filter, max_distance_squared, except);
-    EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point);
+    index.nearest(point, count, found, {filter, except, max_distance});
+    EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point) << " within "
+                               << max_distance;
+    EXPECT_EQ(index.nearest(point, count, {filter, except, max_distance}), expected);
+  }
+
+  /// A greatest distance: often none, or the very distance along an axis from the point to a box.
+  Real any_distance(const Boxes& boxes, const Point& point) {
+    if (rng_.one_in(2)) return std::numeric_limits<Real>::infinity();
+    if (boxes.empty() || rng_.one_in(3)) return Real(rng_.whole(0, 3)) * unit_[0];
+    const auto axis = static_cast<std::size_t>(rng_.whole(0, D - 1));
+    const Real distance = std::abs(boxes[rng_.below(boxes.size())].min[axis] - point[axis]);
+    return std::isnan(distance) ? 0 : distance;
   }
 
   Rng rng_{1};

@@ -36,13 +36,6 @@ BoxCast<dimension> cast_at() {
   return cast;
 }
 
-/// The square of a distance as a float that is no less.
-float squared(double distance) {
-  const double square = distance * distance;
-  const auto rounded = static_cast<float>(square);
-  return rounded < square ? std::nextafter(rounded, INFINITY) : rounded;
-}
-
 class KeptIndex {
  public:
   const BoxIndex<dimension>& index() const noexcept { return *index_; }
@@ -123,16 +116,16 @@ Status query_overlapping(bool is_world, void* address, const Filter* filter, dou
 BROADSIDE_EXPORT(query_nearest)
 Status query_nearest(bool is_world, void* address, const Filter* filter, double except, std::size_t k,
                      double max_distance) {
-  return asked(is_world, address, except,
-               [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 index.nearest(point_at(0), k, neighbours, filter, squared(max_distance), left_out);
-                 distances.clear();
-                 for (const Neighbour<float>& neighbour : neighbours) {
-                   ids.push_back(neighbour.box);
-                   distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
-                 }
-                 answer(std::span<const double>(distances), 1);
-               });
+  return asked(
+      is_world, address, except, [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
+        index.nearest(point_at(0), k, neighbours, {filter, left_out, static_cast<float>(max_distance)});
+        distances.clear();
+        for (const Neighbour<float>& neighbour : neighbours) {
+          ids.push_back(neighbour.box);
+          distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
+        }
+        answer(std::span<const double>(distances), 1);
+      });
 }
 
 /// The parameter of the hit is in `question`.

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 #include "broadside/queries.hpp"
 
@@ -20,23 +22,20 @@ namespace broadside::algorithm {
 template <typename Real>
 inline constexpr bool is_float = std::is_same_v<Real, float>;
 
-template <int D, typename Real>
-using Eligible = typename BvhIndex<D, Real>::Eligible;
-
 /// Boxes that may overlap a box.
 template <int D, typename Real>
 class Overlapping final : public kernels::FoundBoxes {
  public:
   Overlapping(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, Visitor<BoxId>& visitor,
-              const Eligible<D, Real>& eligible)
-      : boxes_(boxes), box_(box), visitor_(visitor), eligible_(eligible) {}
+              const QueryOptions<BoxId>& options)
+      : boxes_(boxes), box_(box), visitor_(visitor), options_(options) {}
 
   bool take() override {
     std::size_t size = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const BoxId id{ids[i]};
       result_[size] = id;
-      bool counts = boxes_.may_find(id, eligible_);
+      bool counts = boxes_.may_find(id, options_);
       if constexpr (!is_float<Real>) counts = counts && overlap(box_, boxes_.exact(id));
       size += static_cast<std::size_t>(counts);
     }
@@ -49,7 +48,7 @@ class Overlapping final : public kernels::FoundBoxes {
   const BvhIndex<D, Real>& boxes_;
   const Box<D, Real>& box_;
   Visitor<BoxId>& visitor_;
-  const Eligible<D, Real>& eligible_;
+  const QueryOptions<BoxId>& options_;
   std::array<BoxId, most + 2 * kernels::fan_out> result_;
 };
 
@@ -58,13 +57,13 @@ template <int D, typename Real>
 class Met final : public kernels::FoundBoxes {
  public:
   Met(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-      const Eligible<D, Real>& eligible)
-      : boxes_(boxes), cast_(cast), visitor_(visitor), eligible_(eligible) {}
+      const QueryOptions<BoxId>& options)
+      : boxes_(boxes), cast_(cast), visitor_(visitor), options_(options) {}
 
   bool take() override {
     std::size_t size = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (!boxes_.may_find(BoxId{ids[i]}, eligible_)) continue;
+      if (!boxes_.may_find(BoxId{ids[i]}, options_)) continue;
       if (const std::optional<Real> enter = boxes_.t_enter_of(cast_, *this, i))
         result_[size++] = {BoxId{ids[i]}, *enter};
     }
@@ -77,7 +76,7 @@ class Met final : public kernels::FoundBoxes {
   const BvhIndex<D, Real>& boxes_;
   const BoxCast<D, Real>& cast_;
   Visitor<Hit<Real>>& visitor_;
-  const Eligible<D, Real>& eligible_;
+  const QueryOptions<BoxId>& options_;
   std::array<Hit<Real>, most + 2 * kernels::fan_out> result_;
 };
 
@@ -85,13 +84,13 @@ class Met final : public kernels::FoundBoxes {
 template <int D, typename Real>
 class First final : public kernels::FoundBoxes {
  public:
-  First(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, const Eligible<D, Real>& eligible,
+  First(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, const QueryOptions<BoxId>& options,
         int exponent)
-      : boxes_(boxes), cast_(cast), eligible_(eligible), exponent_(exponent) {}
+      : boxes_(boxes), cast_(cast), options_(options), exponent_(exponent) {}
 
   bool take() override {
     for (std::size_t i = 0; i < count; ++i) {
-      if (!boxes_.may_find(BoxId{ids[i]}, eligible_)) continue;
+      if (!boxes_.may_find(BoxId{ids[i]}, options_)) continue;
       const std::optional<Real> enter = boxes_.t_enter_of(cast_, *this, i);
       if (!enter) continue;
       const BoxId id{ids[i]};
@@ -111,8 +110,56 @@ class First final : public kernels::FoundBoxes {
  private:
   const BvhIndex<D, Real>& boxes_;
   const BoxCast<D, Real>& cast_;
-  const Eligible<D, Real>& eligible_;
+  const QueryOptions<BoxId>& options_;
   int exponent_;
+};
+
+/// The nearest boxes so far: a max-heap of at most `count`, on the stack while they are few.
+template <typename Real>
+class NearestBoxes {
+ public:
+  NearestBoxes(std::size_t count, Real max_distance_squared)
+      : count_(count), max_distance_squared_(max_distance_squared) {}
+
+  /// A box that is farther away is none of them.
+  Real limit() const noexcept {
+    return size_ < count_ ? max_distance_squared_ : heap_.front().distance_squared;
+  }
+
+  void offer(const Neighbour<Real>& one) {
+    if (!(one.distance_squared <= max_distance_squared_)) return;
+    if (size_ == count_) {
+      if (!is_before(one, heap_.front())) return;
+      std::ranges::pop_heap(heap_.first(size_--), is_before);
+    }
+    if (size_ == heap_.size()) grow();
+    heap_[size_++] = one;
+    std::ranges::push_heap(heap_.first(size_), is_before);
+  }
+
+  /// All of them, the nearest first. They are a heap no more.
+  std::span<const Neighbour<Real>> sorted() {
+    std::ranges::sort_heap(heap_.first(size_), is_before);
+    return heap_.first(size_);
+  }
+
+ private:
+  static bool is_before(const Neighbour<Real>& a, const Neighbour<Real>& b) noexcept {
+    return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
+  }
+
+  void grow() {
+    if (many_.empty()) many_.assign(few_.begin(), few_.end());
+    many_.resize(2 * size_);
+    heap_ = many_;
+  }
+
+  std::size_t count_;
+  Real max_distance_squared_;
+  std::size_t size_ = 0;
+  std::array<Neighbour<Real>, 64> few_;
+  std::vector<Neighbour<Real>> many_;
+  std::span<Neighbour<Real>> heap_ = few_;
 };
 
 }  // namespace broadside::algorithm

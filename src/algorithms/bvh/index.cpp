@@ -118,39 +118,39 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
 
 template <int D, typename Real>
 bool BvhIndex<D, Real>::find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                                         const Eligible& eligible) const {
+                                         const QueryOptions& options) const {
   if (tree_.size() == 0) return true;
-  Overlapping<D, Real> found(*this, box, visitor, eligible);
+  Overlapping<D, Real> found(*this, box, visitor, options);
   return kernels::find_overlapping(tree_.view(), in_tree(box), found) && found.take();
 }
 
 template <int D, typename Real>
 bool BvhIndex<D, Real>::find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                                  const Eligible& eligible) const {
+                                  const QueryOptions& options) const {
   if (tree_.size() == 0) return true;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
-  Met<D, Real> found(*this, cast, visitor, eligible);
+  Met<D, Real> found(*this, cast, visitor, options);
   found.t_max = algorithm::in_tree(cast.t_max, exponent);
   return kernels::find_met(tree_.view(), query, found) && found.take();
 }
 
 template <int D, typename Real>
 std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real>& cast,
-                                                           const Eligible& eligible) const {
+                                                           const QueryOptions& options) const {
   if (tree_.size() == 0) return std::nullopt;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
-  First<D, Real> found(*this, cast, eligible, exponent);
+  First<D, Real> found(*this, cast, options, exponent);
   found.t_max = algorithm::in_tree(cast.t_max, exponent);
   kernels::find_first_met(tree_.view(), query, found);
   return found.best;
 }
 
 template <int D, typename Real>
-void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                                     std::vector<Neighbour<Real>>& found, const Eligible& eligible) const {
-  if (tree_.size() == 0) return;
+bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
+                                     Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const {
+  if (tree_.size() == 0) return true;
   kernels::DistanceQuery<D> query;
   query.weight.fill(1);
   query.point = in_tree(Box<D, Real>{point, point});
@@ -169,24 +169,7 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     query.share = 1 - 0x1p-18f;
     query.allowance = std::numeric_limits<float>::min();
   }
-  // `found` is a max-heap: its front is the next one to be replaced.
-  const auto is_before = [](const Neighbour<Real>& a, const Neighbour<Real>& b) {
-    return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
-  };
-  const auto limit = [&] {
-    return found.size() < count ? max_distance_squared : found.front().distance_squared;
-  };
-  const auto offer = [&](const Neighbour<Real>& one) {
-    if (!(one.distance_squared <= max_distance_squared)) return;
-    if (found.size() == count) {
-      if (!is_before(one, found.front())) return;
-      std::ranges::pop_heap(found, is_before);
-      found.pop_back();
-    }
-    found.push_back(one);
-    std::ranges::push_heap(found, is_before);
-  };
-
+  NearestBoxes<Real> found(count, max_distance_squared);
   struct Waiting {
     float distance;
     std::uint32_t number;
@@ -198,22 +181,22 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
   waiting[0] = {0, tree.root};
   while (waits > 0) {
     const auto [distance, number] = waiting[--waits];
-    if (!(distance <= limit() * unit)) continue;
+    if (!(distance <= found.limit() * unit)) continue;
     const kernels::Block<D>& node = tree.nodes[number & ~leaf_bit];
     kernels::distances(node, query, distances);
     const std::size_t begin = waits;
     for (std::size_t i = 0; i < tree_.child_count(number); ++i) {
-      if (!(distances[i] <= limit() * unit)) continue;
+      if (!(distances[i] <= found.limit() * unit)) continue;
       const std::uint32_t child = node.id[i];
       if ((number & leaf_bit) == 0) {
         waiting[waits++] = {distances[i], child};
         continue;
       }
-      if (!this->may_find(BoxId{child}, eligible)) continue;
+      if (!this->may_find(BoxId{child}, options)) continue;
       if constexpr (is_float<Real>)
-        offer({BoxId{child}, distances[i]});
+        found.offer({BoxId{child}, distances[i]});
       else
-        offer({BoxId{child}, core::squared_distance<D, Real>(point, exact_[child])});
+        found.offer({BoxId{child}, core::squared_distance<D, Real>(point, exact_[child])});
     }
     // The nearest one last, where it is taken from.
     std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),
@@ -221,7 +204,8 @@ void BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
                         return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
                       });
   }
-  std::ranges::sort_heap(found, is_before);
+  const std::span<const Neighbour<Real>> nearest = found.sorted();
+  return nearest.empty() || visitor.visit(nearest);
 }
 
 template class BvhIndex<2, float>;

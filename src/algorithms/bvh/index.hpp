@@ -20,7 +20,7 @@ namespace broadside::algorithm {
 template <int D, typename Real>
 class BvhIndex final : public BoxIndex<D, Real> {
  public:
-  using Eligible = typename BoxIndex<D, Real>::Eligible;
+  using QueryOptions = broadside::QueryOptions<BoxId>;
   using BoxIndex<D, Real>::may_find;
 
   /// For a tracker of floats that moves the boxes itself, instead of update(), and then hands over filters.
@@ -39,13 +39,13 @@ class BvhIndex final : public BoxIndex<D, Real> {
   void update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
                     bool rebuild) override;
   bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                        const Eligible& eligible) const override;
+                        const QueryOptions& options) const override;
   bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                 const Eligible& eligible) const override;
+                 const QueryOptions& options) const override;
   std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast,
-                                          const Eligible& eligible) const override;
-  void find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                    std::vector<Neighbour<Real>>& found, const Eligible& eligible) const override;
+                                          const QueryOptions& options) const override;
+  bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
+                    Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const override;
   std::size_t index_bytes() const noexcept override {
     if constexpr (core::is_lean) return 0;
     return tree_.bytes() + exact_.capacity() * sizeof(Box<D, Real>);

@@ -1,7 +1,6 @@
 // World: its index for queries, the tracker's or one built when the first query is asked.
 #pragma once
 
-#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -21,17 +20,6 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
     if (!state.is_indexed.load(std::memory_order_relaxed)) state.bring_index_up_to_date();
   }
   return *state.queried;
-}
-
-template <int D, typename Real>
-void World<D, Real>::nearest(const Point<D, Real>& point, std::size_t count,
-                             std::vector<HandleNeighbour<Real>>& found, const Filter* query_filter,
-                             const Handle& except) const {
-  std::vector<Neighbour<Real>> neighbours;
-  box_index().nearest(point, count, neighbours, query_filter, std::numeric_limits<Real>::infinity(),
-                      slot_of(except));
-  found.clear();
-  for (const Neighbour<Real>& one : neighbours) found.push_back({handle_of(one.box), one.distance_squared});
 }
 
 template <int D, typename Real>

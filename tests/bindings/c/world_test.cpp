@@ -123,7 +123,37 @@ TEST_F(CWorld, AnswersQueriesAsTheClassBehindIt) {
               BROADSIDE_OK);
     ASSERT_EQ(count, near.size());
     for (std::size_t i = 0; i < near.size(); ++i) EXPECT_EQ(handle_of(neighbours[i].handle), near[i].handle);
+
+    model.nearest(asked.min, 3, near, {.max_distance = 0.25F});
+    ASSERT_EQ(
+        broadside_world_nearest_within(world_, &asked.min, 0.25, nullptr, neighbours, 3, &count, &error_),
+        BROADSIDE_OK);
+    ASSERT_EQ(count, near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) EXPECT_EQ(handle_of(neighbours[i].handle), near[i].handle);
   }
+}
+
+TEST_F(CWorld, FindsNothingFartherThanAGreatestDistance) {
+  const std::vector<broadside_handle> handles = add({{{3, 0}, {4, 1}}, {{0.1F, 0}, {1, 1}}});
+  const Point<2> point = {0, 0};
+  broadside_neighbour found[2];
+  std::size_t count = 0;
+  const auto ask = [&](double max_distance, const broadside_query* query = nullptr) {
+    return broadside_world_nearest_within(world_, &point, max_distance, query, found, 2, &count, &error_);
+  };
+  ASSERT_EQ(ask(3), BROADSIDE_OK);
+  EXPECT_EQ(count, 2U);
+  ASSERT_EQ(ask(0.1), BROADSIDE_OK) << "as a float it is the box's coordinate";
+  EXPECT_EQ(count, 1U);
+  EXPECT_EQ(handle_of(found[0].handle), handle_of(handles[1]));
+  const broadside_query query = {nullptr, &handles[1], nullptr};
+  ASSERT_EQ(ask(0.1, &query), BROADSIDE_OK);
+  EXPECT_EQ(count, 0U);
+  count = 77;
+  EXPECT_EQ(ask(-1), BROADSIDE_INVALID_QUERY);
+  EXPECT_STREQ(error_.message, "max_distance is -1; expected 0, more, or infinity");
+  EXPECT_EQ(ask(std::numeric_limits<double>::quiet_NaN()), BROADSIDE_INVALID_QUERY);
+  EXPECT_EQ(count, 77U);
 }
 
 TEST_F(CWorld, LeavesOutWhatAQueryExcepts) {
@@ -252,6 +282,15 @@ TEST(CIndex, FindsWhatTheClassBehindItFinds) {
     std::size_t expected = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) expected += i != place && overlap(boxes[i], boxes[place]);
     EXPECT_EQ(count, expected);
+
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      near += i != place && distance_squared(boxes[place].min, boxes[i]) <= 4;
+    std::vector<broadside_neighbour> neighbours(300);
+    ASSERT_EQ(broadside_index_nearest_within(index, &boxes[place].min, 2, &query, neighbours.data(), 300,
+                                             &count, &error),
+              BROADSIDE_OK);
+    EXPECT_EQ(count, near);
   }
   broadside_index_destroy(index);
 }

@@ -2,6 +2,8 @@
 #include "broadside/queries.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -16,6 +18,7 @@
 
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/scattered.hpp"
 
 namespace broadside {
 namespace {
@@ -198,6 +201,100 @@ TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
                                  Neighbour<float>{BoxId(2), 4}));
 }
 
+/// The boxes of which the distance to a point is at most `max_distance`, by the definition.
+template <int D, typename Real>
+std::vector<Neighbour<Real>> within(const std::vector<Box<D, Real>>& boxes, const Point<D, Real>& point,
+                                    Real max_distance) {
+  std::vector<Neighbour<Real>> found;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Real squared = distance_squared(point, boxes[i]);
+    if (squared <= max_distance * max_distance) found.push_back({BoxId(i), squared});
+  }
+  std::ranges::stable_sort(found, {}, &Neighbour<Real>::distance_squared);
+  return found;
+}
+
+template <int D, typename Real>
+void expect_nearest_within() {
+  std::vector<Box<D, Real>> boxes;
+  for (const Box<D>& box : scattered_boxes<D>(400, 10)) {
+    boxes.emplace_back();
+    for (std::size_t axis = 0; axis < std::size_t{D}; ++axis) {
+      boxes.back().min[axis] = box.min[axis];
+      boxes.back().max[axis] = box.max[axis];
+    }
+  }
+  const auto index = make_box_index<D, Real>();
+  index->update({.boxes = boxes, .changed = {}});
+  Point<D, Real> point;
+  point.fill(5);
+  for (const Real max_distance :
+       {Real(0), Real(0.1), Real(1), boxes[7].max[0], Real(1e6), std::numeric_limits<Real>::infinity()}) {
+    const auto expected = within(boxes, point, max_distance);
+    EXPECT_EQ(index->nearest(point, 1000, {.max_distance = max_distance}), expected) << max_distance;
+    if (expected.size() < 3) continue;
+    const std::vector few(expected.begin(), expected.begin() + 3);
+    EXPECT_EQ(index->nearest(point, 3, {.max_distance = max_distance}), few) << max_distance;
+    const std::vector without_first(expected.begin() + 1, expected.end());
+    EXPECT_EQ(index->nearest(point, 1000, {.except = expected[0].box, .max_distance = max_distance}),
+              without_first);
+  }
+}
+
+TEST(BoxIndex, FindsTheNearestWithinADistance) {
+  expect_nearest_within<2, float>();
+  expect_nearest_within<3, float>();
+  expect_nearest_within<2, double>();
+  expect_nearest_within<3, double>();
+}
+
+TEST(BoxIndex, FindsABoxThatIsExactlyAsFarAsTheGreatestDistance) {
+  const float tenth = 0.1f;  // its square is rounded
+  const auto index = index_of({{{tenth, 0}, {1, 1}}, {{3, 4}, {5, 5}}});
+  const float less = std::nextafter(tenth, 0.0f);
+  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = tenth}).size(), 1U);
+  EXPECT_THAT(index->nearest({0, 0}, 9, {.max_distance = less}), IsEmpty());
+  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = 5}).size(), 2U);
+  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = std::nextafter(5.0f, 0.0f)}).size(), 1U);
+  EXPECT_EQ(index->nearest({tenth, 0.5f}, 9, {.max_distance = 0}),
+            (std::vector{Neighbour<float>{BoxId(0), 0}}));
+}
+
+TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
+  std::vector<Filter> filters(6);
+  filters[0].category = 4;
+  auto index = make_box_index<2>();
+  index->update({.boxes = row(6), .changed = {}, .filters = filters});
+  const Filter filter{.mask = 1};
+  EXPECT_THAT(index->nearest({0, 0}, 9, {.filter = &filter, .except = BoxId(2), .max_distance = 6}),
+              ElementsAre(Neighbour<float>{BoxId(1), 4}, Neighbour<float>{BoxId(3), 36}));
+}
+
+TEST(BoxIndex, HandsTheNearestToAFunctionUntilItEnds) {
+  const auto index = index_of(row(100));
+  std::vector<BoxId> found;
+  const bool is_whole = index->nearest({0, 0}, 90, [&found](const Neighbour<float>& one) {
+    found.push_back(one.box);
+    return found.size() < 3;
+  });
+  EXPECT_FALSE(is_whole);
+  EXPECT_THAT(found, ElementsAre(BoxId(0), BoxId(1), BoxId(2)));
+}
+
+TEST(BoxIndex, TakesTheFilterAndTheBoxLeftOutInEveryQuery) {
+  const auto index = index_of(row(3));
+  std::vector<BoxId> found;
+  const auto add = [&found](BoxId id) { found.push_back(id); };
+  const auto options = BoxIndex<2>::QueryOptions{.except = BoxId(0)};
+  index->overlapping({{0, 0}, {2, 1}}, add, options);
+  index->containing({2.5f, 0.5f}, add, {.except = BoxId(0)});
+  index->hits(
+      Ray<2>{{0, 0}, {1, 0}, 3}, [&add](const Hit<float>& hit) { add(hit.box); }, options);
+  found.push_back(index->first_hit(Ray<2>{{0, 0}, {1, 0}}, {.except = BoxId(0)})->box);
+  EXPECT_THAT(found, testing::Each(BoxId(1)));
+  EXPECT_EQ(found.size(), 4U);
+}
+
 TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   const auto index = index_of(row(3));
   const auto ignore = [](auto) {};
@@ -216,7 +313,11 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
   EXPECT_THROW(index->containing({0, nan}, ignore), InvalidQuery);
   EXPECT_THROW(index->nearest({0, nan}, 1, found), InvalidQuery);
-  EXPECT_THROW(index->nearest({0, 0}, 1, found, nullptr, -1), InvalidQuery);
+  EXPECT_EQ(message_of<InvalidQuery>([&] {
+              index->nearest({0, 0}, 1, {.max_distance = -1});
+            }),
+            "max_distance is -1; expected 0, more, or infinity");
+  EXPECT_THROW(index->nearest({0, 0}, 1, {.max_distance = nan}), InvalidQuery);
 }
 
 TEST(BoxIndex, LetsAVisitorsExceptionThroughAndGoesOn) {

@@ -1,5 +1,6 @@
 // World's queries: in terms of handles, about the boxes as they are now.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -8,7 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
 #include "broadside/world.hpp"
+
+#include "tests/support/scattered.hpp"
 
 namespace broadside {
 namespace {
@@ -74,6 +78,40 @@ TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
   EXPECT_EQ(found.back(), (HandleNeighbour<float>{far, 25}));
 }
 
+template <int D, typename Real>
+void expect_nearest_within() {
+  World<D, Real> world;
+  std::vector<Handle> handles;
+  for (const Box<D>& box : scattered_boxes<D>(300, 10)) {
+    Box<D, Real> wide;
+    std::ranges::copy(box.min, wide.min.begin());
+    std::ranges::copy(box.max, wide.max.begin());
+    handles.push_back(world.add(wide));
+  }
+  world.remove(handles[4]);
+  Point<D, Real> point;
+  point.fill(5);
+  for (const Real max_distance : {Real(0), Real(0.3), Real(2), std::numeric_limits<Real>::infinity()}) {
+    std::vector<HandleNeighbour<Real>> expected;
+    for (const Handle handle : handles) {
+      if (!world.contains(handle) || handle == handles[5]) continue;
+      const Real squared = distance_squared(point, world.box(handle));
+      if (squared <= max_distance * max_distance) expected.push_back({handle, squared});
+    }
+    std::ranges::stable_sort(expected, {}, &HandleNeighbour<Real>::distance_squared);
+    EXPECT_EQ(world.nearest(point, 999, {.except = handles[5], .max_distance = max_distance}), expected);
+  }
+  EXPECT_EQ(world.nearest(point, 999, {.except = handles[4]}).size(), 299U) << "one that is gone";
+  EXPECT_THROW(world.nearest(point, 1, {.max_distance = -1}), InvalidQuery);
+}
+
+TEST(WorldQueries, TellTheNearestWithinADistance) {
+  expect_nearest_within<2, float>();
+  expect_nearest_within<3, float>();
+  expect_nearest_within<2, double>();
+  expect_nearest_within<3, double>();
+}
+
 TEST(WorldQueries, HeedFiltersAndNotTheMargin) {
   WorldOptions options;
   options.margin = 2;
@@ -95,16 +133,18 @@ TEST(WorldQueries, LeaveOutOneBox) {
   const Ray<2> ray{{0.5f, 0.5f}, {1, 0}};
   EXPECT_EQ(world.first_hit(ray), (HandleHit<float>{own, 0}));
   EXPECT_EQ(world.first_hit(ray, nullptr, own), (HandleHit<float>{other, 2.5f}));
+  EXPECT_EQ(world.first_hit(ray, {.except = own}), (HandleHit<float>{other, 2.5f}));
   std::vector<Handle> found;
   const auto add = [&found](Handle handle) { found.push_back(handle); };
   world.overlapping(everywhere, add, nullptr, own);
   world.containing({3.5f, 0.5f}, add, nullptr, other);
   world.hits(
       ray, [&add](Handle handle, float) { add(handle); }, nullptr, own);
-  std::vector<HandleNeighbour<float>> nearest;
-  world.nearest({0, 0}, 1, nearest, nullptr, own);
-  found.push_back(nearest.front().handle);
-  EXPECT_THAT(found, ElementsAre(other, other, other));
+  world.overlapping(everywhere, add, {.except = own});
+  world.containing({3.5f, 0.5f}, add, {.except = other});
+  world.hits(ray, [&add](Handle handle, float) { add(handle); }, {.except = own});
+  found.push_back(world.nearest({0, 0}, 1, {.except = own}).front().handle);
+  EXPECT_THAT(found, ElementsAre(other, other, other, other, other));
   world.remove(other);
   EXPECT_EQ(world.first_hit(ray, nullptr, other), (HandleHit<float>{own, 0})) << "one that is gone";
 }

@@ -58,7 +58,7 @@ S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
   S least = std::numeric_limits<S>::infinity();
   std::vector<Neighbour<S>> found;
   for (std::size_t count = first_count;; count *= first_count) {
-    index.nearest(centre, count, found, nullptr, std::numeric_limits<S>::infinity(), except);
+    index.nearest(centre, count, found, {.except = except});
     for (const Neighbour<S>& neighbour : found) {
       const S distance = distance_of(box, boxes[broadside::index(neighbour.box)]);
       if (distance > reached) least = std::min(least, distance);
