@@ -1,7 +1,9 @@
 // What the lab brings: advice, files, drawings, and scenes for the tests.
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "bindings/python/running.hpp"
 #include "lab/advise/advise.hpp"
 #include "lab/catalogue.hpp"
+#include "lab/formats/columns.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/report/drawing.hpp"
 #include "lab/scenes/scene.hpp"
@@ -115,6 +118,48 @@ nb::object read(const nb::bytes& name, const std::string& format, const std::str
   return nb::make_tuple(array, text_of(warning));
 }
 
+std::string_view name_of(lab::readers::BoundsForm form) {
+  using lab::readers::BoundsForm;
+  switch (form) {
+    case BoundsForm::min_max:
+      return "min_max";
+    case BoundsForm::min_size:
+      return "min_size";
+    case BoundsForm::centre_size:
+      return "centre_size";
+    case BoundsForm::centre_half_size:
+    case BoundsForm::centre_radius:
+      return "centre_half_size";
+    case BoundsForm::point:
+      return "point";
+    case BoundsForm::bottom_top:
+      return "bottom_top";
+  }
+  throw std::logic_error("a form of bounds without a name");
+}
+
+/// What a table's columns mean by their names: (problem, dimension, [(form, first, second) for each axis],
+/// geometry), where the last three are places in `names`, or -1 for none.
+nb::tuple resolve_columns(const std::vector<std::string>& names, bool are_chosen) {
+  using lab::readers::BoxColumns;
+  BoxColumns columns;
+  const std::string problem =
+      lab::readers::resolve(std::vector<std::string_view>(names.begin(), names.end()), columns, are_chosen);
+  const auto column_of = [&](int place) {
+    const auto found = std::ranges::find(columns.places, place);
+    return found == columns.places.end() ? -1 : static_cast<int>(found - columns.places.begin());
+  };
+  nb::list axes;
+  for (int axis = 0; axis < columns.dimension && problem.empty() && !columns.has_geometry; ++axis) {
+    const lab::readers::BoundsForm form = columns.forms[static_cast<std::size_t>(axis)];
+    const int second =
+        form == lab::readers::BoundsForm::centre_radius ? int{BoxColumns::radius} : BoxColumns::second + axis;
+    axes.append(nb::make_tuple(nb::str(name_of(form).data()), column_of(BoxColumns::first + axis),
+                               column_of(second)));
+  }
+  return nb::make_tuple(problem, columns.dimension, axes, column_of(BoxColumns::geometry));
+}
+
 nb::object formats() {
   nb::list list;
   for (const lab::Format& format : lab::formats())
@@ -169,6 +214,7 @@ void add_lab(nb::module_& module) {
   module.def("read", &read, nb::arg("path"), nb::arg("format"), nb::arg("boxes"), nb::arg("columns"),
              nb::arg("layer"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));
   module.def("formats", &formats);
+  module.def("resolve_columns", &resolve_columns, nb::arg("names"), nb::arg("are_chosen"));
   module.def("draw", &draw, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("most"), nb::arg("title"));
   module.def("scene", &scene, nb::arg("spec"), nb::arg("boxes"), nb::arg("dimension"), nb::arg("seed"));
   module.def("scenes", &scenes);

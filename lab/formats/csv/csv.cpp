@@ -2,6 +2,9 @@
 #include "lab/formats/csv/csv.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,49 +45,127 @@ bool is_table_row(const Fields& fields) {
 }
 
 /// The columns that a comment before rows of numbers names, as numpy.savetxt writes it.
-bool resolve_comment(std::string_view comment, std::size_t count, CsvColumns& columns) {
+bool resolve_comment(std::string_view comment, std::size_t count, BoxColumns& columns) {
   comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
   const Fields names = fields_of(comment, separator_of(comment));
   return names.size() == count && resolve(names, columns).empty();
 }
 
-/// The columns that the user names, from left to right; `count` is the number of columns there are.
-CsvColumns columns_of_user(const std::string& list, std::size_t count, const CsvLines& lines) {
+/// The order of the numbers in a field of bounds, by the names that torchvision made common.
+std::optional<BoundsForm> form_named(std::string_view name) {
+  if (name == "xyxy") return BoundsForm::min_max;
+  if (name == "xywh") return BoundsForm::min_size;
+  if (name == "cxcywh") return BoundsForm::centre_size;
+  return std::nullopt;
+}
+
+/// The columns that the user names, from left to right; or, as "bbox=xywh", how the file's column of that
+/// name holds bounds.
+BoxColumns columns_of_user(const std::string& list, const Fields& fields, const CsvLines& lines) {
+  const std::size_t count = fields.size();
   Fields names = fields_of(list, Separator::comma);
+  BoundsForm form = BoundsForm::min_max;
   for (std::string_view& name : names) {
     if (name == "-") name = {};
+    const std::size_t equals = name.find('=');
+    if (equals == std::string_view::npos) continue;
+    const std::optional<BoundsForm> told = form_named(name.substr(equals + 1));
+    name = name.substr(0, equals);
+    if (!told || !is_geometry_name(name))
+      lines.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
+    form = *told;
+    // In a file with names it is found by its own; other columns of bounds are not asked for.
+    if (names.size() != 1 || std::ranges::find(fields, name) == fields.end()) continue;
+    const std::string_view wanted = name;
+    names = fields;
+    for (std::string_view& other : names) {
+      if (other != wanted && (meaning_of(other) || is_geometry_name(other))) other = {};
+    }
+    break;
   }
   if (names.size() > count)
     lines.refuse(fmt::format("{} column{}", count, count == 1 ? "" : "s"),
                  fmt::format("the {} that --columns names", names.size()));
   names.resize(count);
-  CsvColumns columns;
-  const std::string problem = resolve(names, columns);
+  BoxColumns columns;
+  const std::string problem = resolve(names, columns, true);
+  columns.geometry_form = form;
   if (!problem.empty())
     lines.refuse(fmt::format("--columns names '{}': {}", list, problem), expected_columns);
   return columns;
 }
 
-/// The dimension of the first geometry; 2 if there is none.
-int dimension_of_geometries(CsvLines lines, Separator separator, const CsvColumns& columns) {
-  const auto column = static_cast<std::size_t>(std::ranges::find(columns.places, CsvColumns::geometry) -
-                                               columns.places.begin());
+std::size_t column_of(const BoxColumns& columns, int place) {
+  return static_cast<std::size_t>(std::ranges::find(columns.places, place) - columns.places.begin());
+}
+
+/// The first geometry; empty if there is none.
+std::string_view first_geometry(CsvLines lines, Separator separator, const BoxColumns& columns) {
+  const std::size_t column = column_of(columns, BoxColumns::geometry);
   while (lines.next()) {
     const Fields fields = fields_of(lines.line(), separator);
-    if (column < fields.size() && !fields[column].empty()) return dimension_of_geometry_text(fields[column]);
+    if (column < fields.size() && !fields[column].empty()) return fields[column];
   }
-  return 2;
+  return {};
+}
+
+/// Looks for the first row that tells in which direction y grows.
+void settle_top(CsvLines lines, Separator separator, BoxColumns& columns) {
+  const std::size_t bottom = column_of(columns, BoxColumns::first + 1);
+  const std::size_t top = column_of(columns, BoxColumns::second + 1);
+  while (columns.forms[1] == BoundsForm::bottom_top && lines.next()) {
+    const Fields fields = fields_of(lines.line(), separator);
+    double bottom_y = 0;
+    double top_y = 0;
+    if (std::max(bottom, top) < fields.size() && parse_number(fields[bottom], bottom_y) &&
+        parse_number(fields[top], top_y) && bottom_y != top_y && std::isfinite(bottom_y) &&
+        std::isfinite(top_y))
+      readers::settle_top(columns, top_y < bottom_y);
+  }
+  readers::settle_top(columns, false);
+}
+
+/// How columns were taken that may mean something else; empty if there is nothing to say.
+std::string note_on(const BoxColumns& columns, std::string_view geometry, bool are_chosen, bool are_named) {
+  const auto name_at = [&columns](int place) {
+    const std::size_t column = column_of(columns, place);
+    return column < columns.names.size() ? shown(columns.names[column]) : std::string();
+  };
+  if (columns.has_frames && columns.has_tracks && name_at(BoxColumns::track).empty())
+    return "no column of ids: the boxes of each frame are numbered anew";
+  if (are_chosen) return {};
+  if (!are_named)
+    return fmt::format(
+        "no names of columns: read as {}{}", columns.wanted(),
+        columns.names.size() == 4 ? "; --columns x,y,w,h if they are a corner and the size" : "");
+  const bool is_list = !geometry.empty() &&
+                       std::string_view("[( +-.0123456789").find(geometry.front()) != std::string_view::npos;
+  if (columns.has_geometry && is_list)
+    return fmt::format(
+        "column {} read as minima and then maxima; --columns {}=xywh if it is a corner and the size",
+        name_at(BoxColumns::geometry), plainly(columns.names[column_of(columns, BoxColumns::geometry)]));
+  if (!columns.has_geometry && columns.forms[0] == BoundsForm::point)
+    return fmt::format("no columns of bounds: each row is a point, with x from {} and y from {}{}",
+                       name_at(BoxColumns::first), name_at(BoxColumns::first + 1),
+                       columns.dimension == 3 ? " and z from " + name_at(BoxColumns::first + 2) : "");
+  return {};
+}
+
+/// A row of KITTI's labels of objects: a class, and 14 numbers or 15.
+bool is_kitti(const Fields& fields) {
+  return (fields.size() == 15 || fields.size() == 16) && !is_number(fields.front()) &&
+         std::all_of(fields.begin() + 1, fields.end(), is_number);
 }
 
 /// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing is
 /// read from.
 std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLines& lines,
-                                       CsvColumns& columns) {
+                                       BoxColumns& columns) {
   auto labels = std::make_shared<BoxLabels>();
   const std::vector<std::string>& names = columns.names;
   std::string_view wanted = options.ids;
   if (wanted.empty() && options.finds_ids) {
-    const auto track = std::ranges::find(columns.places, CsvColumns::track);
+    const auto track = std::ranges::find(columns.places, BoxColumns::track);
     wanted = track == columns.places.end() ? std::string_view("id")
                                            : names[static_cast<std::size_t>(track - columns.places.begin())];
   }
@@ -97,15 +178,15 @@ std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLine
                    fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
     if (column != names.end()) {
       int& place = columns.places[static_cast<std::size_t>(column - names.begin())];
-      if (place != CsvColumns::ignored && place != CsvColumns::track)
+      if (place != BoxColumns::ignored && place != BoxColumns::track)
         lines.refuse(fmt::format("column {} is read already, and --ids names it", shown(*column)),
                      "a column of its own for the ids");
-      if (place == CsvColumns::ignored) place = CsvColumns::id;
+      if (place == BoxColumns::ignored) place = BoxColumns::id;
       labels->has_ids = true;
     }
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (columns.places[i] == CsvColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
+    if (columns.places[i] == BoxColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
   }
   return labels;
 }
@@ -130,23 +211,29 @@ AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options
   if (separator == Separator::blanks && is_geometry_name(fields_of(lines.line(), separator).front()))
     separator = Separator::tab;
   const Fields fields = fields_of(lines.line(), separator);
-  CsvColumns columns;
+  BoxColumns columns;
   bool has_header = false;
+  bool are_named = true;
   if (!options.columns.empty()) {
-    columns = columns_of_user(options.columns, fields.size(), lines);
+    columns = columns_of_user(options.columns, fields, lines);
     // A row in which one of several numbers is wrong is not taken for names.
     Fields wanted;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (columns.places[i] != CsvColumns::ignored) wanted.push_back(fields[i]);
+      if (columns.places[i] != BoxColumns::ignored) wanted.push_back(fields[i]);
     }
     has_header = !is_table_row(wanted);
   } else {
     std::string problem = resolve(fields, columns);
     has_header = problem.empty();
     if (!has_header && is_table_row(fields) && !resolve_comment(comment, fields.size(), columns)) {
-      problem = positional(fields.size(), columns);
+      are_named = false;
+      problem = is_kitti(fields) ? resolve(fields_of(unnamed_meanings(15).front(), Separator::comma), columns)
+                                 : positional(fields.size(), columns);
+      columns.places.resize(fields.size(), BoxColumns::ignored);
+      columns.names.resize(fields.size());
       if (!problem.empty())
-        lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns");
+        lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns" +
+                                  other_ways(rows, separator, unnamed_meanings(fields.size())));
     } else if (!has_header && !is_table_row(fields)) {
       const auto slip = std::ranges::find_if(
           fields, [](std::string_view field) { return !number_fault(field).expected.empty(); });
@@ -154,14 +241,24 @@ AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options
         lines.refuse(fmt::format("{}, {}", shown(*slip), number_fault(*slip).found),
                      number_fault(*slip).expected);
       lines.refuse(fmt::format("{}: {}", shown(lines.line(), 100), problem),
-                   fmt::format("{}; --columns can name them", expected_columns));
+                   fmt::format("{}; --columns can name them{}", expected_columns,
+                               other_ways(lines, separator, corner_or_centre(fields))));
     }
   }
-  if (columns.has_geometry)
-    columns.dimension = dimension_of_geometries(has_header ? lines : rows, separator, columns);
+  if (!has_header) lines = rows;
+  std::string_view geometry;
+  if (columns.has_geometry) {
+    geometry = first_geometry(lines, separator, columns);
+    columns.dimension = dimension_of_geometry_text(geometry);
+  }
+  settle_top(lines, separator, columns);
+  std::vector<std::string> others = other_meanings(columns);
+  if (!are_named) std::ranges::copy(unnamed_meanings(fields.size()), std::back_inserter(others));
+  std::string note = note_on(columns, geometry, !options.columns.empty(), are_named);
+  if (!note.empty()) note = fmt::format("{}: {}", input->name(), note);
   std::shared_ptr<BoxLabels> labels = find_labels(options, lines, columns);
-  return read_csv({std::move(input), has_header ? lines : rows, separator, std::move(columns),
-                   std::move(labels), !options.ids.empty(), Quarantine(options)},
+  return read_csv({std::move(input), lines, separator, std::move(columns), std::move(labels),
+                   !options.ids.empty(), Quarantine(options), lines, std::move(others), std::move(note)},
                   options.precision.value_or(Precision::float64));
 }
 

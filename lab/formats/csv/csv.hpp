@@ -4,7 +4,7 @@
 #include <memory>
 #include <ostream>
 
-#include "lab/formats/csv/columns.hpp"
+#include "lab/formats/columns.hpp"
 #include "lab/formats/csv/text.hpp"
 #include "lab/formats/frames.hpp"
 #include "lab/formats/input.hpp"
@@ -17,11 +17,21 @@ struct CsvTable {
   std::unique_ptr<Input> input;
   CsvLines lines;  ///< from the first line that holds numbers
   Separator separator;
-  CsvColumns columns;
+  BoxColumns columns;
   std::shared_ptr<BoxLabels> labels;
   bool needs_ids;  ///< a present box without an id is refused
   Quarantine quarantine;
+  CsvLines begin;                     ///< `lines`, as they were first
+  std::vector<std::string> others{};  ///< what else the columns may mean, for other_ways()
+  std::string note{};                 ///< how ambiguous columns were taken; empty if there are none
 };
+
+/// Which of some lists for --columns make all rows valid, as the end of an error's text; empty if none does.
+/// Reads all rows.
+std::string other_ways(CsvLines lines, Separator separator, const std::vector<std::string>& lists);
+
+/// Likewise of bounds in one field: whether all are valid as a corner and the size.
+std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns);
 
 /// The table's boxes: rounded to the nearest float or double, once, where the table has their bounds; where
 /// they have to be computed, in double. Memory: a frame's boxes.

@@ -121,21 +121,21 @@ class FramedCsv final : public FrameReader<D, Real> {
   }
 
   Row check_row(std::size_t& place) {
-    const std::size_t frame = rows_.whole_number(CsvColumns::frame);
-    if (!has_begun_ && frame != 0) rows_.refuse(CsvColumns::frame, "0: frames are counted from there");
+    const std::size_t frame = rows_.whole_number(BoxColumns::frame);
+    if (!has_begun_ && frame != 0) rows_.refuse(BoxColumns::frame, "0: frames are counted from there");
     has_begun_ = true;
     if (frame == frame_ + 1) return Row::of_next_frame;
     if (frame != frame_)
-      rows_.refuse(CsvColumns::frame, fmt::format("{} or {}: frames follow one another", frame_, frame_ + 1));
+      rows_.refuse(BoxColumns::frame, fmt::format("{} or {}: frames follow one another", frame_, frame_ + 1));
     if (!rows_.has_box()) return Row::empty;
-    const std::size_t box = rows_.whole_number(CsvColumns::box);
+    const std::size_t box = rows_.whole_number(BoxColumns::box);
     // Nothing may be left out: a single line must not be able to ask for any amount of memory.
     if (box > last_change_.size())
       rows_.refuse(
-          CsvColumns::box,
+          BoxColumns::box,
           fmt::format("a box from 0 to {}: new ones are numbered one after the other", last_change_.size()));
     if (box < last_change_.size() && last_change_[box] == frame_)
-      rows_.refuse(CsvColumns::box, "each box once in a frame");
+      rows_.refuse(BoxColumns::box, "each box once in a frame");
     if (box == last_change_.size()) last_change_.push_back(frame_);
     last_change_[box] = frame_;
     place = box;

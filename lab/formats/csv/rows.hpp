@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -71,7 +72,10 @@ class CsvRows {
 
   std::shared_ptr<const BoxLabels> labels() const { return table_.labels; }
 
-  std::string warning() const { return table_.quarantine.warning(table_.input->name()); }
+  std::string warning() const {
+    const std::string left_out = table_.quarantine.warning(table_.input->name());
+    return table_.note + (table_.note.empty() || left_out.empty() ? "" : "\n") + left_out;
+  }
 
   /// Keeps the row's id, if it has one, as that of the box at `place`.
   void keep_id(std::size_t place) {
@@ -82,7 +86,7 @@ class CsvRows {
   }
 
   /// Whether there is more in the row than the number of a frame.
-  bool has_box() const noexcept { return (filled_ & ~(1U << CsvColumns::frame)) != 0; }
+  bool has_box() const noexcept { return (filled_ & ~(1U << BoxColumns::frame)) != 0; }
 
   /// The whole number in column `place`.
   std::size_t whole_number(int place) const {
@@ -98,20 +102,20 @@ class CsvRows {
   }
 
   const std::string& track() const {
-    if (track_.empty()) refuse(CsvColumns::track, "an id");
+    if (track_.empty()) refuse(BoxColumns::track, "an id");
     return track_;
   }
 
   const std::string& id() const noexcept { return id_; }
 
   bool has_id_column() const noexcept {
-    return std::ranges::find(table_.columns.places, CsvColumns::id) != table_.columns.places.end();
+    return std::ranges::find(table_.columns.places, BoxColumns::id) != table_.columns.places.end();
   }
 
   /// The frame of a table with tracks: any number.
   double frame() const {
-    if ((filled_ & 1U << CsvColumns::frame) == 0) refuse_number(CsvColumns::frame);
-    return values_[CsvColumns::frame];
+    if ((filled_ & 1U << BoxColumns::frame) == 0) refuse_number(BoxColumns::frame);
+    return values_[BoxColumns::frame];
   }
 
   [[noreturn]] void refuse(int place, const std::string& expected) const {
@@ -137,7 +141,7 @@ class CsvRows {
     if (is_absent(box)) return box;
     if (!is_present(box)) refuse_inverted(box);
     if (table_.needs_ids && id_.empty() && (has_id_column() || track_.empty()))
-      refuse(CsvColumns::id, "an id");
+      refuse(BoxColumns::id, "an id");
     return box;
   }
 
@@ -145,8 +149,8 @@ class CsvRows {
   bool take_labels() {
     const auto take_label = [this](int place, const char*& at, const char* end, bool& more) {
       const bool is_label =
-          place != CsvColumns::geometry && (place < CsvColumns::first || place >= CsvColumns::id);
-      take_field(is_label ? place : CsvColumns::ignored, at, end, more);
+          place != BoxColumns::geometry && (place < BoxColumns::first || place >= BoxColumns::id);
+      take_field(is_label ? place : BoxColumns::ignored, at, end, more);
     };
     try {
       take_columns(take_label);
@@ -185,7 +189,7 @@ class CsvRows {
 
   /// Whether a place is one of a number of a box.
   static constexpr bool is_value(int place) noexcept {
-    return place >= CsvColumns::first && place < static_cast<int>(CsvColumns::places_of_a_row);
+    return place >= BoxColumns::first && place < static_cast<int>(BoxColumns::places_of_a_row);
   }
 
   /// Takes a number as nearly all are written; anything else is left to take_field.
@@ -236,20 +240,20 @@ class CsvRows {
     fields.next(field);
     at = fields.at();
     more = fields.more();
-    if (place == CsvColumns::ignored || field.empty()) return;
+    if (place == BoxColumns::ignored || field.empty()) return;
     filled_ |= 1U << place;
-    if (place == CsvColumns::id || place == CsvColumns::track) {
-      fields.read_text(field, place == CsvColumns::id ? id_ : track_);
+    if (place == BoxColumns::id || place == BoxColumns::track) {
+      fields.read_text(field, place == BoxColumns::id ? id_ : track_);
       return;
     }
-    if (place == CsvColumns::geometry) {
+    if (place == BoxColumns::geometry) {
       take_geometry(field);
       return;
     }
     const auto where = static_cast<std::size_t>(place);
-    if (place == CsvColumns::frame && table_.columns.has_tracks) {
+    if (place == BoxColumns::frame && table_.columns.has_tracks) {
       if (!parse_number(field, values_[where])) refuse_number(place);
-    } else if (place < CsvColumns::first) {
+    } else if (place < BoxColumns::first) {
       if (!parse_number(field, whole_[where])) refuse_number(place);
     } else if (std::is_same_v<Real, float> && !is_computed_) {
       float number = 0;
@@ -263,19 +267,20 @@ class CsvRows {
   }
 
   void take_geometry(std::string_view field) {
-    const GeometryFault fault = read_geometry_text(field, text_box_);
+    const GeometryFault fault = read_geometry_text(field, text_box_, table_.columns.geometry_form);
     if (!fault.found.empty())
-      table_.lines.refuse(column_text(CsvColumns::geometry) + fault.found, fault.expected);
+      table_.lines.refuse(column_text(BoxColumns::geometry) + fault.found, fault.expected);
   }
 
   [[noreturn]] void refuse_number(int place) const {
     NumberFault fault = number_fault(field_of(place));
     if (fault.expected.empty())
-      fault.expected = place == CsvColumns::frame && table_.columns.has_tracks ? "a number"
-                       : place < CsvColumns::first
+      fault.expected = place == BoxColumns::frame && table_.columns.has_tracks ? "a number"
+                       : place < BoxColumns::first
                            ? "a whole number from 0 to 4294967295"
                            : fmt::format("a number that a {} can hold", name(precision_of<Real>));
-    table_.lines.refuse(column_text(place) + (fault.found.empty() ? "" : ", " + fault.found), fault.expected);
+    table_.lines.refuse(column_text(place) + (fault.found.empty() ? "" : ", " + fault.found),
+                        fault.expected + (place < BoxColumns::first ? "" : other_ways()));
   }
 
   std::size_t column_of(int place) const {
@@ -294,7 +299,7 @@ class CsvRows {
   }
 
   [[noreturn]] void refuse_empty() const {
-    int place = CsvColumns::first;
+    int place = BoxColumns::first;
     while ((needed_ & ~filled_ & 1U << place) == 0) ++place;
     refuse_number(place);
   }
@@ -314,16 +319,26 @@ class CsvRows {
       table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
     table_.lines.refuse(
         fmt::format("min ({}) and max ({})", fmt::join(box.min, ", "), fmt::join(box.max, ", ")),
-        fmt::format("min <= max on every axis, {}or no coordinates for an absent box",
-                    is_computed_ ? "that is sizes of 0 or more, " : ""));
+        fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}",
+                    is_computed_ ? "that is sizes of 0 or more, " : "", other_ways()));
+  }
+
+  /// As the function of that name. Once, not for each invalid row that is left out: it reads all rows.
+  const std::string& other_ways() const {
+    if (!other_ways_)
+      other_ways_ = table_.columns.has_geometry
+                        ? other_forms(table_.begin, table_.separator, table_.columns)
+                        : readers::other_ways(table_.begin, table_.separator, table_.others);
+    return *other_ways_;
   }
 
   CsvTable table_;
+  mutable std::optional<std::string> other_ways_;
   bool is_computed_;
   unsigned needed_;      // bit p: a box takes the value at place p
   unsigned filled_ = 0;  // bit p: the row has a value at place p
   std::array<std::uint32_t, 2> whole_{};
-  std::array<double, CsvColumns::places_of_a_row> values_{};
+  std::array<double, BoxColumns::places_of_a_row> values_{};
   std::string id_;
   std::string track_;
   Box<D, Real> text_box_{};

@@ -78,7 +78,7 @@ class TracksCsv final : public FrameReader<D, Real> {
           }
           std::string& id = ids_[listed.track];
           if (!id.empty() && id != rows_.id())
-            rows_.refuse(CsvColumns::id,
+            rows_.refuse(BoxColumns::id,
                          fmt::format("{}, as {} has elsewhere", shown(id), shown(rows_.track())));
           id = rows_.id();
         }

@@ -40,16 +40,25 @@ constexpr int most_nested = 32;
 template <int D, typename Real>
 class GeometryText {
  public:
-  explicit GeometryText(std::string_view text) : rest_(text) {}
+  GeometryText(std::string_view text, BoundsForm form) : rest_(text), form_(form) {}
 
   bool read() {
     skip();
-    if (rest_.starts_with('{')) return fail(", which is GeoJSON", "well-known text");
+    if (rest_.starts_with('{')) {
+      if (rest_.find("\"coordinates\"") != std::string_view::npos)
+        return fail(", which is GeoJSON", "well-known text, or a file of GeoJSON");
+      return fail(", which is a struct", "a column for each of its fields, such as bbox.xmin");
+    }
     if (rest_.size() > 8 && rest_.starts_with('0') &&
         rest_.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos)
       return fail(", which is well-known binary", "well-known text, as ST_AsText writes it");
     const bool is_named = !rest_.empty() && std::isalpha(static_cast<unsigned char>(rest_.front())) != 0;
-    if (!(is_named ? read_named() : read_bounds())) return false;
+    if (is_named && form_ != BoundsForm::min_max)
+      return fail(", which is no list of numbers", "one, in the order that --columns names");
+    if (!(is_named                       ? read_named()
+          : form_ == BoundsForm::min_max ? read_bounds<Real>()
+                                         : read_bounds<double>()))
+      return false;
     skip();
     return rest_.empty() || fail(fmt::format(", with {} behind its end", shown(rest_)), "nothing there");
   }
@@ -96,7 +105,8 @@ class GeometryText {
     return false;
   }
 
-  bool read_number(Real& number) {
+  template <typename Number>
+  bool read_number(Number& number) {
     skip();
     const std::string_view text = rest_.substr(0, rest_.find_first_of(" \t,()[]"));
     rest_.remove_prefix(text.size());
@@ -133,12 +143,13 @@ class GeometryText {
     return !has_number() || fail(", with corners of more numbers", fmt::format("{}", D));
   }
 
-  /// "[0, 0, 1, 1]": minima and maxima.
+  /// "[0, 0, 1, 1]": minima and maxima, or what `form_` says. A Number is Real where nothing is computed.
+  template <typename Number>
   bool read_bounds() {
     const char close = take('[') ? ']' : take('(') ? ')' : '\0';
-    std::vector<Real> numbers;
+    std::vector<Number> numbers;
     do {
-      Real number{};
+      Number number{};
       if (!read_number(number)) return false;
       numbers.push_back(number);
     } while (take(',') || has_number());
@@ -147,8 +158,10 @@ class GeometryText {
       return fail(fmt::format(", which is {} number{}", numbers.size(), numbers.size() == 1 ? "" : "s"),
                   fmt::format("{}, minima and then maxima", 2 * D));
     for (std::size_t axis = 0; axis < D; ++axis) {
-      box_.min[axis] = numbers[axis];
-      box_.max[axis] = numbers[D + axis];
+      const auto [min, max] =
+          bounds_of(form_, static_cast<double>(numbers[axis]), static_cast<double>(numbers[D + axis]));
+      box_.min[axis] = static_cast<Real>(min);
+      box_.max[axis] = static_cast<Real>(max);
     }
     return true;
   }
@@ -223,6 +236,7 @@ class GeometryText {
   }
 
   std::string_view rest_;
+  BoundsForm form_;
   int numbers_ = 0;  // of a point; 0: not said
   Box<D, Real> box_ = absent_box<D, Real>();
   GeometryFault fault_;
@@ -231,17 +245,17 @@ class GeometryText {
 }  // namespace
 
 template <int D, typename Real>
-GeometryFault read_geometry_text(std::string_view text, Box<D, Real>& box) {
-  GeometryText<D, Real> geometry(text);
+GeometryFault read_geometry_text(std::string_view text, Box<D, Real>& box, BoundsForm form) {
+  GeometryText<D, Real> geometry(text, form);
   geometry.read();
   box = geometry.box();
   return geometry.fault();
 }
 
-template GeometryFault read_geometry_text(std::string_view, Box<2, float>&);
-template GeometryFault read_geometry_text(std::string_view, Box<3, float>&);
-template GeometryFault read_geometry_text(std::string_view, Box<2, double>&);
-template GeometryFault read_geometry_text(std::string_view, Box<3, double>&);
+template GeometryFault read_geometry_text(std::string_view, Box<2, float>&, BoundsForm);
+template GeometryFault read_geometry_text(std::string_view, Box<3, float>&, BoundsForm);
+template GeometryFault read_geometry_text(std::string_view, Box<2, double>&, BoundsForm);
+template GeometryFault read_geometry_text(std::string_view, Box<3, double>&, BoundsForm);
 
 int dimension_of_geometry_text(std::string_view text) {
   DoubleBox3 box;

@@ -6,6 +6,8 @@
 
 #include "broadside/box.hpp"
 
+#include "lab/formats/columns.hpp"
+
 namespace broadside::lab::readers {
 
 /// The fault of a text; `found` is empty if there is none.
@@ -17,8 +19,10 @@ struct GeometryFault {
 /// The bounds of a text's points, each coordinate rounded once; absent if it has none. Well-known text is in
 /// 2D, whatever else its points have. Bounds are minima and then maxima, with commas or blanks between, with
 /// or without brackets; or PostGIS's "BOX(0 0,1 1)" and "BOX3D(0 0 0,1 1 1)".
+/// `form` says what the numbers of bounds are instead of minima and maxima; then they are computed in double.
 template <int D, typename Real>
-GeometryFault read_geometry_text(std::string_view text, Box<D, Real>& box);
+GeometryFault read_geometry_text(std::string_view text, Box<D, Real>& box,
+                                 BoundsForm form = BoundsForm::min_max);
 
 /// The dimension of the box of a text that is right.
 int dimension_of_geometry_text(std::string_view text);

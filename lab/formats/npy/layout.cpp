@@ -167,7 +167,7 @@ NpyLayout layout_of_fields(const NpyHeader& header, std::size_t bytes, const std
   };
   if (header.shape.size() != 1)
     refuse(fmt::format("in an array of shape ({})", fmt::join(header.shape, ", ")), "shape (n,)");
-  CsvColumns columns;
+  BoxColumns columns;
   const std::string problem =
       resolve(std::vector<std::string_view>(named.names.begin(), named.names.end()), columns);
   if (columns.has_frames || columns.has_tracks)
@@ -183,7 +183,7 @@ NpyLayout layout_of_fields(const NpyHeader& header, std::size_t bytes, const std
                    .unread = named.unread};
   for (std::size_t i = 0; i < named.columns.size(); ++i) {
     const int place = columns.places[i];
-    if (place == CsvColumns::ignored || place == CsvColumns::id) {
+    if (place == BoxColumns::ignored || place == BoxColumns::id) {
       layout.unread.push_back(named.names[i]);
       continue;
     }
@@ -191,12 +191,12 @@ NpyLayout layout_of_fields(const NpyHeader& header, std::size_t bytes, const std
     if (column.type.load == nullptr)
       refuse(fmt::format("{} is no number", shown(named.names[i], 40)), known_types);
     if (!column.type.is_held_by_float) layout.precision = Precision::float64;
-    if (place == CsvColumns::radius) {
+    if (place == BoxColumns::radius) {
       layout.second.fill(column);
-    } else if (place < CsvColumns::second) {
-      layout.first[static_cast<std::size_t>(place - CsvColumns::first)] = column;
+    } else if (place < BoxColumns::second) {
+      layout.first[static_cast<std::size_t>(place - BoxColumns::first)] = column;
     } else {
-      layout.second[static_cast<std::size_t>(place - CsvColumns::second)] = column;
+      layout.second[static_cast<std::size_t>(place - BoxColumns::second)] = column;
     }
   }
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(columns.dimension); ++axis) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lab/formats/csv/columns.hpp"
+#include "lab/formats/columns.hpp"
 #include "lab/formats/frames.hpp"
 #include "lab/formats/npy/header.hpp"
 

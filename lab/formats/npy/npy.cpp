@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <ostream>
@@ -27,7 +28,9 @@ class NpyFrame final : public FrameReader<D, Real> {
         begin_(begin),
         layout_(layout),
         is_plain_(is_plain(layout)),
-        end_row_(layout.rows) {}
+        end_row_(layout.rows) {
+    settle_top();
+  }
 
   std::vector<Box<D, Real>> first() override {
     std::vector<Box<D, Real>> boxes;
@@ -59,13 +62,22 @@ class NpyFrame final : public FrameReader<D, Real> {
                                   : std::make_shared<BoxLabels>(BoxLabels{.unread = layout_.unread});
   }
 
-  bool is_computed() const override {
-    return std::ranges::any_of(layout_.forms, [](BoundsForm form) {
-      return form != BoundsForm::min_max && form != BoundsForm::point;
-    });
-  }
+  bool is_computed() const override { return std::ranges::any_of(layout_.forms, computes_bounds); }
 
  private:
+  /// Looks for the first row that tells in which direction y grows.
+  void settle_top() {
+    if (layout_.forms[1] != BoundsForm::bottom_top) return;
+    layout_.forms[1] = BoundsForm::min_max;
+    for (std::size_t row = 0; row < layout_.rows; ++row) {
+      const double bottom = number(row, layout_.first[1]);
+      const double top = number(row, layout_.second[1]);
+      if (bottom == top || !std::isfinite(bottom) || !std::isfinite(top)) continue;
+      if (top < bottom) std::swap(layout_.first[1], layout_.second[1]);
+      return;
+    }
+  }
+
   /// Reads the next `count` rows.
   void read(std::size_t count, std::vector<Box<D, Real>>& boxes) {
     boxes.resize(count);

@@ -55,12 +55,28 @@ const std::vector<DoubleBox2> both_boxes = {{{1, 2}, {5, 8}}, {{-1, -2}, {0, 1e1
 
 TEST_F(CsvTable, TakesColumnsInAnyOrderAndSpellingAndLeavesOutOthers) {
   EXPECT_EQ(boxes_of("max_y,name,min_x,max_x,min_y\n8,a,1,5,2\n1e10,,-1,0,-2\n"), both_boxes);
-  for (const std::string header :
-       {"min_x,min_y,max_x,max_y", "xmin,ymin,xmax,ymax", "minX,minY,maxX,maxY", "X_MIN,Y_MIN,X_MAX,Y_MAX",
-        "Min X,Min Y,Max X,Max Y", "min.x,min.y,max.x,max.y", "lower_x,lower_y,upper_x,upper_y",
-        "lo_x,lo_y,hi_x,hi_y", "x0,y0,x1,y1", "x1,y1,x2,y2", "left,bottom,right,top", "west,south,east,north",
-        " min_x , min_y,max_x\t,max_y ", "\"min_x\",\"min_y\",\"max_x\",\"max_y\"",
-        "minimum_x,minimum_y,maximum_x,maximum_y"})
+  for (const std::string header : {"min_x,min_y,max_x,max_y",
+                                   "xmin,ymin,xmax,ymax",
+                                   "minX,minY,maxX,maxY",
+                                   "X_MIN,Y_MIN,X_MAX,Y_MAX",
+                                   "Min X,Min Y,Max X,Max Y",
+                                   "min.x,min.y,max.x,max.y",
+                                   "lower_x,lower_y,upper_x,upper_y",
+                                   "lo_x,lo_y,hi_x,hi_y",
+                                   "x0,y0,x1,y1",
+                                   "x1,y1,x2,y2",
+                                   "left,bottom,right,top",
+                                   "west,south,east,north",
+                                   " min_x , min_y,max_x\t,max_y ",
+                                   "\"min_x\",\"min_y\",\"max_x\",\"max_y\"",
+                                   "minimum_x,minimum_y,maximum_x,maximum_y",
+                                   "llx,lly,urx,ury",
+                                   "ulx,uly,lrx,lry",
+                                   "xtl,ytl,xbr,ybr",
+                                   "left_x,bottom_y,right_x,top_y",
+                                   "x_start,y_start,x_end,y_end",
+                                   "left,top,right,bottom",
+                                   "start,min_y,end,max_y"})
     EXPECT_EQ(boxes_of(header + "\n1,2,5,8\n-1,-2,0,1e10\n"), both_boxes) << header;
 }
 
@@ -206,6 +222,93 @@ TEST_F(CsvTable, TakesATopWithAHeightAsScreensDo) {
   EXPECT_EQ(boxes_of("left,top,width,height\n1,2,4,6\n"), (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
   EXPECT_EQ(boxes_of("left,top,width,height,bottom\n1,8,4,6,2\n"),
             (std::vector<DoubleBox2>{{{1, 2}, {5, 8}}}));
+}
+
+TEST_F(CsvTable, LetsTheRowsTellWhetherYGrowsUpOrDown) {
+  const std::vector<DoubleBox2> boxes = {{{1, 2}, {5, 2}}, {{1, 2}, {5, 8}}};
+  EXPECT_EQ(boxes_of("left,top,right,bottom\n1,2,5,2\n1,2,5,8\n"), boxes) << "down, as on a screen";
+  EXPECT_EQ(boxes_of("left,top,right,bottom\n1,2,5,2\n1,8,5,2\n"), boxes) << "up, as on paper";
+  EXPECT_EQ(boxes_of("bb_left,bb_top,bb_right,bb_bottom\n,,,\n1,2,5,8\n").back(), boxes[1]);
+  EXPECT_THAT(refusal_of("left,top,right,bottom\n1,2,5,8\n1,8,5,2\n"), HasSubstr("bad.csv:3: min (1, 8)"))
+      << "not both";
+}
+
+TEST_F(CsvTable, NamesOtherMeaningsInWhichAllRowsAreValid) {
+  EXPECT_THAT(refusal_of("0,0,10,10\n12,12,6,4\n"),
+              AllOf(HasSubstr("bad.csv:2: min (12, 12) and max (6, 4)"),
+                    HasSubstr("; as x,y,w,h all 2 rows are valid: say --columns=x,y,w,h")));
+  EXPECT_THAT(refusal_of("id,x1,y1,x2,y2\na,0,0,10,10\nb,12,12,6,4\n"),
+              HasSubstr("say --columns=id,x,y,w,h"));
+  EXPECT_THAT(refusal_of("name,xmin,ymin,xmax,ymax\na,0,5,1,-4\nb,2,7,3,6\n"),
+              HasSubstr("say --columns=-,min_x,max_y,max_x,min_y"));
+  EXPECT_THAT(refusal_of("0,1,10,12\n5,9,-3,-2\n"), HasSubstr("say --columns=min_x,max_x,min_y,max_y"));
+  EXPECT_THAT(refusal_of("0,0,10,10\n12,-12,-6,4\n"), Not(HasSubstr("--columns"))) << "nothing fits";
+  EXPECT_THAT(refusal_of("0 0.5 0.5 0.2 0.3\n7 0.1 0.2 0.2 0.1\n"),
+              AllOf(HasSubstr("5 columns of numbers and no names"), HasSubstr("as -,cx,cy,w,h all 2 rows")));
+  EXPECT_THAT(refusal_of("0 0.5 0.5 0.2 0.3 0.9\n"), HasSubstr("-,cx,cy,w,h"));
+  EXPECT_THAT(refusal_of("1,1,912,484,97,109,0,7,1\n2,1,912,484,97,109,0,7,1\n"),
+              HasSubstr("say --columns=frame,id,left,top,width,height"));
+  EXPECT_THAT(refusal_of("car 0.9 1 2 3 4\n"), HasSubstr("-,-,left,top,right,bottom"));
+}
+
+TEST_F(CsvTable, CallsACornerXAndYWhereTheUserNamesThem) {
+  ReadOptions options;
+  options.columns = "x,y,w,h";
+  EXPECT_EQ(boxes_of("1,2,4,6\n-1,-2,1,10000000002\n", options), both_boxes);
+  EXPECT_THAT(refusal_of("label,x,y,width,height,z\na,1,2,4,6,7\n"),
+              AllOf(HasSubstr("column 'x' may be a minimum or a centre"),
+                    HasSubstr("as -,x,y,width,height or -,cx,cy,width,height")));
+}
+
+TEST_F(CsvTable, ReadsKittisLabels) {
+  EXPECT_EQ(boxes_of("Car 0.00 0 -1.5 1.0 2.0 5.0 8.0 1.6 1.7 3.7 -16.5 2.4 58.5 -1.3\n"
+                     "Pedestrian 0.00 0 -0.2 -1 -2 0 1e10 1.9 0.5 1.2 1.8 1.5 8.4 0.0\n"),
+            both_boxes);
+}
+
+TEST_F(CsvTable, SaysWhyIntervalsAreNoBoxes) {
+  EXPECT_THAT(
+      refusal_of("chrom,chromStart,chromEnd\n1,5,9\n"),
+      AllOf(HasSubstr("'chromStart' and 'chromEnd' are intervals"), HasSubstr("add min_y and max_y")));
+  EXPECT_EQ(boxes_of("x,y,start,end\n1,2,5,9\n"), (std::vector<DoubleBox2>{{{1, 2}, {1, 2}}}))
+      << "of points they may be times";
+}
+
+TEST_F(CsvTable, SaysHowItTookWhatMayMeanSomethingElse) {
+  const auto note_of = [this](const std::string& text, const std::string& columns = {}) {
+    ReadOptions options;
+    options.columns = columns;
+    const BoxFile file = open_file(put("note.csv", text), options);
+    return std::visit([](const auto& frames) { return frames->warning(); }, file.frames);
+  };
+  EXPECT_THAT(note_of("1,2,5,8\n"),
+              HasSubstr("note.csv: no names of columns: read as min_x,min_y,max_x,max_y"));
+  EXPECT_EQ(note_of("1,2,5,8\n", "min_x,min_y,max_x,max_y"), "");
+  EXPECT_EQ(note_of("min_x,min_y,max_x,max_y\n1,2,5,8\n"), "");
+  EXPECT_THAT(note_of("lat,lon\n1,2\n"),
+              HasSubstr("each row is a point, with x from 'lon' and y from 'lat'"));
+  EXPECT_THAT(note_of("bbox\n\"[0, 0, 1, 1]\"\n"), HasSubstr("--columns bbox=xywh"));
+  EXPECT_EQ(note_of("bbox\n\"BOX(0 0,1 1)\"\n"), "");
+}
+
+TEST_F(CsvTable, TakesABboxAsTheUserSays) {
+  const std::string text = "id;bbox;min_x\na;[1, 2, 4, 6];9\nb;-1 -2 1 10000000002;9\n";
+  ReadOptions options;
+  options.columns = "bbox=xywh";
+  options.ids = "id";
+  EXPECT_EQ(boxes_of(text, options), both_boxes);
+  options.columns = "-,bbox=xywh";
+  options.ids.clear();
+  EXPECT_EQ(boxes_of(text, options), both_boxes);
+  options.columns = "bbox=cxcywh";
+  EXPECT_EQ(boxes_of("bbox\n3 5 4 6\n", options), (std::vector<DoubleBox2>{both_boxes[0]}));
+  EXPECT_THAT(refusal_of("bbox\n\"[0,0,10,10]\"\n\"[12,12,6,4]\"\n"),
+              AllOf(HasSubstr("bad.csv:3: min (12, 12)"),
+                    HasSubstr("all 2 rows are valid: say --columns=bbox=xywh")));
+  EXPECT_THAT(refusal_of("bbox\n0 0 1 1\n", "bbox=wh"),
+              HasSubstr("expected bbox=xyxy, bbox=xywh or bbox=cxcywh"));
+  EXPECT_THAT(refusal_of("bbox\nPOINT(1 2)\n", "bbox=xywh"), HasSubstr("which is no list of numbers"));
+  EXPECT_THAT(refusal_of("bbox\n\"{'xmin': 0, 'ymin': 0}\"\n"), HasSubstr("which is a struct"));
 }
 
 TEST_F(CsvTable, SaysWhatCannotBeALineOrABound) {

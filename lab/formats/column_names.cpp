@@ -4,7 +4,7 @@
 #include <cctype>
 #include <string>
 
-#include "lab/formats/csv/columns.hpp"
+#include "lab/formats/columns.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -42,6 +42,8 @@ constexpr auto words = std::to_array<Word>({
     {Role::max, "upper"},
     {Role::max, "high"},
     {Role::max, "hi"},
+    {Role::min, "start"},
+    {Role::max, "end"},
     {Role::centre, "center"},
     {Role::centre, "centre"},
     {Role::centre, "c"},
@@ -63,6 +65,29 @@ constexpr auto words = std::to_array<Word>({
     {Role::third, "3"},
 });
 
+/// Names of corners and sides, before an axis or behind it: the y of an upper left corner is a top.
+struct Corner {
+  std::string_view text;
+  std::optional<Role> x;
+  std::optional<Role> y;
+};
+constexpr auto corners = std::to_array<Corner>({
+    {"left", Role::min, std::nullopt},
+    {"right", Role::max, std::nullopt},
+    {"bottom", std::nullopt, Role::bottom},
+    {"top", std::nullopt, Role::top},
+    {"tl", Role::min, Role::top},
+    {"br", Role::max, Role::bottom},
+    {"ul", Role::min, Role::top},
+    {"lr", Role::max, Role::bottom},
+    {"ll", Role::min, Role::bottom},
+    {"ur", Role::max, Role::top},
+    {"topleft", Role::min, Role::top},
+    {"bottomright", Role::max, Role::bottom},
+    {"upperleft", Role::min, Role::top},
+    {"lowerright", Role::max, Role::bottom},
+});
+
 /// Names with the axis in them.
 struct Whole {
   std::string_view text;
@@ -71,12 +96,17 @@ struct Whole {
 constexpr auto wholes = std::to_array<Whole>({
     {"left", {Role::min, 0}},
     {"right", {Role::max, 0}},
-    {"bottom", {Role::min, 1}},
-    {"top", {Role::max, 1}},
+    {"bottom", {Role::bottom, 1}},
+    {"top", {Role::top, 1}},
     {"west", {Role::min, 0}},
     {"east", {Role::max, 0}},
     {"south", {Role::min, 1}},
     {"north", {Role::max, 1}},
+    {"start", {Role::begin, 0}},
+    {"begin", {Role::begin, 0}},
+    {"end", {Role::end, 0}},
+    {"chromstart", {Role::begin, 0}},
+    {"chromend", {Role::end, 0}},
     {"width", {Role::size, 0}},
     {"height", {Role::size, 1}},
     {"depth", {Role::size, 2}},
@@ -100,6 +130,15 @@ std::optional<Meaning> meaning_of_plain(std::string_view text) {
       if (!is_before && !is_behind) continue;
       const bool is_geographic = word.role == Role::position && axis.text.size() > 1;
       return Meaning{is_geographic ? Role::geographic : word.role, axis.axis};
+    }
+  }
+  for (const Corner& corner : corners) {
+    for (const auto& [role, axis] : {std::pair(corner.x, 0), std::pair(corner.y, 1)}) {
+      const char letter = "xy"[axis];
+      if (role && text.size() == corner.text.size() + 1 &&
+          ((text.starts_with(letter) && text.ends_with(corner.text)) ||
+           (text.ends_with(letter) && text.starts_with(corner.text))))
+        return Meaning{*role, axis};
     }
   }
   return std::nullopt;

@@ -1,4 +1,4 @@
-// What the columns of a table mean, by the names that people give them.
+// What the columns of a table mean, by the names that people give them: the one table of names.
 #pragma once
 
 #include <array>
@@ -23,12 +23,16 @@ enum class Role : std::uint8_t {
   half_size,
   position,
   geographic,  ///< a position too, but other columns may have one in other units
+  bottom,      ///< of y; whether it is the minimum depends on the direction in which y grows
+  top,
+  begin,  ///< of an interval, which is on x
+  end,
   zeroth,
   first,
   second,
   third
 };
-constexpr std::size_t roles = 11;
+constexpr std::size_t roles = 15;
 
 struct Meaning {
   Role role;
@@ -44,14 +48,16 @@ enum class BoundsForm : std::uint8_t {
   min_size,
   centre_size,
   centre_half_size,
-  centre_radius,  ///< the second is CsvColumns::radius, for all axes
-  point           ///< the first alone
+  centre_radius,  ///< the second is BoxColumns::radius, for all axes
+  point,          ///< the first alone
+  bottom_top      ///< minimum and maximum, or the reverse: the data tell, see settle_top()
 };
 
 /// The bounds that two values of a form are, computed in double.
 inline std::pair<double, double> bounds_of(BoundsForm form, double first, double second) noexcept {
   switch (form) {
     case BoundsForm::min_max:
+    case BoundsForm::bottom_top:
       return {first, second};
     case BoundsForm::min_size:
       return {first, first + second};
@@ -66,8 +72,13 @@ inline std::pair<double, double> bounds_of(BoundsForm form, double first, double
   return {first, second};
 }
 
+/// Whether bounds of a form have to be computed.
+constexpr bool computes_bounds(BoundsForm form) noexcept {
+  return form != BoundsForm::min_max && form != BoundsForm::bottom_top && form != BoundsForm::point;
+}
+
 /// The columns of a table.
-struct CsvColumns {
+struct BoxColumns {
   /// Places of values in a row; on axis a, the first and second value of its form are at first + a and
   /// second + a.
   static constexpr int ignored = -1;
@@ -90,6 +101,8 @@ struct CsvColumns {
   bool has_geometry =
       false;  ///< a text instead of columns of bounds; its dimension is known once one is read
   std::array<BoundsForm, 3> forms{};
+  /// Of bounds in one field: min_max ("xyxy"), min_size ("xywh") or centre_size ("cxcywh").
+  BoundsForm geometry_form = BoundsForm::min_max;
 
   /// Whether bounds have to be computed.
   bool is_computed() const noexcept;
@@ -109,9 +122,15 @@ struct CsvColumns {
   std::string wanted() const;
 };
 
-/// Finds the columns that are known by their names, in whatever order; docs/formats.md has the list. Returns
-/// what is wrong with them; nothing if they are fine.
-std::string resolve(std::span<const std::string_view> names, CsvColumns& columns);
+/// Finds the columns that are known by their names, in whatever order; docs/formats.md has the list. This is
+/// the one table of names, for CSV, NumPy, Parquet, data frames and Arrow. Returns what is wrong with them;
+/// nothing if they are fine. `are_chosen`: the user named the columns, and calls a corner x,y beside w,h; in
+/// a file x,y may be a centre, and is refused there.
+std::string resolve(std::span<const std::string_view> names, BoxColumns& columns, bool are_chosen = false);
+
+/// Makes minimum and maximum of `bottom` and `top`. On a screen y grows downwards: `top_is_min` says that a
+/// row has a top below its bottom.
+void settle_top(BoxColumns& columns, bool top_is_min);
 
 /// A name without what people spell differently: capitals, blanks, `_`, `-` and `.`.
 std::string plain(std::string_view name);
@@ -122,7 +141,7 @@ bool is_column_name(std::string_view name);
 /// Whether a name is that of a column of geometries as text, or of bounds in one field.
 bool is_geometry_name(std::string_view name);
 
-/// Columns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
-std::string positional(std::size_t count, CsvColumns& columns);
+/// BoxColumns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
+std::string positional(std::size_t count, BoxColumns& columns);
 
 }  // namespace broadside::lab::readers

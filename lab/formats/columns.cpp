@@ -1,5 +1,5 @@
 // What the columns of a table mean together.
-#include "lab/formats/csv/columns.hpp"
+#include "lab/formats/columns.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -60,19 +60,13 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
   return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);
 }
 
-/// On a screen y grows downwards: a top that comes with a height and nothing else is where the box begins.
-void read_as_screen(Found& y, std::span<const std::string_view> names) {
-  const int top = of(y, Role::max);
-  if (top == none || !plain(names[static_cast<std::size_t>(top)]).ends_with("top") ||
-      of(y, Role::size) == none)
-    return;
-  for (const Role role : {Role::min, Role::centre}) {
-    if (of(y, role) != none) return;
-  }
-  std::swap(y[static_cast<std::size_t>(Role::min)], y[static_cast<std::size_t>(Role::max)]);
+/// Whether an axis has begin and end of an interval and nothing else; beside other columns they may be times.
+bool is_interval(const Found& found) {
+  return of(found, Role::begin) != none && of(found, Role::end) != none &&
+         std::ranges::count(found, none) == std::ptrdiff_t{roles} - 2;
 }
 
-std::optional<Choice> choose(const Found& found, int radius) {
+std::optional<Choice> choose(const Found& found, int radius, bool are_chosen) {
   struct Way {
     BoundsForm form;
     Role first;
@@ -80,17 +74,24 @@ std::optional<Choice> choose(const Found& found, int radius) {
   };
   static constexpr auto ways = std::to_array<Way>({
       {BoundsForm::min_max, Role::min, Role::max},
+      {BoundsForm::bottom_top, Role::bottom, Role::top},
       {BoundsForm::min_max, Role::zeroth, Role::first},
       {BoundsForm::min_max, Role::first, Role::second},
       {BoundsForm::centre_half_size, Role::centre, Role::half_size},
       {BoundsForm::centre_half_size, Role::position, Role::half_size},
       {BoundsForm::centre_size, Role::centre, Role::size},
       {BoundsForm::min_size, Role::min, Role::size},
+      {BoundsForm::min_size, Role::bottom, Role::size},
+      // With a height alone, the top is where a box begins, as on a screen.
+      {BoundsForm::min_size, Role::top, Role::size},
   });
   for (const Way& way : ways) {
     if (of(found, way.first) != none && of(found, way.second) != none)
       return Choice{way.form, of(found, way.first), of(found, way.second)};
   }
+  if (are_chosen && of(found, Role::position) != none && of(found, Role::size) != none)
+    return Choice{BoundsForm::min_size, of(found, Role::position), of(found, Role::size)};
+  if (is_interval(found)) return Choice{BoundsForm::min_max, of(found, Role::begin), of(found, Role::end)};
   for (const Role role : {Role::centre, Role::position, Role::geographic}) {
     if (radius != none && of(found, role) != none && of(found, Role::size) == none)
       return Choice{BoundsForm::centre_radius, of(found, role), radius};
@@ -99,11 +100,11 @@ std::optional<Choice> choose(const Found& found, int radius) {
 }
 
 /// The column of the only thing that is known on an axis, a position; `none` if more is known or less.
-int point_of(const Found& found) {
+int point_of(Found found) {
+  for (const Role time : {Role::begin, Role::end}) found[static_cast<std::size_t>(time)] = none;
   const int column =
       of(found, Role::position) != none ? of(found, Role::position) : of(found, Role::geographic);
-  const auto known = std::ranges::count_if(found, [](int other) { return other != none; });
-  return known == 1 ? column : none;
+  return std::ranges::count(found, none) == std::ptrdiff_t{roles} - 1 ? column : none;
 }
 
 /// The radius, if it is one: beside g and b, r is a colour.
@@ -137,7 +138,8 @@ std::string problem_of(const Found& found, std::size_t axis, std::span<const std
   // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
   const auto known = std::ranges::find_if(found, [&](int column) {
     return column != none && column != position && column != of(found, Role::geographic) &&
-           column != of(found, Role::third) && (column != size || axis < 2);
+           column != of(found, Role::third) && column != of(found, Role::begin) &&
+           column != of(found, Role::end) && (column != size || axis < 2);
   });
   if (known != found.end())
     return fmt::format("column {} alone does not give bounds on the {} axis",
@@ -146,16 +148,16 @@ std::string problem_of(const Found& found, std::size_t axis, std::span<const std
 }
 
 /// The columns of boxes without extent, where there are no others; false if there are no such columns.
-bool resolve_points(const std::array<Found, 3>& found, CsvColumns& columns) {
+bool resolve_points(const std::array<Found, 3>& found, BoxColumns& columns) {
   const int x = point_of(found[0]);
   const int y = point_of(found[1]);
   const int z = point_of(found[2]);
   if (x == none || y == none) return false;
   columns.forms.fill(BoundsForm::point);
-  columns.places[static_cast<std::size_t>(x)] = CsvColumns::first;
-  columns.places[static_cast<std::size_t>(y)] = CsvColumns::first + 1;
+  columns.places[static_cast<std::size_t>(x)] = BoxColumns::first;
+  columns.places[static_cast<std::size_t>(y)] = BoxColumns::first + 1;
   if (z != none) {
-    columns.places[static_cast<std::size_t>(z)] = CsvColumns::first + 2;
+    columns.places[static_cast<std::size_t>(z)] = BoxColumns::first + 2;
     columns.dimension = 3;
   }
   return true;
@@ -163,8 +165,8 @@ bool resolve_points(const std::array<Found, 3>& found, CsvColumns& columns) {
 
 /// Finds the columns that boxes are made of. Returns the fault, if any.
 std::string resolve_bounds(std::span<const std::string_view> names, const std::array<Found, 3>& found,
-                           CsvColumns& columns) {
-  const CsvColumns before = columns;
+                           bool are_chosen, BoxColumns& columns) {
+  const BoxColumns before = columns;
   const auto place = [&columns](int column, int where) {
     columns.places[static_cast<std::size_t>(column)] = where;
   };
@@ -172,17 +174,18 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
   std::string problem;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Found& of_axis = found[axis];
-    if (of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) {
+    if ((of(of_axis, Role::min) == none || of(of_axis, Role::max) == none) &&
+        (of(of_axis, Role::bottom) == none || of(of_axis, Role::top) == none)) {
       std::string points = points_of(of_axis, names);
       if (!points.empty()) return points;
     }
-    if (const std::optional<Choice> choice = choose(of_axis, radius)) {
+    if (const std::optional<Choice> choice = choose(of_axis, radius, are_chosen)) {
       const int of_form = static_cast<int>(axis);
       columns.forms[axis] = choice->form;
       columns.dimension = std::max(2, of_form + 1);
-      place(choice->first, CsvColumns::first + of_form);
+      place(choice->first, BoxColumns::first + of_form);
       place(choice->second,
-            choice->form == BoundsForm::centre_radius ? CsvColumns::radius : CsvColumns::second + of_form);
+            choice->form == BoundsForm::centre_radius ? BoxColumns::radius : BoxColumns::second + of_form);
     } else if (problem.empty()) {
       problem = problem_of(of_axis, axis, names, columns.is_computed());
     }
@@ -191,23 +194,29 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
   columns = before;
   if (const int geometry = first_of(names, geometry_names); geometry != none) {
     columns.has_geometry = true;
-    place(geometry, CsvColumns::geometry);
+    place(geometry, BoxColumns::geometry);
     return {};
   }
-  if (!resolve_points(found, columns)) return problem;
+  if (!resolve_points(found, columns))
+    return is_interval(found[0])
+               ? fmt::format(
+                     "columns {} and {} are intervals, on one axis: add min_y and max_y, both 0 or "
+                     "the number of the interval's group",
+                     shown(names[static_cast<std::size_t>(of(found[0], Role::begin))]),
+                     shown(names[static_cast<std::size_t>(of(found[0], Role::end))]))
+               : problem;
   // A z that is not alone says nothing certain of a point.
   return point_of(found[2]) == none ? problem_of(found[2], 2, names, true) : "";
 }
 
 }  // namespace
 
-bool CsvColumns::is_computed() const noexcept {
-  return std::any_of(forms.begin(), forms.begin() + dimension, [](BoundsForm form) {
-    return form != BoundsForm::min_max && form != BoundsForm::point;
-  });
+bool BoxColumns::is_computed() const noexcept {
+  if (has_geometry) return computes_bounds(geometry_form);
+  return std::any_of(forms.begin(), forms.begin() + dimension, computes_bounds);
 }
 
-unsigned CsvColumns::needed() const noexcept {
+unsigned BoxColumns::needed() const noexcept {
   if (has_geometry) return 1U << geometry;
   unsigned bits = 0;
   for (int axis = 0; axis < dimension; ++axis) {
@@ -218,7 +227,7 @@ unsigned CsvColumns::needed() const noexcept {
   return bits;
 }
 
-std::string CsvColumns::wanted() const {
+std::string BoxColumns::wanted() const {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (places[i] != ignored) list += (list.empty() ? "" : ",") + names[i];
@@ -232,10 +241,10 @@ bool is_column_name(std::string_view name) {
 
 bool is_geometry_name(std::string_view name) { return is_one_of(name, geometry_names); }
 
-std::string resolve(std::span<const std::string_view> names, CsvColumns& columns) {
+std::string resolve(std::span<const std::string_view> names, BoxColumns& columns, bool are_chosen) {
   columns = {};
   columns.names.assign(names.begin(), names.end());
-  columns.places.assign(names.size(), CsvColumns::ignored);
+  columns.places.assign(names.size(), BoxColumns::ignored);
   columns.has_frames = std::ranges::any_of(names, is_frame);
 
   std::array<Found, 3> found;
@@ -258,8 +267,6 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
     *column = static_cast<int>(i);
   }
 
-  read_as_screen(found[1], names);
-
   const auto place = [&columns](int column, int where) {
     columns.places[static_cast<std::size_t>(column)] = where;
   };
@@ -269,22 +276,123 @@ std::string resolve(std::span<const std::string_view> names, CsvColumns& columns
       return fmt::format("column {} without a column 'box' or 'id'",
                          shown(names[static_cast<std::size_t>(frame)]));
     columns.has_tracks = track != none;
-    place(frame, CsvColumns::frame);
+    place(frame, BoxColumns::frame);
     if (columns.has_tracks)
-      place(track, CsvColumns::track);
+      place(track, BoxColumns::track);
     else
-      place(box, CsvColumns::box);
+      place(box, BoxColumns::box);
   }
-  return resolve_bounds(names, found, columns);
+  return resolve_bounds(names, found, are_chosen, columns);
 }
 
-std::string positional(std::size_t count, CsvColumns& columns) {
+void settle_top(BoxColumns& columns, bool top_is_min) {
+  constexpr int y = 1;
+  if (columns.forms[y] != BoundsForm::bottom_top) return;
+  columns.forms[y] = BoundsForm::min_max;
+  if (!top_is_min) return;
+  std::swap(*std::ranges::find(columns.places, BoxColumns::first + y),
+            *std::ranges::find(columns.places, BoxColumns::second + y));
+}
+
+std::string positional(std::size_t count, BoxColumns& columns) {
   static constexpr std::array<std::string_view, 4> flat = {"min_x", "min_y", "max_x", "max_y"};
   static constexpr std::array<std::string_view, 6> solid = {"min_x", "min_y", "min_z",
                                                             "max_x", "max_y", "max_z"};
   if (count == flat.size()) return resolve(flat, columns);
   if (count == solid.size()) return resolve(solid, columns);
   return fmt::format("{} column{} of numbers and no names", count, count == 1 ? "" : "s");
+}
+
+std::vector<std::string> other_meanings(const BoxColumns& columns) {
+  const auto axes = static_cast<std::size_t>(columns.dimension);
+  const bool has_bounds =
+      !columns.has_geometry && std::all_of(columns.forms.begin(), columns.forms.begin() + columns.dimension,
+                                           [](BoundsForm form) { return form == BoundsForm::min_max; });
+  if (!has_bounds) return {};
+  // `bound` gives the name of a minimum (0) or maximum (1) on an axis.
+  const auto named = [&](const auto& bound) {
+    std::string list;
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < columns.places.size(); ++i) {
+      const int place = columns.places[i];
+      std::string name = "-";
+      if (place >= BoxColumns::first && place < BoxColumns::first + 3)
+        name = bound(0, static_cast<std::size_t>(place - BoxColumns::first));
+      else if (place >= BoxColumns::second && place < BoxColumns::second + 3)
+        name = bound(1, static_cast<std::size_t>(place - BoxColumns::second));
+      else if (place != BoxColumns::ignored || plain(columns.names[i]) == "id")
+        name = columns.names[i];
+      list += (i == 0 ? "" : ",") + name;
+      if (name != "-") end = list.size();
+    }
+    list.resize(end);
+    return list;
+  };
+  std::vector<std::string> lists{named([](int bound, std::size_t axis) {
+    return std::string(1, bound == 0 ? axis_letters[axis] : "whd"[axis]);
+  })};
+  for (std::size_t exchanged = 1; exchanged < std::size_t{1} << axes; ++exchanged)
+    lists.push_back(named([exchanged](int bound, std::size_t axis) {
+      const bool is_min = (bound == 0) != ((exchanged >> axis & 1) != 0);
+      return fmt::format("{}_{}", is_min ? "min" : "max", axis_letters[axis]);
+    }));
+  return lists;
+}
+
+std::vector<std::string> corner_or_centre(std::span<const std::string_view> names) {
+  const auto has_size = [names](int axis) {
+    return std::ranges::any_of(names, [axis](std::string_view name) {
+      const std::optional<Meaning> meaning = meaning_of(name);
+      return meaning && meaning->role == Role::size && meaning->axis == axis;
+    });
+  };
+  std::string corner;
+  std::string centre;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::optional<Meaning> meaning = meaning_of(names[i]);
+    const bool is_position = meaning && meaning->role == Role::position && has_size(meaning->axis);
+    const bool is_kept = is_position || (meaning && meaning->role == Role::size) || is_frame(names[i]) ||
+                         is_one_of(names[i], track_names);
+    if (is_kept) end = i + 1;
+    corner += fmt::format(",{}", is_kept ? names[i] : "-");
+    centre += fmt::format(
+        ",{}", is_position ? fmt::format("c{}", axis_letters[static_cast<std::size_t>(meaning->axis)])
+               : is_kept   ? std::string(names[i])
+                           : "-");
+  }
+  // Without the ',-' of the columns behind the last.
+  for (std::size_t i = end; i < names.size(); ++i) {
+    corner.resize(corner.size() - 2);
+    centre.resize(centre.size() - 2);
+  }
+  if (end == 0) return {};
+  return {corner.substr(1), centre.substr(1)};
+}
+
+std::vector<std::string> unnamed_meanings(std::size_t count) {
+  switch (count) {
+    case 4:
+      return {"min_x,max_x,min_y,max_y"};
+    case 5:
+      // YOLO's labels; a box behind or before its class, number or score.
+      return {"-,cx,cy,w,h", "-,left,top,right,bottom", "left,top,right,bottom"};
+    case 6:
+      return {"-,cx,cy,w,h", "-,-,left,top,right,bottom", "-,left,top,right,bottom", "left,top,right,bottom"};
+    case 7:
+    case 8:
+    case 9:
+    case 10:
+      return {"frame,id,left,top,width,height"};  // MOT Challenge
+    case 15:
+    case 16:
+      return {"-,-,-,-,left,top,right,bottom"};  // KITTI's labels of objects
+    case 17:
+    case 18:
+      return {"frame,id,-,-,-,-,left,top,right,bottom"};  // and of tracks
+    default:
+      return {};
+  }
 }
 
 }  // namespace broadside::lab::readers
