@@ -14,12 +14,6 @@ end
 local function link(element)
   local target = element.target
   if target:match("^#") or target:match("^%a+:") then return nil end
-  -- The playground is beside build/paper/, and from docs/paper/ where the text says.
-  local playground = target:match("/build(/playground/.*)$")
-  if playground then
-    if not latex then element.target = ".." .. playground end
-    return element
-  end
   local path = target:gsub("#.*$", "")
   if pandoc.utils.stringify(element.content) ~= path:match("[^/]*$") then return element.content end
   if path:match("^%.%./%.%./") then path = path:sub(7)

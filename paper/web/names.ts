@@ -16,8 +16,8 @@ import { Numbering } from "./numbering.ts";
 import { listed, Problem } from "./problem.ts";
 import { shown, withUnit } from "./words.ts";
 
-/** The playground from docs/paper/, where `make playground` puts it. */
-const playground = "../../build/playground/index.html";
+/** Where `make playground` puts the playground: named, not linked, since a clone does not have it. */
+const playground = "build/playground/index.html";
 
 const narrow = 420;
 const wide = 760;
@@ -245,7 +245,8 @@ export class Paper {
         standings: () => standingsTable(this.facts),
         picture: (name, caption, link) => {
           const path = oneOf(by(this.pictures, (picture) => picture.split("/").at(-1)!), `${name}.svg`, "picture");
-          return this.show(path, `picture ${name}`, caption, `. [Move boxes in one](${playground}#${link})`);
+          const live = `. To move its boxes, run \`make playground\` and open \`${playground}#${link}\``;
+          return this.show(path, `picture ${name}`, caption, live);
         },
         comparison_chart: (name) =>
           this.draw(`comparison_${name}`, { ...oneOf(comparison, name, "chart of the comparison"), width: wide }),
