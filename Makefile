@@ -16,8 +16,8 @@ compiled := sed -n 's/^ *"file": "\(.*\)".*/\1/p'
 help: ## List the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
 
-compare: program ## Build the program and run the quick comparison
-	build/release/broadside compare
+compare: program ## Build the program and run the quick comparison, or that of COMPARE_ARGS
+	build/release/broadside compare $(COMPARE_ARGS)
 
 paper: program ## Make the paper (Markdown, PDF, HTML) and what README quotes from the committed results
 	mkdir -p build/paper
@@ -175,9 +175,10 @@ setup-ci:
 
 # What setup has installed, a configured build has to look for: setup then takes build.ninja away, and make, which has
 # seen it, does not miss it.
+# It is built with all that `cmake --install build/release` copies.
 program: build/release/build.ninja
 	@test -f $< || cmake --preset release
-	cmake --build --preset release --target broadside_program
+	cmake --build --preset release --target broadside_installed
 
 # Everything built under one preset, and its tests.
 tests-%: build/%/build.ninja

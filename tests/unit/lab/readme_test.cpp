@@ -31,5 +31,22 @@ TEST(Readme, ShowsCodeThatRuns) {
   EXPECT_GT(lines, 5u);
 }
 
+/// CI's first checks, before anything else is built, are what a visitor types first.
+TEST(Readme, BeginsWithTheCommandsThatContinuousIntegrationBeginsWith) {
+  const std::string readme = project_text("README.md");
+  const std::size_t begin = readme.find("```\nmake ");
+  ASSERT_NE(begin, std::string::npos);
+  std::istringstream commands(readme.substr(begin + 4, readme.find("```\n", begin + 4) - begin - 4));
+  std::istringstream script(project_text(".ci/run"));
+  std::size_t count = 0;
+  for (std::string command; std::getline(commands, command); ++count) {
+    std::string check;
+    while (std::getline(script, check) && !check.starts_with("check ")) {
+    }
+    EXPECT_EQ(check, "check " + command);
+  }
+  EXPECT_EQ(count, 2U);
+}
+
 }  // namespace
 }  // namespace broadside
