@@ -1,0 +1,20 @@
+# Configures the project in SOURCE with OPTIONS in the empty FOLDER, and fails unless the last -O of each of the library's
+# sources, which are in ROOT/src, matches EXPECTED, and each is compiled with FLAG as well.
+cmake_minimum_required(VERSION 3.22)
+file(REMOVE_RECURSE ${FOLDER})
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER} -DCMAKE_EXPORT_COMPILE_COMMANDS=ON ${OPTIONS}
+  COMMAND_ERROR_IS_FATAL ANY)
+file(READ ${FOLDER}/compile_commands.json commands)
+string(REGEX MATCHALL "\"command\": \"[^\n]*" commands "${commands}")
+list(FILTER commands INCLUDE REGEX "-c ${ROOT}/src/")
+list(LENGTH commands count)
+if(count LESS 10)
+  message(FATAL_ERROR "${FOLDER}/compile_commands.json has ${count} sources of ${ROOT}/src; expected all of the library")
+endif()
+foreach(command IN LISTS commands)
+  string(REGEX MATCHALL " -O[^ ]*" found "${command}")
+  list(POP_BACK found level)
+  if(NOT "${level}" MATCHES "^${EXPECTED}$" OR NOT command MATCHES " ${FLAG}")
+    message(FATAL_ERROR "the last -O is '${level}'; expected '${EXPECTED}', and '${FLAG}' among the flags: ${command}")
+  endif()
+endforeach()
