@@ -20,7 +20,9 @@ def test_the_guide_runs():
 
 def test_the_notebook_runs():
     notebook = json.loads((ROOT / "docs/python.ipynb").read_text())
-    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    code = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert all(cell["outputs"] for cell in code), "run it, by jupyter nbconvert --execute --inplace docs/python.ipynb"
+    cells = ["".join(cell["source"]) for cell in code]
     assert len(cells) > 5
     namespace = {}
     for cell in cells:
