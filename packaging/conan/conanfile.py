@@ -3,7 +3,7 @@ import os
 import re
 
 from conan import ConanFile
-from conan.tools.build import check_min_cppstd
+from conan.tools.build import check_min_cppstd, stdcpp_library
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, load, rmdir
 
@@ -33,7 +33,8 @@ class Broadside(ConanFile):
         self.version = re.search(r'BROADSIDE_VERSION "([0-9.]+)"', header).group(1)
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "bindings/*", "cmake/*", "include/*", "integrations/*", "src/*"):
+        for pattern in ("CMakeLists.txt", "LICENSE", "bindings/*", "cmake/*", "distributed/*", "include/*", "integrations/*",
+                        "src/*"):
             copy(self, pattern, src=self._sources, dst=self.export_sources_folder)
 
     def requirements(self):
@@ -56,6 +57,8 @@ class Broadside(ConanFile):
         toolchain.cache_variables["BROADSIDE_BULLET"] = "OFF"
         toolchain.cache_variables["BROADSIDE_FCL"] = "OFF"
         toolchain.cache_variables["BROADSIDE_MPI"] = "OFF"
+        if self.settings.build_type == "Debug":
+            toolchain.cache_variables["BROADSIDE_OPTIMIZE"] = "ON"
         toolchain.cache_variables["BROADSIDE_THREADS"] = "ON" if self.options.threads else "OFF"
         toolchain.generate()
 
@@ -75,5 +78,9 @@ class Broadside(ConanFile):
         self.cpp_info.set_property("cmake_target_name", "Broadside::broadside")
         self.cpp_info.set_property("pkg_config_name", "broadside")
         self.cpp_info.libs = ["broadside"]
-        if self.options.system and not self.options.shared:
-            self.cpp_info.system_libs = ["hwy"] + (["tbb"] if self.options.threads else [])
+        if self.options.shared:
+            return
+        # What a C compiler does not link by itself.
+        self.cpp_info.system_libs = [library for library in (stdcpp_library(self), "m") if library]
+        if self.options.system:
+            self.cpp_info.system_libs += ["hwy"] + (["tbb"] if self.options.threads else [])
