@@ -1,10 +1,15 @@
 # Sets is_optimized: a generator expression that is true in the build types in which BROADSIDE_OPTIMIZE adds -O3 to the
 # library's flags.
 #
-# A project that gives no build type, or Debug, compiles with no -O at all, which makes the library ten times as slow. An -O of
-# any kind, -O0 included, is the user's choice, and so is a Debug build of this project by itself.
+# A project that gives no build type, or Debug, compiles with no -O or -O0, which makes the library ten times as slow. Any other
+# level is the user's choice, and so is a Debug build of this project by itself.
 if(NOT BROADSIDE_OPTIMIZE MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "BROADSIDE_OPTIMIZE is '${BROADSIDE_OPTIMIZE}'; expected AUTO, ON or OFF")
+endif()
+
+set(is_optimized 0)
+if(MSVC OR NOT CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang|AppleClang)$")
+  return()  # their flags have other names
 endif()
 
 get_directory_property(directory_options COMPILE_OPTIONS)
@@ -17,14 +22,15 @@ endif()
 set(optimized_types "")
 foreach(build_type IN LISTS build_types)
   string(TOUPPER ${build_type} name)
-  set(flags ";${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${name}};${directory_options}")
-  if(BROADSIDE_OPTIMIZE STREQUAL "ON" OR (BROADSIDE_OPTIMIZE STREQUAL "AUTO" AND NOT flags MATCHES "[; :]-O"
+  string(REGEX MATCHALL "[; :]-O[^ ;>]*" levels ";${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${name}};${directory_options}")
+  list(PREPEND levels -O0)
+  list(POP_BACK levels level)
+  if(BROADSIDE_OPTIMIZE STREQUAL "ON" OR (BROADSIDE_OPTIMIZE STREQUAL "AUTO" AND level MATCHES "-O0$"
                                           AND NOT (PROJECT_IS_TOP_LEVEL AND name STREQUAL "DEBUG")))
     list(APPEND optimized_types ${build_type})
   endif()
 endforeach()
 
-set(is_optimized 0)
 if(optimized_types)
   set(is_optimized 1)
   if(CMAKE_CONFIGURATION_TYPES)
