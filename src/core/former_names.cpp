@@ -9,6 +9,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "core/lean.hpp"
+#include "core/number_text.hpp"
 
 namespace broadside::core {
 namespace {
@@ -51,6 +52,23 @@ std::string current_spec(std::string_view spec) {
            !former_value(current.name, tunable, value).empty();
   });
   return current.text();
+}
+
+std::string canonical_spec(std::string_view spec) {
+  const Spec given = Spec::parse(current_spec(spec));
+  Spec canonical{given.name, {}};
+  const Algorithm* const algorithm = find_algorithm(given.name);
+  for (const Tunable& tunable : algorithm->tunables) {
+    const auto found =
+        std::ranges::find(given.values, tunable.name, &decltype(given.values)::value_type::first);
+    if (found == given.values.end() || found->second == tunable.standard) continue;
+    if (tunable.type == Tunable::Type::choice) {
+      canonical.values.push_back(*found);
+    } else if (const double number = number_in(found->second); number != number_in(tunable.standard)) {
+      canonical.values.emplace_back(tunable.name, text_of(number));
+    }
+  }
+  return canonical.text();
 }
 
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {

@@ -17,6 +17,11 @@ std::string_view current_value(std::string_view algorithm, std::string_view tuna
 /// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
 std::string current_spec(std::string_view spec);
 
+/// The one text of all specs that make the same algorithm with the same values: current names, tunables in the
+/// algorithm's order without those of standard values, numbers as short as they can be. For a spec that an
+/// algorithm was made of.
+std::string canonical_spec(std::string_view spec);
+
 /// The reason why a tunable of the library's algorithm no longer has this value, as the end of an error
 /// message; empty if it never had it.
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value);

@@ -12,6 +12,7 @@
 #include "broadside/world.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/former_names.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
@@ -71,6 +72,13 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
                   : std::make_unique<ShadowTracker<D, Real>>(std::move(its_tracker))),
       first_generation(its_options.first_generation),
       is_refining(refines_by_boxes()) {
+  if constexpr (!core::is_lean) {
+    // Snapshots of worlds that work alike have the same bytes, also after a restore().
+    if (is_own)
+      options.algorithm = core::canonical_spec(options.algorithm);
+    else
+      options.algorithm = default_algorithm;
+  }
   if (!tracker) throw std::invalid_argument("World was given a null tracker; expected a tracker");
   if (options.events == WorldEvents::enlarged && !has_margin()) {
     throw std::invalid_argument(

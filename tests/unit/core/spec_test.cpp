@@ -71,6 +71,18 @@ TEST(Spec, RefusesWhatIsNoSpec) {
             "spec 'grid:cell=1:cell=1': 'cell' is given twice; expected name:tunable=value:...");
 }
 
+TEST(Spec, HasOneCanonicalText) {
+  using core::canonical_spec;
+  for (const char* const spec :
+       {"grid", "hierarchical_grid", "grid:cell=auto", "grid:update=auto", "grid:threads=1.0:cell=auto"})
+    EXPECT_EQ(canonical_spec(spec), "grid") << spec;
+  for (const char* const spec : {"grid:cell=2.5:update=follow", "hierarchical_grid:update=follow:cell=2.50",
+                                 "grid:update=follow:cell=25e-1:threads=1"})
+    EXPECT_EQ(canonical_spec(spec), canonical_spec("grid:update=follow:cell=2.5")) << spec;
+  EXPECT_NE(canonical_spec("grid:cell=2.5"), canonical_spec("grid:cell=2.500001"));
+  EXPECT_EQ(canonical_spec("bvh:update=reinsert"), canonical_spec("bvh:update=follow"));
+}
+
 TEST(Settings, HaveStandardValuesWhereNoneIsGiven) {
   const Settings settings(Spec::parse("grid"), tunables);
   EXPECT_TRUE(settings.is_auto("cell"));

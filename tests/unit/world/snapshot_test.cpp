@@ -1,4 +1,5 @@
 // Snapshots of worlds: the future after restore() is the one there was; and bytes that are none are refused.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
 #include "broadside/recorder.hpp"
 #include "broadside/world.hpp"
@@ -176,6 +178,59 @@ TEST(Snapshot, IsFollowedByTheSameFuture) {
 
 TEST(Snapshot, IsFollowedByTheSameFutureInDouble) {
   for (const Way& way : ways()) check_the_future<2, double>(way, 3);
+}
+
+/// Each registered algorithm, with none of its tunables and with all of them, oddly written; former names.
+std::vector<std::string> odd_specs() {
+  std::vector<std::string> specs = {"hierarchical_grid", "hierarchical_grid:cell=2.50", "bvh:update=reinsert",
+                                    "brute_force:update=changed", "brute_force:update=all"};
+  for (const Algorithm& algorithm : algorithms()) {
+    Spec spec{algorithm.name, {}};
+    specs.push_back(spec.text());
+    for (const Tunable& tunable : algorithm.tunables) {
+      const double number = std::clamp(2.0, tunable.least, tunable.most);
+      const bool is_choice = tunable.type == Tunable::Type::choice;
+      spec.values.emplace(spec.values.begin(), tunable.name,
+                          is_choice ? tunable.choices.front() : fmt::format("{:.3f}", number));
+    }
+    specs.push_back(spec.text());
+    for (auto& [tunable, value] : spec.values) {
+      const auto is_it = [&](const Tunable& one) { return one.name == tunable; };
+      value = std::ranges::find_if(algorithm.tunables, is_it)->standard;
+    }
+    specs.push_back(spec.text());
+  }
+  return specs;
+}
+
+template <int D>
+void expect_the_same_bytes_after_a_restore(const std::string& spec) {
+  World<D> world(spec);
+  for (int i = 0; i < 3; ++i) world.add(Box<D>{});
+  world.update();
+  const Bytes bytes = world.snapshot();
+  World<D> other;
+  other.restore(bytes);
+  EXPECT_EQ(other.snapshot(), bytes) << spec;
+  world.restore(bytes);
+  EXPECT_EQ(world.snapshot(), bytes) << spec;
+}
+
+TEST(Snapshot, HasTheSameBytesAfterARestoreWhateverTheSpec) {
+  for (const std::string& spec : odd_specs()) {
+    const Algorithm& algorithm = *find_algorithm(Spec::parse(spec).name);
+    if (algorithm.has_dimension(2)) expect_the_same_bytes_after_a_restore<2>(spec);
+    if (algorithm.has_dimension(3)) expect_the_same_bytes_after_a_restore<3>(spec);
+  }
+}
+
+TEST(Snapshot, OfACallersTrackerHasTheSameBytesWhateverTheSpec) {
+  WorldOptions options;
+  options.algorithm = "not used";
+  World2 world(make_tracker<2>("grid"), options);
+  World2 other(make_tracker<2>("bvh"));
+  other.restore(world.snapshot());
+  EXPECT_EQ(other.snapshot(), world.snapshot());
 }
 
 TEST(Snapshot, KeepsWhatCanBeReadOfBoxes) {
