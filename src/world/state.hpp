@@ -17,6 +17,7 @@
 #include "interface/margins.hpp"
 #include "world/current_pairs.hpp"
 #include "world/pair_graph.hpp"
+#include "world/query_index.hpp"
 #include "world/slot_set.hpp"
 
 namespace broadside {
@@ -96,9 +97,7 @@ struct BROADSIDE_HIDDEN World<D, Real>::State {
 
   // queries.hpp.
   const BoxIndex<D, Real>* trackers_index() const noexcept;
-  void bring_index_up_to_date() const;
-  void note_changes_for_index();
-  void drop_index() noexcept;
+  void mark_differences(const State& other);
 
   // update.hpp.
   Frame<D, Real> frame() const noexcept;
@@ -224,9 +223,7 @@ struct BROADSIDE_HIDDEN World<D, Real>::State {
   mutable std::atomic<bool> is_persisting = false;
   mutable std::mutex join_in_progress;
   mutable std::unique_ptr<PairFinder<D, Real>> join_finder;  // null until worlds are joined
-  mutable std::unique_ptr<BoxIndex<D, Real>> queried;        // null until a query is asked
-  mutable std::vector<BoxId> unindexed;  // changes that updates have taken and the index has not
-  mutable std::atomic<bool> is_indexed = false;
+  mutable core::QueryIndex<D, Real> query_index;
 };
 
 /// Makes room for `extra` more elements, at least doubling, so that appending them does not throw.

@@ -140,6 +140,19 @@ TEST(Recorder, StoresOnlyWhatChanged) {
   EXPECT_EQ(tape.end_frame(), empty_frame) << "was gone already";
 }
 
+TEST(Recorder, StoresAsMuchOfAFrameWhateverTheNumberOfBoxes) {
+  for (const std::uint32_t slots : {100U, 10'000U}) {
+    Tape<2> tape;
+    for (const bool is_later : {false, true}) {
+      for (std::uint32_t slot = 0; slot < slots; ++slot) {
+        const bool has_moved = is_later && (slot == 7 || slot == 50 || slot == 99);
+        tape.set(slot, {0, 0, 1, has_moved ? 2.0F : 1.0F});
+      }
+      EXPECT_EQ(tape.end_frame(), empty_frame + (is_later ? 3 : slots) * flat_box) << slots << " slots";
+    }
+  }
+}
+
 TEST(Recorder, TellsMinusZeroFromZero) {
   Tape<2> tape;
   tape.set(0, {0, 0, 1, 1});

@@ -43,6 +43,7 @@ Box<D> united(const Box<D>& a, const Box<D>& b) {
 template <int D>
 void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers) {
   parallel_.start(workers, boxes.size());
+  boxes_taken_ += boxes.size();
   nodes_.clear();
   info_.clear();
   free_.clear();
@@ -103,6 +104,7 @@ void DynamicBvh<D>::add_level() {
 
 template <int D>
 void DynamicBvh<D>::set(BoxId id, const Box<D>& box) {
+  ++boxes_taken_;
   const std::uint32_t at = slot(id);
   const bool is_there = is_present(box);
   if (at == no_slot) {

@@ -42,8 +42,8 @@ class DynamicBvh {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
 
-  /// Whether another build pays, after the insertions since the last one.
-  bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + 1024; }
+  /// Whether another build pays, after the insertions since the last one. It looks at absent boxes as well.
+  bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + slots_.size() / 64 + 1024; }
 
   /// The number of boxes, and of nodes.
   std::size_t size() const noexcept { return size_; }
@@ -61,6 +61,9 @@ class DynamicBvh {
   }
 
   std::size_t bytes() const noexcept;
+
+  /// How many boxes build() and set() were given since this was made: what tests count instead of time.
+  std::uint64_t boxes_taken() const noexcept { return boxes_taken_; }
 
  private:
   using Child = NumberedBox<D>;  // a box or a node
@@ -98,6 +101,7 @@ class DynamicBvh {
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;
   std::size_t insertions_ = 0;  // since the last build
+  std::uint64_t boxes_taken_ = 0;
   std::array<std::vector<std::uint32_t>, 2> lists_;
 };
 

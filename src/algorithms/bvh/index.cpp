@@ -31,8 +31,8 @@ float in_tree(Real t_max, int exponent) {
 template <int D, typename Real>
 void BvhIndex<D, Real>::update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
                                      bool rebuild) {
-  // Many changes cost more one by one than all boxes at once.
-  if (rebuild || changed.size() > tree_.size() / 4 + 16) return build(boxes);
+  // Many changes cost more one by one than all boxes at once. A build looks at the absent ones as well.
+  if (rebuild || changed.size() > tree_.size() / 4 + boxes.size() / 64 + 16) return build(boxes);
   if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
   for (const BoxId id : changed) {
     const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);

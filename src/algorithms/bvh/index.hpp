@@ -25,6 +25,7 @@ class BvhIndex final : public BoxIndex<D, Real> {
 
   /// For a tracker of floats that moves the boxes itself, instead of update(), and then hands over filters.
   DynamicBvh<D>& tree() noexcept { return tree_; }
+  const DynamicBvh<D>& tree() const noexcept { return tree_; }
   using BoxIndex<D, Real>::take_filters;
 
   const Box<D, Real>& exact(BoxId id) const noexcept { return exact_[index(id)]; }

@@ -160,6 +160,7 @@ void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool w
   make_room(generations, added);
   make_room(slots, added);
   reserve_moves(count);
+  query_index.reserve(slots.size() + added);
   if (has_margin()) make_room(enlarged, added);
   if (with_filters || uses_filters) make_room(filters, slots.size() - filters.size() + added);
   if (with_user_data || keeps_user_data()) make_room(user_data, slots.size() - user_data.size() + added);
@@ -213,7 +214,6 @@ template <int D, typename Real>
 void World<D, Real>::State::reserve_moves(std::size_t count) {
   make_room(changed, count);
   if (has_margin()) make_room(moved, count);
-  if (queried != nullptr) make_room(unindexed, count);
 }
 
 /// Moves a box out of its enlarged one, and enlarges it anew. Apart from set_box(), which is then small
@@ -236,12 +236,10 @@ inline void World<D, Real>::State::set_box(std::uint32_t slot, const Box<D, Real
   const Box<D, Real> box = quarantines() && !is_present(given) ? absent_box<D, Real>() : given;
   if (has_margin() && !margins.keeps(enlarged[slot], box, velocity)) return set_outside(slot, box, velocity);
   boxes[slot] = box;
-  if (!has_margin() || refines_by_boxes()) {
+  if (!has_margin() || refines_by_boxes())
     mark_changed(slot);
-  } else if (queried != nullptr) {
-    unindexed.push_back(BoxId{slot});
-    is_indexed.store(false, std::memory_order_relaxed);
-  }
+  else
+    query_index.mark(slot);
 }
 
 /// set_box() for many, where each is valid and there is no margin: lists them without a branch.
@@ -249,7 +247,6 @@ template <int D, typename Real>
 void World<D, Real>::State::set_boxes(std::span<const Handle> handles, BoxView<D, Real> given) noexcept {
   if (given.empty()) return;
   is_settled = false;
-  is_indexed.store(false, std::memory_order_relaxed);
   const std::size_t listed = changed.size();
   changed.resize(listed + given.size());
   BoxId* next = changed.data() + listed;
@@ -261,6 +258,8 @@ void World<D, Real>::State::set_boxes(std::span<const Handle> handles, BoxView<D
     slots[slot].is_changed = true;
   }
   changed.resize(static_cast<std::size_t>(next - changed.data()));
+  if (!query_index.exists()) return;
+  for (const Handle handle : handles) query_index.mark(handle.slot);
 }
 
 /// Makes all the room that removing `count` boxes takes, which may be part of `ignored_count` ignored pairs.
@@ -295,7 +294,7 @@ void World<D, Real>::State::remove_valid(std::uint32_t slot) noexcept {
 template <int D, typename Real>
 void World<D, Real>::State::mark_changed(std::uint32_t slot) noexcept {
   is_settled = false;
-  is_indexed.store(false, std::memory_order_relaxed);
+  query_index.mark(slot);
   if (slots[slot].is_changed) return;
   slots[slot].is_changed = true;
   changed.push_back(BoxId{slot});

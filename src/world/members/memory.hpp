@@ -82,7 +82,7 @@ void World<D, Real>::State::release() {
   current.shrink_to_fit();
   is_persisting = false;
   persisting.clear();
-  drop_index();
+  query_index.drop();
   graph.shrink_to_fit();
   ignored_edges.shrink_to_fit();
   free.shrink_to(slots.size());
@@ -120,7 +120,7 @@ WorldStatistics World<D, Real>::statistics() const {
                          state.refiltered) +
                 state.current.bytes() + state.graph.bytes();
   bytes.tracker = state.tracker->bytes();
-  bytes.queries = bytes_of(state.unindexed) + (state.queried ? state.queried->bytes() : 0);
+  bytes.queries = state.query_index.bytes();
   return statistics;
 }
 

@@ -1,4 +1,4 @@
-// World: its index for queries, the tracker's or one built when the first query is asked.
+// World: its index for queries, the tracker's or one of its own.
 #pragma once
 
 #include <mutex>
@@ -15,11 +15,11 @@ template <int D, typename Real>
 const BoxIndex<D, Real>& World<D, Real>::box_index() const {
   const State& state = *state_;
   if (const BoxIndex<D, Real>* const trackers = state.trackers_index()) return *trackers;
-  if (!state.is_indexed.load(std::memory_order_acquire)) {
+  if (!state.query_index.is_current()) {
     const std::lock_guard lock(state.reading);
-    if (!state.is_indexed.load(std::memory_order_relaxed)) state.bring_index_up_to_date();
+    if (!state.query_index.is_current()) state.query_index.update(state.boxes, state.filters);
   }
-  return *state.queried;
+  return state.query_index.get();
 }
 
 template <int D, typename Real>
@@ -34,33 +34,19 @@ const BoxIndex<D, Real>* World<D, Real>::State::trackers_index() const noexcept 
   return tracker->box_index();
 }
 
-/// Changes since the last update may be handed to the index more than once, and cost as much each time.
+/// Before another state takes over the index: lists the slots in which the two differ.
 template <int D, typename Real>
-void World<D, Real>::State::bring_index_up_to_date() const {
-  if (queried == nullptr) queried = make_box_index<D, Real>();
-  unindexed.insert(unindexed.end(), changed.begin(), changed.end());
-  // Slots that no longer exist need not be listed; those that came and went in between must not be.
-  std::erase_if(unindexed, [this](BoxId slot) { return index(slot) >= boxes.size(); });
-  queried->update({.boxes = boxes, .changed = unindexed, .filters = filters});
-  unindexed.clear();
-  is_indexed.store(true, std::memory_order_release);
-}
-
-/// Before an update forgets what changed: keeps it for the index. One that no query has used for long, or
-/// since changes while the tracker has one, is built anew by the next query that needs it.
-template <int D, typename Real>
-void World<D, Real>::State::note_changes_for_index() {
-  if (queried == nullptr || is_indexed.load(std::memory_order_relaxed)) return;
-  const bool is_unused = unindexed.size() + changed.size() > slots.size() / 2 + 1024;
-  if (is_unused || (!has_margin() && tracker->box_index() != nullptr)) return drop_index();
-  unindexed.insert(unindexed.end(), changed.begin(), changed.end());
-}
-
-template <int D, typename Real>
-void World<D, Real>::State::drop_index() noexcept {
-  queried.reset();
-  unindexed = {};
-  is_indexed.store(false, std::memory_order_relaxed);
+void World<D, Real>::State::mark_differences(const State& other) {
+  if (!query_index.exists()) return;
+  query_index.reserve(other.slots.size());
+  const auto filter_of = [](const State& state, std::uint32_t slot) {
+    return state.uses_filters ? state.filters[slot] : Filter{};
+  };
+  for (std::uint32_t slot = 0; slot < other.slots.size(); ++slot) {
+    const bool is_same = slot < slots.size() && boxes[slot] == other.boxes[slot] &&
+                         filter_of(*this, slot) == filter_of(other, slot);
+    if (!is_same) query_index.mark(slot);
+  }
 }
 
 }  // namespace broadside

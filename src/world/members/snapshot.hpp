@@ -166,7 +166,9 @@ void World<D, Real>::restore(std::span<const std::byte> bytes) {
   typename State::LastFrame last;
   std::unique_ptr<State> restored = State::get(rest, *state_, last);
   expect_equal("the number of bytes behind the end", rest.left(), std::size_t{0});
+  state_->mark_differences(*restored);
   restored->take_tracker(*state_, last);
+  restored->query_index.take(state_->query_index);
   restored->predicate = std::move(state_->predicate);
   state_ = std::move(restored);
 }

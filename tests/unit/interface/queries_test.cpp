@@ -16,6 +16,7 @@
 
 #include "broadside/error.hpp"
 
+#include "algorithms/bvh/index.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/scattered.hpp"
@@ -345,6 +346,56 @@ TEST(BoxIndex, DoesNotGrowUnderChurn) {
     if (frame == 200) bytes = index->bytes();
   }
   EXPECT_LE(index->bytes(), bytes + bytes / 4);
+}
+
+/// How many boxes the index took for this frame.
+std::uint64_t taken(BoxIndex<2>& index, const Frame<2>& frame) {
+  const algorithm::DynamicBvh<2>& tree = static_cast<const algorithm::BvhIndex<2, float>&>(index).tree();
+  const std::uint64_t before = tree.boxes_taken();
+  index.update(frame);
+  return tree.boxes_taken() - before;
+}
+
+TEST(BoxIndex, TakesWhatChangedWhateverTheNumberOfBoxes) {
+  for (const std::size_t size : {200U, 20'000U}) {
+    std::vector<Box2> boxes = row(size);
+    std::vector<Filter> filters(size);
+    auto index = make_box_index<2>();
+    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), size);
+    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 0U);
+    boxes[3] = boxes[100];
+    boxes[4] = absent_box<2>();
+    filters[5].mask = 1;
+    const std::vector<BoxId> changed = {BoxId{3}, BoxId{4}, BoxId{5}};
+    EXPECT_EQ(taken(*index, {.boxes = boxes, .changed = changed, .filters = filters}), 3U);
+    boxes.resize(size + 2, boxes[3]);
+    filters.resize(size + 2);
+    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 2U) << "new ones";
+    boxes.resize(size - 3);
+    filters.resize(size - 3);
+    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 5U) << "those that are gone";
+  }
+}
+
+TEST(BoxIndex, TakesWhatChangedAmongManyAbsentBoxes) {
+  for (const std::size_t size : {2000U, 200'000U}) {
+    std::vector<Box2> boxes = row(size);
+    const auto index = index_of(boxes);
+    std::ranges::fill(boxes, absent_box<2>());
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < size; ++i) changed.push_back(BoxId(i));
+    index->update({.boxes = boxes, .changed = changed});
+    changed.resize(20);
+    std::uint64_t all = 0;
+    for (int frame = 0; frame < 400; ++frame) {
+      for (const BoxId id : changed) {
+        const auto at = static_cast<float>(frame % 7 * 100 + static_cast<int>(id));
+        boxes[static_cast<std::size_t>(id)] = frame % 5 == 4 ? absent_box<2>() : Box2{{at, 0}, {at + 1, 1}};
+      }
+      all += taken(*index, {.boxes = boxes, .changed = changed});
+    }
+    EXPECT_LE(all, 400U * changed.size() * 50) << size << " places";
+  }
 }
 
 }  // namespace
