@@ -302,7 +302,7 @@ class BROADSIDE_PUBLIC World {
   ///
   /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
   /// update, and does not enlarge them), the queries use it. Otherwise the first one builds an index, which
-  /// follows the boxes from then on, and each one after changes pays for what changed.
+  /// follows the boxes from then on, and each one pays for what changed since the last.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
     return box_index().overlapping(box, [&](BoxId id) { return function(handle_of(id)); },
