@@ -93,7 +93,7 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
 
 namespace broadside {
 
-int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms) {
+int detail::run_program(int count, const char* const* values, std::span<const Algorithm> algorithms) {
   using cli::Exit;
   lab::platform::prepare_standard_streams();
   const std::vector<std::string> arguments = lab::platform::arguments(count, values);
@@ -101,7 +101,7 @@ int run_program(int count, const char* const* values, std::vector<Algorithm> alg
   cli::on_failing_write();
   cli::on_signal(cli::OnSignal::end);
   try {
-    for (Algorithm& algorithm : algorithms) register_algorithm(std::move(algorithm));
+    for (const Algorithm& algorithm : algorithms) register_algorithm(algorithm);
     const lab::Catalogue catalogue;
     const Exit exit = run(arguments, catalogue);
     cli::flush_output();

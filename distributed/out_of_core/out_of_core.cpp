@@ -39,7 +39,7 @@ class OutOfCoreJoin<D, Real>::Work {
  public:
   using Region = typename Partition<D, Real>::Region;
 
-  Work(std::vector<BoxSource<D, Real>*> sources, OutOfCoreOptions options)
+  Work(std::vector<detail::BoxPieces<D, Real>*> sources, OutOfCoreOptions options)
       : sources_(std::move(sources)),
         options_(checked(std::move(options))),
         finder_(finder_of(options_)),
@@ -206,7 +206,7 @@ class OutOfCoreJoin<D, Real>::Work {
     std::uint64_t done = 0;
     read.parts = part_files_.write(partition, "", [&](std::size_t source, const auto& add) {
       read.boxes[source] =
-          sources_.for_each_piece(source, [&](const std::vector<Box<D, Real>>& boxes, std::uint64_t first) {
+          sources_.for_each_piece(source, [&](std::span<const Box<D, Real>> boxes, std::uint64_t first) {
             sources_.check(boxes, first, source);
             add(boxes, [first](std::size_t i) { return first + i; });
             report(OutOfCoreStage::reading, done += boxes.size(), estimated);
@@ -275,7 +275,7 @@ class OutOfCoreJoin<D, Real>::Work {
     const std::array<std::uint64_t, 2> boxes_before = part.boxes;
     for (std::size_t source = 0; source < sources_.size(); ++source)
       part_files_.rewrite(part, source, [&](const auto& add) {
-        sources_.for_each_piece(source, [&](const std::vector<Box<D, Real>>& boxes, std::uint64_t first) {
+        sources_.for_each_piece(source, [&](std::span<const Box<D, Real>> boxes, std::uint64_t first) {
           for (std::size_t i = 0; i < boxes.size(); ++i)
             if (is_present(boxes[i]) && region.touches(boxes[i])) add(boxes[i], first + i);
           report(OutOfCoreStage::reading, first + boxes.size(), manifest_.boxes[source]);
@@ -388,11 +388,11 @@ class OutOfCoreJoin<D, Real>::Work {
 };
 
 template <int D, typename Real>
-OutOfCoreJoin<D, Real>::OutOfCoreJoin(BoxSource<D, Real>& boxes, OutOfCoreOptions options)
+OutOfCoreJoin<D, Real>::OutOfCoreJoin(detail::BoxPieces<D, Real>& boxes, OutOfCoreOptions options)
     : work_(std::make_unique<Work>(std::vector{&boxes}, std::move(options))) {}
 
 template <int D, typename Real>
-OutOfCoreJoin<D, Real>::OutOfCoreJoin(BoxSource<D, Real>& left, BoxSource<D, Real>& right,
+OutOfCoreJoin<D, Real>::OutOfCoreJoin(detail::BoxPieces<D, Real>& left, detail::BoxPieces<D, Real>& right,
                                       OutOfCoreOptions options)
     : work_(std::make_unique<Work>(std::vector{&left, &right}, std::move(options))) {}
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +17,14 @@ namespace broadside::out_of_core {
 template <int D, typename Real>
 class Sources {
  public:
-  explicit Sources(std::vector<BoxSource<D, Real>*> sources) : sources_(std::move(sources)) {}
+  explicit Sources(std::vector<detail::BoxPieces<D, Real>*> sources) : sources_(std::move(sources)) {}
 
   std::size_t size() const noexcept { return sources_.size(); }
 
   /// The approximate number of boxes of all; 0 if unknown.
   std::uint64_t estimated_boxes() const {
     std::uint64_t estimated = 0;
-    for (const BoxSource<D, Real>* const source : sources_) estimated += source->estimated_size();
+    for (const detail::BoxPieces<D, Real>* const source : sources_) estimated += source->estimated_size();
     return estimated;
   }
 
@@ -31,13 +32,12 @@ class Sources {
   /// Returns their number.
   template <typename Visit>
   std::uint64_t for_each_piece(std::size_t source, const Visit& visit) const {
-    std::vector<Box<D, Real>> piece;
     std::uint64_t first = 0;
-    sources_[source]->rewind();
-    while (sources_[source]->next(piece)) {
+    sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {
       visit(piece, first);
       first += piece.size();
-    }
+      return true;
+    });
     return first;
   }
 
@@ -48,19 +48,20 @@ class Sources {
   };
   Sample sample(std::size_t most) const {
     Sample sample;
-    std::vector<Box<D, Real>> piece;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
       const std::size_t most_yet = most * (source + 1) / sources_.size();
-      sources_[source]->rewind();
-      while (sample.boxes.size() < most_yet && sources_[source]->next(piece))
-        sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());
+      sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {
+        if (sample.boxes.size() < most_yet)
+          sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());
+        return sample.boxes.size() < most_yet;
+      });
       if (sample.boxes.size() >= most_yet) sample.is_all = false;
     }
     return sample;
   }
 
   /// Throws InvalidInput unless each box is valid or absent; `first` is the id of boxes[0].
-  void check(const std::vector<Box<D, Real>>& boxes, std::uint64_t first, std::size_t source) const {
+  void check(std::span<const Box<D, Real>> boxes, std::uint64_t first, std::size_t source) const {
     const char* const set = sources_.size() == 1 ? "box " : source == 0 ? "left box " : "right box ";
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (is_present(boxes[i]) || is_absent(boxes[i])) continue;
@@ -72,7 +73,7 @@ class Sources {
   }
 
  private:
-  std::vector<BoxSource<D, Real>*> sources_;
+  std::vector<detail::BoxPieces<D, Real>*> sources_;
 };
 
 }  // namespace broadside::out_of_core

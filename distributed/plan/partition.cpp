@@ -219,7 +219,8 @@ Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t 
 }
 
 template <int D, typename Real>
-Partition<D, Real>::Partition(std::vector<Cut> cuts, const Region& space) : cuts_(std::move(cuts)) {
+Partition<D, Real>::Partition(std::span<const Cut> cuts, const Region& space)
+    : cuts_(cuts.begin(), cuts.end()) {
   // The tree is listed depth first, the lower side before the upper one, and parts are numbered in that
   // order.
   struct Waiting {

@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "broadside/export.hpp"
 #include "broadside/finder.hpp"
@@ -23,7 +22,7 @@ namespace broadside {
 /// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
 struct BROADSIDE_PUBLIC Spec {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> values;
+  detail::Vector<std::pair<std::string, std::string>> values;
 
   /// Reads a spec. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
   /// is given twice. Whether name and tunables exist is for Settings to say.
@@ -43,7 +42,7 @@ struct Tunable {
   Type type = Type::number;
   double least = 0;  ///< for number and integer: the range of values allowed, both ends included
   double most = std::numeric_limits<double>::max();
-  std::vector<std::string> choices{};  ///< for choice: the values allowed
+  detail::Vector<std::string> choices{};  ///< for choice: the values allowed
 };
 
 /// A spec's values, checked against the tunables they are for; those not given have their standard value.
@@ -62,7 +61,7 @@ class BROADSIDE_PUBLIC Settings {
   const std::string& text(std::string_view tunable) const;
 
  private:
-  std::vector<std::pair<std::string, std::string>> values_;
+  detail::Vector<std::pair<std::string, std::string>> values_;
 };
 
 /// Where an algorithm comes from.
@@ -84,7 +83,7 @@ struct Algorithm {
   std::string source;   ///< the paper, book or program it is from
   AlgorithmKind kind = AlgorithmKind::own;
   std::string version{};  ///< of the library behind it; empty for what is part of Broadside
-  std::vector<Tunable> tunables{};
+  detail::Vector<Tunable> tunables{};
 
   MakeFinder<2> finder_2d{};  ///< empty where the algorithm does not do that dimension
   MakeFinder<3> finder_3d{};

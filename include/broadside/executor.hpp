@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,9 +72,16 @@ struct Workers {
 /// "NEON". Pairs and their order do not depend on it. Thread-safe.
 BROADSIDE_PUBLIC std::string instruction_set();
 
+namespace detail {
+BROADSIDE_PUBLIC std::span<const std::string> instruction_sets();
+}  // namespace detail
+
 /// Those that the library was compiled for and this processor has, the best first; the last one is plain C++.
 /// Not changed by limit_instruction_set(). Thread-safe.
-BROADSIDE_PUBLIC std::vector<std::string> instruction_sets();
+BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR inline std::vector<std::string> instruction_sets() {
+  const std::span<const std::string> names = detail::instruction_sets();
+  return {names.begin(), names.end()};
+}
 
 /// Has every search of this process use the instruction set `name`, one of instruction_sets(), or the best
 /// one again if `name` is empty. For measurements and tests. Not to be called while another thread searches

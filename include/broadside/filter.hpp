@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "broadside/export.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside {
@@ -127,7 +127,7 @@ class IgnoredPairs {
     keys_.swap(larger.keys_);
   }
 
-  std::vector<std::uint64_t> keys_;  // as many as a power of two; `none` where a place is free
+  detail::Vector<std::uint64_t> keys_;  // as many as a power of two; `none` where a place is free
   std::size_t size_ = 0;
 };
 

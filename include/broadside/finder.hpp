@@ -138,19 +138,16 @@ class BROADSIDE_PUBLIC PairFinder {
   /// Checks the boxes, and returns how many are absent or quarantined.
   std::size_t check(std::span<const Box<D, Real>> boxes, const char* which = "") const;
 
-  /// The boxes as an array: themselves, or gathered into `scratch`.
-  static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& scratch);
-
   /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
   void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first);
 
   /// Appends the present ones of `boxes` to present_ and their places to ids_.
   void take_present(std::span<const Box<D, Real>> boxes);
 
-  std::array<std::vector<Box<D, Real>>, 2> gathered_;  // boxes that were given as no array
-  std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
-  std::vector<BoxId> ids_;             // and their places in the caller's array
-  std::vector<BoxId> quarantined_;
+  std::array<detail::Vector<Box<D, Real>>, 2> gathered_;  // boxes that were given as no array
+  detail::Vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
+  detail::Vector<BoxId> ids_;             // and their places in the caller's array
+  detail::Vector<BoxId> quarantined_;
   BadInput bad_input_ = BadInput::reject;
   std::size_t left_count_ = 0;
   std::optional<Statistics> statistics_;
@@ -169,7 +166,7 @@ template <int D, typename Real = float>
 BROADSIDE_PUBLIC std::unique_ptr<PairFinder<D, Real>> make_finder(std::string_view spec);
 
 /// How one call of find_pairs() searches.
-struct FindOptions {
+struct BROADSIDE_CALLERS_VECTOR FindOptions {
   std::string_view algorithm = default_algorithm;  ///< the spec, such as "grid:cell=2.5" or "auto:threads=4"
   std::span<const Filter> filters{};               ///< as PairFilters has them
   std::span<const Filter> right_filters{};

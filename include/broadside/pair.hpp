@@ -38,9 +38,21 @@ constexpr std::uint64_t key(Pair pair) noexcept {
   return std::uint64_t{index(pair.first)} << 32 | index(pair.second);
 }
 
+namespace detail {
+/// Up to this many pairs are sorted by comparing them, which costs less than counting and takes no scratch.
+inline constexpr std::size_t max_compared_pairs = 128;
+
+/// sort_pairs() between two arrays. If there are more than max_compared_pairs, `scratch` is as long as
+/// `pairs`. Returns whether the sorted pairs are in `scratch`.
+BROADSIDE_PUBLIC bool sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch);
+}  // namespace detail
+
 /// Sorts pairs by first, then by second id. O(n) for many pairs: a radix sort over the bits in which they
 /// differ. `scratch` is memory to keep between calls; what it holds afterwards is unspecified.
-BROADSIDE_PUBLIC void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
+inline void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+  if (pairs.size() > detail::max_compared_pairs) scratch.resize(pairs.size());
+  if (detail::sort_pairs(pairs, scratch)) pairs.swap(scratch);
+}
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
 ///

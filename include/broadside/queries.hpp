@@ -300,11 +300,11 @@ class BROADSIDE_PUBLIC BoxIndex {
                             Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const = 0;
   virtual std::size_t index_bytes() const noexcept = 0;
 
-  std::span<const Filter> filters_;  // of the last frame; empty if it had none
-  std::vector<Filter> own_filters_;  // what these are of after update()
-  std::vector<BoxId> changed_;       // with those that need not be listed
-  std::size_t size_ = 0;             // of the last frame
-  bool dirty_ = true;                // the last update did not end, or there was none
+  std::span<const Filter> filters_;     // of the last frame; empty if it had none
+  detail::Vector<Filter> own_filters_;  // what these are of after update()
+  detail::Vector<BoxId> changed_;       // with those that need not be listed
+  std::size_t size_ = 0;                // of the last frame
+  bool dirty_ = true;                   // the last update did not end, or there was none
 };
 
 /// An index that is a tree of bounds, sixteen to a node. Some 100 bytes a box in 2D and 140 in 3D, half of

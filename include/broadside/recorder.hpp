@@ -18,6 +18,14 @@
 #include <utility>
 #include <vector>
 
+// In libstdc++'s debug mode a Recorder has other symbols, as its vectors are larger than those of a Recorder
+// in a library that was compiled without it.
+#ifdef _GLIBCXX_DEBUG
+#define BROADSIDE_RECORDER_ABI __attribute__((abi_tag("debug")))
+#else
+#define BROADSIDE_RECORDER_ABI
+#endif
+
 namespace broadside {
 
 /// What the writers and readers of traces share.
@@ -120,7 +128,7 @@ class Checksum {
 /// under way. Time a frame: that of the slots named since the last one, and of sorting the pairs; memory: two
 /// boxes a slot and two numbers a pair, with pairs also two filters a slot. One thread at a time.
 template <int D, typename Real = float>
-class Recorder {
+class BROADSIDE_RECORDER_ABI Recorder {
   static_assert(D == 2 || D == 3, "a trace has two or three dimensions");
   static_assert(std::numeric_limits<Real>::is_iec559 && (sizeof(Real) == 4 || sizeof(Real) == 8),
                 "a trace holds float or double of IEC 559");

@@ -1,6 +1,8 @@
 // Ready-made sinks: pairs into a vector, into a function, counted, or hashed as a set.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -13,13 +15,30 @@
 
 namespace broadside {
 
+namespace detail {
+/// Asks for large pages for memory that has not been written yet: a hint, which never fails.
+BROADSIDE_PUBLIC void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
+}  // namespace detail
+
 /// Appends every pair to the caller's vector, which must outlive the sink.
-class BROADSIDE_PUBLIC PairCollector final : public PairSink {
+class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
  public:
   explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
 
  private:
-  void consume(std::span<const Pair> pairs) override;
+  void consume(std::span<const Pair> pairs) override {
+    if (pairs.size() > pairs_->capacity() - pairs_->size()) grow(pairs_->size() + pairs.size());
+    pairs_->insert(pairs_->end(), pairs.data(), pairs.data() + pairs.size());
+  }
+
+  /// Doubles the vector's memory at least, and asks for large pages for it.
+  void grow(std::size_t size) {
+    std::vector<Pair> larger;
+    larger.reserve(std::max(size, 2 * pairs_->capacity()));
+    detail::prefer_large_pages(larger.data(), larger.capacity() * sizeof(Pair));
+    larger.insert(larger.end(), pairs_->data(), pairs_->data() + pairs_->size());
+    pairs_->swap(larger);
+  }
 
   std::vector<Pair>* pairs_;
 };

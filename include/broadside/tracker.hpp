@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
@@ -198,19 +197,19 @@ template <int D, typename Real = float>
 class BROADSIDE_PUBLIC DiffTracker final : public PairTracker<D, Real> {
  public:
   explicit DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder);
+  ~DiffTracker() override;
 
   std::string explanation() const override { return finder_->explanation(); }
 
  private:
   void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
   void workers_changed() override { finder_->set_workers(this->workers()); }
-  std::size_t algorithm_bytes() const noexcept override {
-    return (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
-  }
+  std::size_t algorithm_bytes() const noexcept override;
+
+  struct Pairs;
 
   std::unique_ptr<PairFinder<D, Real>> finder_;
-  std::vector<Pair> pairs_;  // those that overlapped in the frame before
-  std::vector<Pair> found_;
+  std::unique_ptr<Pairs> pairs_;
 };
 
 }  // namespace broadside

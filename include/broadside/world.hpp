@@ -290,7 +290,10 @@ class BROADSIDE_PUBLIC World {
   /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Found
   /// by this world's algorithm, or by the standard one where the tracker is the caller's. Cost: one search
   /// between two sets, whose memory is kept for the next join.
-  void join(const World& other, std::vector<HandlePair>& pairs) const;
+  BROADSIDE_HIDDEN void join(const World& other, std::vector<HandlePair>& pairs) const {
+    detail::OutputTo output(pairs);
+    join_into(other, output);
+  }
 
   using QueryOptions = broadside::QueryOptions<Handle>;
   using NearestOptions = broadside::NearestOptions<Handle, Real>;
@@ -386,7 +389,12 @@ class BROADSIDE_PUBLIC World {
 
   /// The boxes whose values were invalid when they were last set, by slot: where WorldOptions::bad_input is
   /// to quarantine them. box() gives the absent box for them. O(slots).
-  std::vector<Handle> quarantined() const;
+  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
+    std::vector<Handle> handles;
+    detail::OutputTo output(handles);
+    list_quarantined(output);
+    return handles;
+  }
 
   /// The number of boxes in the world.
   std::size_t size() const noexcept;
@@ -406,7 +414,12 @@ class BROADSIDE_PUBLIC World {
   /// caller's and the options bad_input, shadow and first_generation, which stay those of the world that
   /// restores. At any time, also between changes and the update that tells of them. O(slots + pairs).
   /// docs/snapshot-format.md describes the bytes, which are the same on every machine.
-  std::vector<std::byte> snapshot() const;
+  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
+    std::vector<std::byte> bytes;
+    detail::OutputTo output(bytes);
+    write_snapshot(output);
+    return bytes;
+  }
 
   /// Makes the world what it was when the snapshot was taken, of this world or of another one; from then on,
   /// the same calls bring the same handles, events and pairs. Spans and references handed out end. Throws
@@ -423,6 +436,10 @@ class BROADSIDE_PUBLIC World {
 
  private:
   struct State;
+
+  void join_into(const World& other, detail::Output<HandlePair>& pairs) const;
+  void list_quarantined(detail::Output<Handle>& handles) const;
+  void write_snapshot(detail::Output<std::byte>& bytes) const;
 
   /// The slot of a box that is in the world.
   std::optional<BoxId> slot_of(const std::optional<Handle>& handle) const noexcept {

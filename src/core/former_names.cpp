@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "broadside/algorithm.hpp"
 
@@ -46,11 +45,12 @@ std::string current_spec(std::string_view spec) {
   Spec current = Spec::parse(spec);
   current.name = current_algorithm(current.name);
   for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
-  std::erase_if(current.values, [&current](const std::pair<std::string, std::string>& given) {
+  const auto rest = std::ranges::remove_if(current.values, [&current](const auto& given) {
     const auto& [tunable, value] = given;
     return !former_tunable(current.name, tunable).empty() ||
            !former_value(current.name, tunable, value).empty();
   });
+  current.values.erase(rest.begin(), rest.end());
   return current.text();
 }
 

@@ -54,12 +54,12 @@ void renew(LargeArray<T>& array, std::size_t size) {
 }
 
 /// Makes room in a vector, whose new memory is to come in large pages.
-template <typename T>
-void reserve_large(std::vector<T>& vector, std::size_t size) {
+template <typename Vector>
+void reserve_large(Vector& vector, std::size_t size) {
   if (size <= vector.capacity()) return;
-  std::vector<T> larger;
+  Vector larger;
   larger.reserve(size);
-  prefer_large_pages(larger.data(), larger.capacity() * sizeof(T));
+  prefer_large_pages(larger.data(), larger.capacity() * sizeof(typename Vector::value_type));
   larger.insert(larger.end(), vector.begin(), vector.end());
   vector.swap(larger);
 }

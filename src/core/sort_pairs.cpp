@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace broadside {
 namespace core {
@@ -15,9 +16,6 @@ namespace {
 
 /// The most bits that are sorted by at once.
 constexpr int most_bits = 11;
-
-/// Up to here comparing costs less than counting.
-constexpr std::size_t few = 128;
 
 constexpr int most_steps = 3;  // for 32 bits
 
@@ -43,16 +41,18 @@ class Digits {
 
 using Counts = std::array<std::uint32_t, std::size_t{1} << most_bits>;
 
-/// Sorts `pairs` by a digit that each value of has `counts` pairs. Pairs that are alike in it stay in order.
+/// Sorts `pairs` into `scratch` by a digit, and swaps the two. `counts` has the number of pairs for each
+/// value of the digit. Pairs that are alike in it stay in order.
 template <typename DigitOf>
-void sort_by(std::vector<Pair>& pairs, std::vector<Pair>& scratch, std::span<std::uint32_t> counts,
+void sort_by(std::span<Pair>& pairs, std::span<Pair>& scratch, std::span<std::uint32_t> counts,
              DigitOf digit) {
   std::exclusive_scan(counts.begin(), counts.end(), counts.begin(), std::uint32_t{0});
   for (const Pair pair : pairs) scratch[counts[digit(pair)]++] = pair;
-  pairs.swap(scratch);
+  std::swap(pairs, scratch);
 }
 
-void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+/// Returns whether the sorted pairs are in `scratch`.
+bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   std::uint32_t greatest_first = 0;
   std::uint32_t greatest_second = 0;
   for (const Pair pair : pairs) {
@@ -70,7 +70,6 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
     for (int step = 0; step < first.steps(); ++step) ++of_first[step][first(pair.first, step)];
     for (int step = 0; step < second.steps(); ++step) ++of_second[step][second(pair.second, step)];
   }
-  scratch.resize(pairs.size());
   for (int step = 0; step < second.steps(); ++step) {
     sort_by(pairs, scratch, std::span(of_second[step]).first(second.values()),
             [&, step](Pair pair) { return second(pair.second, step); });
@@ -79,6 +78,7 @@ void radix_sort(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
     sort_by(pairs, scratch, std::span(of_first[step]).first(first.values()),
             [&, step](Pair pair) { return first(pair.first, step); });
   }
+  return (first.steps() + second.steps()) % 2 != 0;
 }
 
 }  // namespace
@@ -90,13 +90,12 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 
 }  // namespace core
 
-void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
+bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
   // Counts of 2^32 or more would not fit, and never occur.
-  if (pairs.size() <= core::few || pairs.size() > 0xffffffffU) {
-    std::ranges::sort(pairs);
-  } else {
-    core::radix_sort(pairs, scratch);
-  }
+  if (pairs.size() > max_compared_pairs && pairs.size() <= 0xffffffffU)
+    return core::radix_sort(pairs, scratch);
+  std::ranges::sort(pairs);
+  return false;
 }
 
 }  // namespace broadside

@@ -24,21 +24,13 @@ std::string text_of(Pair pair) {
 
 /// One box with its place, and its filter if there is one.
 template <int D, typename Real>
-std::string line_of(std::size_t place, const Box<D, Real>& box, const std::vector<Filter>& filters,
+std::string line_of(std::size_t place, const Box<D, Real>& box, std::span<const Filter> filters,
                     std::size_t i) {
   return std::to_string(place) + ": " + (is_absent(box) ? "absent" : core::text_of(box)) +
          (filters.empty() ? "" : text_of(filters[i]));
 }
 
 }  // namespace
-
-template <int D, typename Real>
-void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes) {
-  boxes.resize(step.size, absent_box<D, Real>());
-  for (std::size_t i = 0; i < step.changed.size(); ++i) {
-    if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
-  }
-}
 
 template <int D, typename Real>
 Frame<D, Real> Replay<D, Real>::next(const Step<D, Real>& step) {
@@ -60,7 +52,7 @@ std::string text_of(const History<D, Real>& history, std::size_t most) {
   std::string text = "frame 0: " + std::to_string(history.boxes.size()) + " boxes";
   add_lines(text, history.boxes.size(), most, "\n  ",
             [&](std::size_t i) { return line_of(i, history.boxes[i], history.filters, i); });
-  const auto add_pairs = [&](const char* what, const std::vector<Pair>& pairs) {
+  const auto add_pairs = [&](const char* what, std::span<const Pair> pairs) {
     if (pairs.empty()) return;
     text += what;
     add_lines(text, pairs.size(), most, " ", [&](std::size_t i) { return text_of(pairs[i]); });
@@ -79,10 +71,6 @@ std::string text_of(const History<D, Real>& history, std::size_t most) {
   return text;
 }
 
-template void apply(const Step<2>&, std::vector<Box2>&);
-template void apply(const Step<3>&, std::vector<Box3>&);
-template void apply(const Step<2, double>&, std::vector<DoubleBox2>&);
-template void apply(const Step<3, double>&, std::vector<DoubleBox3>&);
 template class Replay<2, float>;
 template class Replay<3, float>;
 template class Replay<2, double>;

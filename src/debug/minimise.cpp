@@ -4,18 +4,19 @@
 #include <algorithm>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 namespace broadside {
 namespace {
 
 /// Drops from `items` what `still_fails` does without.
-template <typename Item>
-void drop_what_can_go(std::vector<Item>& items, const std::function<bool()>& still_fails,
+template <typename Items>
+void drop_what_can_go(Items& items, const std::function<bool()>& still_fails,
                       const std::function<bool()>& stop) {
   for (std::size_t part = items.size(); part > 0; part /= 2) {
     for (std::size_t begin = 0; begin < items.size();) {
       if (stop && stop()) return;
-      std::vector<Item> all = items;
+      Items all = items;
       const std::size_t end = std::min(begin + part, items.size());
       items.erase(items.begin() + static_cast<std::ptrdiff_t>(begin),
                   items.begin() + static_cast<std::ptrdiff_t>(end));
@@ -86,8 +87,8 @@ History<D, Real> only(std::span<const std::size_t> kept, const History<D, Real>&
   };
   const auto has = [&](BoxId id) { return std::ranges::binary_search(kept, std::size_t{index(id)}); };
   const auto place_of = [&](BoxId id) { return BoxId(below(index(id))); };
-  const auto only_pairs = [&](const std::vector<Pair>& pairs) {
-    std::vector<Pair> left;
+  const auto only_pairs = [&](std::span<const Pair> pairs) {
+    detail::Vector<Pair> left;
     for (const Pair pair : pairs) {
       if (has(pair.first) && has(pair.second)) left.push_back({place_of(pair.first), place_of(pair.second)});
     }
@@ -113,10 +114,13 @@ History<D, Real> only(std::span<const std::size_t> kept, const History<D, Real>&
 }
 
 template <int D, typename Real>
-void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
-              const std::function<bool()>& stop) {
+std::size_t detail::minimise(std::span<Box<D, Real>> boxes, const BoxesFail<D, Real>& fails,
+                             const std::function<bool()>& stop) {
+  std::vector<Box<D, Real>> kept(boxes.begin(), boxes.end());
   drop_what_can_go(
-      boxes, [&] { return fails(boxes); }, stop);
+      kept, [&] { return fails(kept); }, stop);
+  std::ranges::copy(kept, boxes.begin());
+  return kept.size();
 }
 
 template <int D, typename Real>
@@ -136,10 +140,14 @@ template History<2> only(std::span<const std::size_t>, const History<2>&);
 template History<3> only(std::span<const std::size_t>, const History<3>&);
 template History<2, double> only(std::span<const std::size_t>, const History<2, double>&);
 template History<3, double> only(std::span<const std::size_t>, const History<3, double>&);
-template void minimise(std::vector<Box2>&, const BoxesFail<2, float>&, const std::function<bool()>&);
-template void minimise(std::vector<Box3>&, const BoxesFail<3, float>&, const std::function<bool()>&);
-template void minimise(std::vector<DoubleBox2>&, const BoxesFail<2, double>&, const std::function<bool()>&);
-template void minimise(std::vector<DoubleBox3>&, const BoxesFail<3, double>&, const std::function<bool()>&);
+template std::size_t detail::minimise<2, float>(std::span<Box2>, const BoxesFail<2, float>&,
+                                                const std::function<bool()>&);
+template std::size_t detail::minimise<3, float>(std::span<Box3>, const BoxesFail<3, float>&,
+                                                const std::function<bool()>&);
+template std::size_t detail::minimise<2, double>(std::span<DoubleBox2>, const BoxesFail<2, double>&,
+                                                 const std::function<bool()>&);
+template std::size_t detail::minimise<3, double>(std::span<DoubleBox3>, const BoxesFail<3, double>&,
+                                                 const std::function<bool()>&);
 template void minimise(History<2>&, const HistoryFails<2, float>&, const std::function<bool()>&);
 template void minimise(History<3>&, const HistoryFails<3, float>&, const std::function<bool()>&);
 template void minimise(History<2, double>&, const HistoryFails<2, double>&, const std::function<bool()>&);

@@ -1,6 +1,7 @@
 // DiffTracker: all pairs found in each frame, and compared with those of the frame before.
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
@@ -11,9 +12,24 @@
 namespace broadside {
 
 template <int D, typename Real>
-DiffTracker<D, Real>::DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder) : finder_(std::move(finder)) {
+struct BROADSIDE_HIDDEN DiffTracker<D, Real>::Pairs {
+  std::vector<Pair> kept;  // those that overlapped in the frame before
+  std::vector<Pair> found;
+};
+
+template <int D, typename Real>
+DiffTracker<D, Real>::DiffTracker(std::unique_ptr<PairFinder<D, Real>> finder)
+    : finder_(std::move(finder)), pairs_(std::make_unique<Pairs>()) {
   if (!finder_) throw std::invalid_argument("DiffTracker was given a null finder; expected a finder");
   this->set_workers(finder_->workers());
+}
+
+template <int D, typename Real>
+DiffTracker<D, Real>::~DiffTracker() = default;
+
+template <int D, typename Real>
+std::size_t DiffTracker<D, Real>::algorithm_bytes() const noexcept {
+  return (pairs_->kept.capacity() + pairs_->found.capacity()) * sizeof(Pair);
 }
 
 template <int D, typename Real>
@@ -23,11 +39,12 @@ void DiffTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink&
     PairCollector collector(pairs);
     finder_->find(boxes, collector);
   };
-  if (change.rebuild) find(change.before, pairs_);
-  find(change.now, found_);
+  if (change.rebuild) find(change.before, pairs_->kept);
+  find(change.now, pairs_->found);
   core::Parallel parallel;
-  core::report_differences<D, Real>(change, found_, pairs_, this->workers(), parallel, begun, ended);
-  std::swap(pairs_, found_);
+  core::report_differences<D, Real>(change, pairs_->found, pairs_->kept, this->workers(), parallel, begun,
+                                    ended);
+  std::swap(pairs_->kept, pairs_->found);
   this->count(finder_->statistics());
 }
 

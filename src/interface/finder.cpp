@@ -101,6 +101,15 @@ void check_filters(std::span<const Filter> filters, std::size_t boxes, const cha
       {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
 }
 
+/// The boxes as an array: themselves, or gathered into `scratch`.
+template <int D, typename Real>
+std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, detail::Vector<Box<D, Real>>& scratch) {
+  if (boxes.is_array()) return {boxes.array(), boxes.size()};
+  scratch.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) scratch[i] = boxes[i];
+  return scratch;
+}
+
 /// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
 template <typename Search>
 void deliver(PairSink& pairs, Search search) {
@@ -114,15 +123,6 @@ void deliver(PairSink& pairs, Search search) {
 }
 
 }  // namespace
-
-template <int D, typename Real>
-std::span<const Box<D, Real>> PairFinder<D, Real>::array_of(BoxView<D, Real> boxes,
-                                                            std::vector<Box<D, Real>>& scratch) {
-  if (boxes.is_array()) return {boxes.array(), boxes.size()};
-  scratch.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) scratch[i] = boxes[i];
-  return scratch;
-}
 
 template <int D, typename Real>
 void PairFinder<D, Real>::find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {

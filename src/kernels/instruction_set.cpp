@@ -47,11 +47,14 @@ HWY_EXPORT(target_name);
 
 std::string instruction_set() { return kernels::instruction_set_name(HWY_DYNAMIC_DISPATCH(target_name)()); }
 
-std::vector<std::string> instruction_sets() {
-  std::vector<std::string> names;
-  for (const std::int64_t target : targets())
-    names.push_back(kernels::instruction_set_name(hwy::TargetName(target)));
-  return names;
+std::span<const std::string> detail::instruction_sets() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names;
+    for (const std::int64_t target : targets())
+      names.push_back(kernels::instruction_set_name(hwy::TargetName(target)));
+    return names;
+  }();
+  return all;
 }
 
 void limit_instruction_set(std::string_view name) {

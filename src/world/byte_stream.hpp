@@ -1,7 +1,6 @@
 // Bytes written and read in little-endian order, with a checksum at the end: see docs/snapshot-format.md.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -10,9 +9,9 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "broadside/error.hpp"
+#include "broadside/export.hpp"
 #include "broadside/recorder.hpp"
 
 namespace broadside::core {
@@ -24,30 +23,34 @@ using Bits =
                        std::conditional_t<sizeof(T) == 2, std::uint16_t,
                                           std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
 
-/// Appends numbers to bytes.
+/// Writes numbers one after the other.
 class ByteWriter {
  public:
+  explicit ByteWriter(detail::Output<std::byte>& output) : output_(&output) {}
+
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void put(T value) {
     const auto bits = std::bit_cast<Bits<T>>(value);
-    std::array<std::byte, sizeof(T)> bytes;
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (bytes_.size() - size_ < sizeof(T)) reserve(2 * size_ + sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes_[size_ + i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
+    size_ += sizeof(T);
   }
 
-  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  std::size_t size() const noexcept { return bytes_.size(); }
+  /// Makes room for `bytes` in all, more than there is.
+  void reserve(std::size_t bytes) { bytes_ = output_->resize(bytes); }
+  std::size_t size() const noexcept { return size_; }
 
   /// Writes a number over the bytes at `at`.
   void put_at(std::size_t at, std::uint64_t value) {
     for (std::size_t i = 0; i < 8; ++i) bytes_[at + i] = static_cast<std::byte>(value >> 8 * i & 0xff);
   }
 
-  /// Ends with the checksum of all bytes, and hands them out.
-  std::vector<std::byte> sealed() && {
-    put(checksum_of(bytes_));
-    return std::move(bytes_);
+  /// Ends with the checksum of all bytes; the output then has these bytes alone.
+  void seal() {
+    put(checksum_of(bytes_.first(size_)));
+    bytes_ = output_->resize(size_);
   }
 
   static std::uint32_t checksum_of(std::span<const std::byte> bytes) noexcept {
@@ -57,7 +60,9 @@ class ByteWriter {
   }
 
  private:
-  std::vector<std::byte> bytes_;
+  detail::Output<std::byte>* output_;
+  std::span<std::byte> bytes_;  // the first size_ of them are written
+  std::size_t size_ = 0;
 };
 
 /// Takes numbers from bytes. Throws InvalidSnapshot where there are no more.

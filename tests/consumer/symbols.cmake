@@ -1,5 +1,5 @@
-# Fails where the shared library LIBRARY exports what no header of ROOT marks, or misses a function that broadside.h
-# marks. NM lists symbols.
+# Fails where the shared library LIBRARY exports what no header of ROOT marks, or a function that takes a container of the
+# standard library, or misses a function that broadside.h marks. NM lists symbols.
 #
 # Exported may be: functions marked BROADSIDE_API or BROADSIDE_EXPERIMENTAL in broadside.h; what is marked
 # BROADSIDE_PUBLIC in the headers of C++, with members, virtual tables and type information; and what the C++ compiler
@@ -31,6 +31,7 @@ endforeach()
 execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^\n]+" lines "${lines}")
 set(strays "")
+set(containers "")
 set(c_symbols "")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^[^ ]+" symbol "${line}")
@@ -38,6 +39,9 @@ foreach(line IN LISTS lines)
     string(SUBSTRING "${CMAKE_MATCH_2}" 0 ${CMAKE_MATCH_1} name)
     if(NOT name IN_LIST public)
       list(APPEND strays ${symbol})
+    endif()
+    if(symbol MATCHES "St(6vector|5deque|12forward_list|3map|3set|8multimap|8multiset|[0-9]+unordered_|6bitset)|__cxx114listI")
+      list(APPEND containers ${symbol})
     endif()
   elseif(symbol MATCHES "^broadside_")
     list(APPEND c_symbols ${symbol})
@@ -53,6 +57,11 @@ list(SORT c_functions)
 list(SORT c_symbols)
 if(NOT c_functions STREQUAL c_symbols)
   message(FATAL_ERROR "${LIBRARY} exports the C functions ${c_symbols}; expected those of broadside.h: ${c_functions}")
+endif()
+if(containers)
+  list(JOIN containers "\n  " containers)
+  message(FATAL_ERROR "${LIBRARY} exports functions that take containers, which have another layout in programs in "
+                      "libstdc++'s debug mode; expected spans, detail::Output or inline functions:\n  ${containers}")
 endif()
 if(strays)
   list(JOIN strays "\n  " strays)

@@ -168,7 +168,9 @@ struct Forgery {
   }
 
   std::string encoded() const {
-    core::ByteWriter out;
+    std::vector<std::byte> bytes;
+    detail::OutputTo output(bytes);
+    core::ByteWriter out(output);
     for (const unsigned char byte : trace::magic) out.put(byte);
     out.put(has_pairs ? trace::pairs_version : trace::version);
     out.put(dimension);
@@ -195,7 +197,7 @@ struct Forgery {
       if (has_pairs) put_pairs(frame, out);
       out.put(std::uint32_t{0});
     }
-    const std::vector<std::byte> bytes = std::move(out).sealed();
+    out.seal();
     const auto* const begin = reinterpret_cast<const char*>(bytes.data());
     return lab::sealed_trace(std::string(begin, begin + bytes.size() - trace::checksum_bytes));
   }

@@ -184,7 +184,9 @@ SnapshotFields<D, Real> fields_of(const SnapshotBytes& bytes) {
 /// A snapshot with these fields and the right length and checksum.
 template <int D, typename Real>
 SnapshotBytes sealed(SnapshotFields<D, Real> fields) {
-  core::ByteWriter out;
+  SnapshotBytes bytes;
+  detail::OutputTo output(bytes);
+  core::ByteWriter out(output);
   for (const unsigned char byte : snapshot::magic) out.put(byte);
   out.put(snapshot::version);
   out.put(static_cast<std::uint8_t>(D));
@@ -194,7 +196,8 @@ SnapshotBytes sealed(SnapshotFields<D, Real> fields) {
   FieldWriter writer(out);
   fields.pass(writer);
   out.put_at(snapshot_length_at, out.size() + snapshot::checksum_bytes);
-  return std::move(out).sealed();
+  out.seal();
+  return bytes;
 }
 
 }  // namespace broadside::fuzz

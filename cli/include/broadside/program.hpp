@@ -2,11 +2,15 @@
 // Broadside::program.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
 
 namespace broadside {
+namespace detail {
+int run_program(int count, const char* const* values, std::span<const Algorithm> algorithms);
+}  // namespace detail
 
 /// Runs the program `broadside` on the arguments of main(), and returns the exit status.
 ///
@@ -16,6 +20,8 @@ namespace broadside {
 ///
 /// Call it once, as all that main() does: it handles SIGINT, SIGTERM, SIGHUP and SIGPIPE, which end the
 /// process, and ignores SIGXFSZ. Throws nothing: whatever goes wrong is said on stderr.
-int run_program(int count, const char* const* values, std::vector<Algorithm> algorithms = {});
+inline int run_program(int count, const char* const* values, const std::vector<Algorithm>& algorithms = {}) {
+  return detail::run_program(count, values, algorithms);
+}
 
 }  // namespace broadside

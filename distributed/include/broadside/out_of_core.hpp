@@ -21,12 +21,27 @@
 
 namespace broadside {
 
+namespace detail {
+
+/// A BoxSource as a join sees it.
+template <int D, typename Real>
+class BoxPieces {
+ public:
+  virtual ~BoxPieces() = default;
+
+  /// Calls `visit` with the boxes from the first on, piece by piece, until it returns false.
+  virtual void visit(const std::function<bool(std::span<const Box<D, Real>>)>& visit) = 0;
+
+  /// The approximate number of boxes; 0 if unknown.
+  virtual std::uint64_t estimated_size() const { return 0; }
+};
+
+}  // namespace detail
+
 /// A source of boxes that is read in pieces, once or several times. A box's id is its index in the source.
 template <int D, typename Real = float>
-class BoxSource {
+class BROADSIDE_CALLERS_VECTOR BoxSource : public detail::BoxPieces<D, Real> {
  public:
-  virtual ~BoxSource() = default;
-
   /// Makes next() start at the first box again.
   virtual void rewind() = 0;
 
@@ -34,8 +49,13 @@ class BoxSource {
   /// the same boxes.
   virtual bool next(std::vector<Box<D, Real>>& boxes) = 0;
 
-  /// The approximate number of boxes; 0 if unknown.
-  virtual std::uint64_t estimated_size() const { return 0; }
+ private:
+  void visit(const std::function<bool(std::span<const Box<D, Real>>)>& visit) final {
+    std::vector<Box<D, Real>> piece;
+    rewind();
+    while (next(piece) && visit(piece)) {
+    }
+  }
 };
 
 /// The stages of a join.
@@ -94,10 +114,11 @@ class BROADSIDE_PUBLIC OutOfCoreError : public std::runtime_error {
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC OutOfCoreJoin {
  public:
-  /// The sources must outlive the join. Throws OutOfCoreError if the folder is unusable, in use, or holds a
-  /// join of other boxes; std::invalid_argument for too little memory; InvalidSpec.
-  OutOfCoreJoin(BoxSource<D, Real>& boxes, OutOfCoreOptions options);
-  OutOfCoreJoin(BoxSource<D, Real>& left, BoxSource<D, Real>& right, OutOfCoreOptions options);
+  /// Each source is a BoxSource, and must outlive the join. Throws OutOfCoreError if the folder is unusable,
+  /// in use, or holds a join of other boxes; std::invalid_argument for too little memory; InvalidSpec.
+  OutOfCoreJoin(detail::BoxPieces<D, Real>& boxes, OutOfCoreOptions options);
+  OutOfCoreJoin(detail::BoxPieces<D, Real>& left, detail::BoxPieces<D, Real>& right,
+                OutOfCoreOptions options);
   ~OutOfCoreJoin();
   OutOfCoreJoin(const OutOfCoreJoin&) = delete;
   OutOfCoreJoin& operator=(const OutOfCoreJoin&) = delete;

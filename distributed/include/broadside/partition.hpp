@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/export.hpp"
@@ -94,7 +93,7 @@ class BROADSIDE_PUBLIC Partition {
 
   /// Copies a partition from its cuts(). Throws std::invalid_argument if the list is not a tree as cuts()
   /// returns it.
-  explicit Partition(std::vector<Cut> cuts, const Region& space = everything());
+  explicit Partition(std::span<const Cut> cuts, const Region& space = everything());
 
   /// The number of parts, at least 1.
   std::size_t size() const noexcept { return regions_.size(); }
@@ -142,8 +141,8 @@ class BROADSIDE_PUBLIC Partition {
  private:
   static constexpr std::size_t max_depth = 64;
 
-  std::vector<Cut> cuts_;
-  std::vector<Region> regions_;
+  detail::Vector<Cut> cuts_;
+  detail::Vector<Region> regions_;
 };
 
 /// Passes on the pairs of a part's boxes that belong to the part. One thread at a time; after a search by

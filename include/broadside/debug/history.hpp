@@ -18,27 +18,32 @@ namespace broadside {
 /// What changes from one frame to the next.
 template <int D, typename Real = float>
 struct Step {
-  std::size_t size;                 ///< the number of boxes from this frame on
-  std::vector<BoxId> changed;       ///< places whose boxes change, each once
-  std::vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
+  std::size_t size;                    ///< the number of boxes from this frame on
+  detail::Vector<BoxId> changed;       ///< places whose boxes change, each once
+  detail::Vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
 
-  std::vector<Filter> filters = {};  ///< their new filters, likewise; or none: then they keep those they have
-  std::vector<Pair> toggled = {};    ///< pairs that become ignored if they were not, and the other way round
+  detail::Vector<Filter> filters{};  ///< their new filters, likewise; or none: then they keep those they have
+  detail::Vector<Pair> toggled{};    ///< pairs that become ignored if they were not, and the other way round
 };
 
 /// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
 template <int D, typename Real = float>
 struct History {
-  std::vector<Box<D, Real>> boxes;
-  std::vector<Step<D, Real>> steps;
+  detail::Vector<Box<D, Real>> boxes;
+  detail::Vector<Step<D, Real>> steps;
 
-  std::vector<Filter> filters = {};  ///< one for each box, or none: then every box has the standard one
-  std::vector<Pair> ignored = {};    ///< the pairs that do not count in the first frame
+  detail::Vector<Filter> filters{};  ///< one for each box, or none: then every box has the standard one
+  detail::Vector<Pair> ignored{};    ///< the pairs that do not count in the first frame
 };
 
-/// Turns the boxes of one frame into those of the next.
-template <int D, typename Real>
-BROADSIDE_PUBLIC void apply(const Step<D, Real>& step, std::vector<Box<D, Real>>& boxes);
+/// Turns the boxes of one frame, a std::vector of them or a History's, into those of the next.
+template <int D, typename Real, typename Boxes>
+void apply(const Step<D, Real>& step, Boxes& boxes) {
+  boxes.resize(step.size, absent_box<D, Real>());
+  for (std::size_t i = 0; i < step.changed.size(); ++i) {
+    if (index(step.changed[i]) < step.size) boxes[index(step.changed[i])] = step.boxes[i];
+  }
+}
 
 /// How many places there are in the frame that has the most.
 template <int D, typename Real>
@@ -69,11 +74,11 @@ class BROADSIDE_PUBLIC Replay {
   Frame<D, Real> next(const Step<D, Real>& step);
 
  private:
-  std::vector<Box<D, Real>> boxes_;
-  std::vector<Filter> filters_;
+  detail::Vector<Box<D, Real>> boxes_;
+  detail::Vector<Filter> filters_;
   IgnoredPairs ignored_;
-  std::vector<BoxId> changed_;
-  std::vector<Pair> ignored_changed_;
+  detail::Vector<BoxId> changed_;
+  detail::Vector<Pair> ignored_changed_;
 };
 
 /// A history that begins with this frame and goes on with these steps.

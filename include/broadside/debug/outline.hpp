@@ -4,7 +4,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "broadside/box.hpp"
 #include "broadside/export.hpp"
@@ -23,7 +22,7 @@ struct Outline {
   /// The parts, from the uppermost or coarsest ones down. Finite: a part that goes on without end does so as
   /// far as the boxes' finite coordinates. Those of one level of cells, stripes or nodes of a quadtree share
   /// borders at most; those of a tree of bounds may overlap.
-  std::vector<std::vector<Box<D, Real>>> levels;
+  detail::Vector<detail::Vector<Box<D, Real>>> levels;
 };
 
 /// A second face of a finder that lays something over boxes: its class derives from this one as well, and its

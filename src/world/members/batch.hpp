@@ -1,6 +1,7 @@
 // World: many boxes at once, all or none; and all of them in a new origin.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -88,14 +89,14 @@ void World<D, Real>::remove(std::span<const Handle> handles) {
 }
 
 template <int D, typename Real>
-std::vector<Handle> World<D, Real>::quarantined() const {
+void World<D, Real>::list_quarantined(detail::Output<Handle>& output) const {
   const State& state = *state_;
   std::vector<Handle> handles;
   for (std::uint32_t slot = 0; slot < state.slots.size(); ++slot) {
     if (state.slots[slot].state == State::SlotState::live && is_absent(state.boxes[slot]))
       handles.push_back({slot, state.generations[slot]});
   }
-  return handles;
+  std::ranges::copy(handles, output.resize(handles.size()).begin());
 }
 
 template <int D, typename Real>

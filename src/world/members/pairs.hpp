@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <mutex>
@@ -80,7 +81,7 @@ void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::
 }
 
 template <int D, typename Real>
-void World<D, Real>::join(const World& other, std::vector<HandlePair>& pairs) const {
+void World<D, Real>::join_into(const World& other, detail::Output<HandlePair>& pairs) const {
   const State& left = *state_;
   const State& right = *other.state_;
   // The kept finder serves one reader at a time.
@@ -90,15 +91,19 @@ void World<D, Real>::join(const World& other, std::vector<HandlePair>& pairs) co
   if (finder == nullptr)
     finder = make_finder<D, Real>(left.is_own_tracker ? left.options.algorithm : default_algorithm);
   finder->set_workers(left.tracker->workers());
-  pairs.clear();
+  std::span<HandlePair> handles = pairs.resize(0);
   PairFunction collector([&](std::span<const Pair> found) {
-    for (const Pair pair : found) pairs.push_back({left.handle(pair.first), right.handle(pair.second)});
+    const std::size_t size = handles.size();
+    handles = pairs.resize(size + found.size());
+    std::ranges::transform(found, handles.begin() + static_cast<std::ptrdiff_t>(size), [&](Pair pair) {
+      return HandlePair{left.handle(pair.first), right.handle(pair.second)};
+    });
   });
   const auto filters_of = [](const State& state) {
     return state.uses_filters ? std::span<const Filter>(state.filters) : std::span<const Filter>();
   };
   finder->find_between(left.boxes, right.boxes, collector, {filters_of(left), filters_of(right)});
-  std::ranges::sort(pairs);
+  std::ranges::sort(handles);
 }
 
 }  // namespace broadside

@@ -61,12 +61,12 @@ void put_last_frame(ByteWriter& out, const Frame<D, Real>& last, const Frame<D, 
 }  // namespace
 
 template <int D, typename Real>
-std::vector<std::byte> World<D, Real>::snapshot() const {
+void World<D, Real>::write_snapshot(detail::Output<std::byte>& bytes) const {
   const core::DefaultEnvironment environment;
   const State& state = *state_;
   const std::span<const HandlePair> current =
       state.options.keep_pairs ? pairs() : std::span<const HandlePair>{};
-  ByteWriter out;
+  ByteWriter out(bytes);
   out.reserve(state.slots.size() * (core::Part<Box<D, Real>>::bytes + 32) + current.size() * 8 + 1024);
   for (const unsigned char byte : snapshot::magic) out.put(byte);
   out.put(snapshot::version);
@@ -77,7 +77,7 @@ std::vector<std::byte> World<D, Real>::snapshot() const {
   out.put(std::uint64_t{0});
   state.put(out, current);
   out.put_at(length_at, out.size() + snapshot::checksum_bytes);
-  return std::move(out).sealed();
+  out.seal();
 }
 
 template <int D, typename Real>
