@@ -189,14 +189,14 @@ class BROADSIDE_PUBLIC BoxIndex {
                const NearestOptions& options = {}) const;
 
   /// The same in a vector: a new one, or `found`, which is emptied first.
-  std::vector<Neighbour<Real>> nearest(const Point& point, std::size_t count,
-                                       const NearestOptions& options = {}) const {
+  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Neighbour<Real>> nearest(
+      const Point& point, std::size_t count, const NearestOptions& options = {}) const {
     std::vector<Neighbour<Real>> found;
     nearest(point, count, found, options);
     return found;
   }
-  void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
-               const NearestOptions& options = {}) const {
+  BROADSIDE_HIDDEN void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
+                                const NearestOptions& options = {}) const {
     found.clear();
     nearest(
         point, count, [&found](const Neighbour<Real>& one) { found.push_back(one); }, options);

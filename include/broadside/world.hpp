@@ -330,14 +330,15 @@ class BROADSIDE_PUBLIC World {
 
   /// The `count` nearest boxes, or all if there are fewer, as BoxIndex::nearest() finds them; equally distant
   /// ones by slot. In a new vector, or in `found`, which is emptied first.
-  std::vector<HandleNeighbour<Real>> nearest(const Point<D, Real>& point, std::size_t count,
-                                             const NearestOptions& options = {}) const {
+  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<HandleNeighbour<Real>> nearest(
+      const Point<D, Real>& point, std::size_t count, const NearestOptions& options = {}) const {
     std::vector<HandleNeighbour<Real>> found;
     nearest(point, count, found, options);
     return found;
   }
-  void nearest(const Point<D, Real>& point, std::size_t count, std::vector<HandleNeighbour<Real>>& found,
-               const NearestOptions& options = {}) const {
+  BROADSIDE_HIDDEN void nearest(const Point<D, Real>& point, std::size_t count,
+                                std::vector<HandleNeighbour<Real>>& found,
+                                const NearestOptions& options = {}) const {
     found.clear();
     const auto add = [&](const Neighbour<Real>& one) {
       found.push_back({handle_of(one.box), one.distance_squared});

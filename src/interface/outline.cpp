@@ -55,7 +55,7 @@ Outline<D, Real> outline(PairFinder<D, Real>& finder,
   if (outlined == nullptr || present.empty()) return {};
   Outline<D, Real> outline = outlined->lay_out(present);
   const Box<D, Real> bounds = finite_bounds<D, Real>(present);
-  for (std::vector<Box<D, Real>>& level : outline.levels) {
+  for (auto& level : outline.levels) {
     for (Box<D, Real>& part : level) make_finite(part, bounds);
   }
   return outline;

@@ -123,7 +123,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     const std::size_t leaves =
         lay_out(worker, 0, worker.stack.references.size(), {axes, region}, 0, outline.levels);
     std::size_t nodes = 0;
-    for (const std::vector<Box<D>>& level : outline.levels) nodes += level.size();
+    for (const auto& level : outline.levels) nodes += level.size();
     outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
                       ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
     return outline;
@@ -137,7 +137,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
 
   /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
   std::size_t lay_out(Worker& worker, std::size_t begin, std::size_t end, const Region& region,
-                      std::size_t depth, std::vector<std::vector<Box<D>>>& levels) const {
+                      std::size_t depth, decltype(Outline<D>::levels)& levels) const {
     if (levels.size() == depth) levels.emplace_back();
     levels[depth].push_back(region.box);
     Split split;

@@ -2,7 +2,6 @@
 # $2_debug print.
 set -eu
 compile() {
-  # shellcheck disable=SC2046  # several words
   "$compiler" -std=c++20 -O0 "$@" "$(dirname "$0")/main.cpp" $(pkg-config --cflags --libs broadside)
 }
 compiler=$1

@@ -163,6 +163,7 @@ void track() {
   std::vector<Neighbour<Real>> nearest;
   index->nearest({}, 3, nearest);
   for (const Neighbour<Real>& one : nearest) print("nearest", broadside::index(one.box));
+  print("nearest in a new vector", index->nearest({}, 3) == nearest);
 }
 
 template <int D, typename Real>
@@ -193,6 +194,7 @@ void keep_world() {
   std::vector<HandleNeighbour<Real>> nearest;
   world.nearest({}, 3, nearest);
   for (const HandleNeighbour<Real>& one : nearest) print("nearest", one.handle.slot);
+  print("nearest in a new vector", world.nearest({}, 3) == nearest);
   std::vector<Handle> met;
   world.hits(Ray<D, Real>{{}, boxes[3].max}, [&](Handle handle, Real) { met.push_back(handle); });
   world.containing(boxes[3].max, [&](Handle handle) { met.push_back(handle); });
