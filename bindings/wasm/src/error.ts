@@ -49,6 +49,12 @@ export function checkOptions(options: object, known: readonly string[]): void {
   }
 }
 
+/** Whether options ask for a view of the module's memory rather than a copy. */
+export function asksForView(options: { readonly view?: unknown }): boolean {
+  const { view = false } = options;
+  return typeof view === "boolean" ? view : refuse("view", view, "true or false");
+}
+
 export function checkDimension(dimension: unknown): asserts dimension is Dimension {
   if (dimension !== 2 && dimension !== 3) refuse("dimension", dimension, "2 or 3");
 }

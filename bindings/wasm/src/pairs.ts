@@ -4,19 +4,22 @@ import type {
 } from "../types/types.d.ts";
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
-import { checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, mostFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
 const enum Mode { counts = 1, sorts = 2, joins = 4 }
 
 const countOptions = ["dimension", "algorithm", "filters"];
-const pairsOptions = [...countOptions, "sorted"];
+const pairsOptions = [...countOptions, "sorted", "view"];
 const countJoinOptions = [...countOptions, "rightFilters"];
 const joinOptions = [...pairsOptions, "rightFilters"];
 
 /** Views of fewer ids than this are kept: making one costs as much as comparing ten boxes. */
-const mostKept = 256;
+const maxKept = 256;
+
+/** Up to so many ids a loop copies faster than slice(). */
+const maxLoop = 16;
 
 /** Finders of so many kinds are kept; those of a program that makes up more go. */
 const mostFinders = 16;
@@ -51,9 +54,7 @@ export class Pairs {
         options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined ||
         this.#meansFew(options))) {
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
-      const view = this.#views[found];
-      if (view !== undefined) return view;
-      if (found >= 0) return this.#viewOfFew(found);
+      if (found >= 0) return options?.view === true ? this.#viewOfFew(found) : this.#copyOfFew(found);
     }
     return this.#pairsByModule(boxes, options);
   }
@@ -65,9 +66,19 @@ export class Pairs {
   }
 
   #viewOfFew(ids: number): Uint32Array {
+    const kept = this.#views[ids];
+    if (kept !== undefined) return kept;
     const view = this.#fewPairs.subarray(0, ids);
-    if (ids < mostKept) this.#views[ids] = view;
+    if (ids < maxKept) this.#views[ids] = view;
     return view;
+  }
+
+  #copyOfFew(ids: number): Uint32Array {
+    const room = this.#fewPairs;
+    if (ids > maxLoop) return room.slice(0, ids);
+    const copy = new Uint32Array(ids);
+    for (let i = 0; i < ids; ++i) copy[i] = room[i] as number;
+    return copy;
   }
 
   /** Whether few boxes may be compared in JavaScript. */
@@ -99,6 +110,7 @@ export class Pairs {
     checkOptions(options, known);
     if (options.sorted !== undefined && typeof options.sorted !== "boolean")
       refuse("sorted", options.sorted, "true or false");
+    asksForView(options);
     this.#lastChecked = known === pairsOptions ? options : undefined;
   }
 
@@ -107,10 +119,11 @@ export class Pairs {
     const { u32, reply } = this.#core;
     const address = u32[reply] as number;
     const length = 2 * (u32[reply + 1] as number);
+    if (options.view !== true) return u32.slice(address / 4, address / 4 + length);
     const last = this.#lastView;
     // The same view again where it would be no other: making one is not cheap.
     if (last.length === length && last.byteOffset === address && last.buffer === u32.buffer) return last;
-    return (this.#lastView = length === 0 ? new Uint32Array(0) : new Uint32Array(u32.buffer, address, length));
+    return (this.#lastView = new Uint32Array(u32.buffer, address, length));
   }
 
   #counted(): number {

@@ -1,13 +1,13 @@
 // Queries: indexes of arrays of boxes, and worlds that are asked as well.
 import type {
-  BoxArray, Dimension, Filters, Hit, Index, NearestOptions, Neighbours, QueriedWorld, Queries, QueryOptions,
-  RayOptions, TrackerUpdateOptions, WorldOptions,
+  BoxArray, Dimension, Filters, FrameOptions, Hit, Index, NearestOptions, Neighbours, OverlappingOptions, QueriedWorld,
+  Queries, QueryOptions, RayOptions, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, bytesOfFilter, countIn, putFilter } from "./boxes.ts";
 import type { Core, Cores, Exports } from "./core.ts";
-import { checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
-import { idsOf, putFrame } from "./tracker.ts";
+import { frameOptions, idsOf, putFrame } from "./tracker.ts";
 import { KeptWorld, handlesOf } from "./world.ts";
 
 /** What the module with queries exports besides: module/queries.cpp. */
@@ -25,6 +25,9 @@ export interface QueryExports extends Exports {
 }
 
 const queryOptions = ["filter", "except"];
+const foundOptions = [...queryOptions, "view"];
+const nearestOptions = [...foundOptions, "maxDistance"];
+const rayOptions = [...queryOptions, "tMax", "halfExtent"];
 const nothing = -1;  // the `except` of a query that leaves none out
 
 /** Asks an index or a world. `Numbers` are ids or handles. */
@@ -34,10 +37,9 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
   readonly #dimension: Dimension;
   readonly #isWorld: number;
   readonly #address: () => number;
-  readonly #found: (number: number) => Numbers;
+  readonly #found: (view: boolean) => Numbers;
 
-  constructor(core: Core, isWorld: boolean, address: () => number,
-    found: (number: number) => Numbers) {
+  constructor(core: Core, isWorld: boolean, address: () => number, found: (view: boolean) => Numbers) {
     this.#core = core;
     this.#exports = core.exports as QueryExports;
     this.#dimension = core.dimension;
@@ -54,20 +56,21 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     return at + count;
   }
 
-  #options(options: QueryOptions, more: readonly string[]): { filter: number; except: number } {
-    checkOptions(options, [...queryOptions, ...more]);
+  #options(options: QueryOptions, known: readonly string[]): { filter: number; except: number } {
+    checkOptions(options, known);
     const { filter, except = nothing } = options;
     if (typeof except !== "number") refuse("except", except, "a number");
     this.#core.stage(bytesOfFilter);
     return { filter: filter === undefined ? 0 : putFilter(this.#core, filter), except };
   }
 
-  overlapping(box: ArrayLike<number>, options: QueryOptions = {}): Numbers {
+  overlapping(box: ArrayLike<number>, options: OverlappingOptions = {}): Numbers {
     const address = this.#address();
-    const { filter, except } = this.#options(options, []);
+    const { filter, except } = this.#options(options, foundOptions);
+    const view = asksForView(options);
     this.#ask(0, box, 2 * this.#dimension, "box");
     this.#core.check(this.#exports.query_overlapping(this.#isWorld, address, filter, except));
-    return this.#found(0);
+    return this.#found(view);
   }
 
   nearest(point: ArrayLike<number>, k: number, options: NearestOptions = {}): Neighbours<Numbers> {
@@ -76,18 +79,19 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     const { maxDistance = Infinity } = options;
     if (!(typeof maxDistance === "number" && maxDistance >= 0))
       refuse("maxDistance", maxDistance, "0, more, or Infinity");
-    const { filter, except } = this.#options(options, ["maxDistance"]);
+    const { filter, except } = this.#options(options, nearestOptions);
+    const view = asksForView(options);
     this.#ask(0, point, this.#dimension, "point");
     const core = this.#core;
     core.check(this.#exports.query_nearest(this.#isWorld, address, filter, except, k, maxDistance));
-    return { ids: this.#found(0), distances: handlesOf(core, 1, 1) };
+    return { ids: this.#found(view), distances: handlesOf(core, 1, 1, view) };
   }
 
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options: RayOptions = {}): Hit | undefined {
     const address = this.#address();
     const { tMax = Infinity, halfExtent } = options;
     if (typeof tMax !== "number") refuse("tMax", tMax, "a number");
-    const { filter, except } = this.#options(options, ["tMax", "halfExtent"]);
+    const { filter, except } = this.#options(options, rayOptions);
     const dimension = this.#dimension;
     let at = this.#ask(0, origin, dimension, "origin");
     at = this.#ask(at, direction, dimension, "direction");
@@ -95,7 +99,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     core.f32[core.question + at++] = tMax;
     this.#ask(at, halfExtent ?? new Float32Array(dimension), dimension, "halfExtent");
     core.check(this.#exports.query_first_hit(this.#isWorld, address, filter, except));
-    const found = this.#found(0);
+    const found = this.#found(true);
     return found.length === 0 ? undefined : { id: found[0] as number, t: core.f32[core.question] as number };
   }
 }
@@ -115,7 +119,7 @@ export class KeptIndex extends Kept implements Index {
     super(core.u32[core.reply] as number, (address) => exports.index_free(address));
     this.#core = core;
     this.dimension = core.dimension;
-    this.#asker = new Asker(core, false, () => this.address, (n) => idsOf(core, n, 1));
+    this.#asker = new Asker(core, false, () => this.address, (view) => idsOf(core, 0, 1, view));
     try {
       this.update(boxes, rest);
     } catch (error) {
@@ -124,15 +128,16 @@ export class KeptIndex extends Kept implements Index {
     }
   }
 
-  update(boxes: BoxArray, options: TrackerUpdateOptions = {}): void {
+  update(boxes: BoxArray, options: FrameOptions = {}): void {
     const core = this.#core;
     const index = this.address;
+    checkOptions(options, frameOptions);
     const frame = putFrame(core, boxes as Given, options);
     core.check((core.exports as QueryExports).index_update(index, frame.at, frame.count, frame.changed,
       frame.changedCount, frame.filters));
   }
 
-  overlapping(box: ArrayLike<number>, options?: QueryOptions): Uint32Array {
+  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Uint32Array {
     return this.#asker.overlapping(box, options);
   }
 
@@ -151,10 +156,10 @@ export class AskedWorld extends KeptWorld implements QueriedWorld {
   constructor(cores: Cores, options?: WorldOptions) {
     super(cores, options);
     const { core } = this;
-    this.#asker = new Asker(core, true, () => this.address, (n) => handlesOf(core, n, 1));
+    this.#asker = new Asker(core, true, () => this.address, (view) => handlesOf(core, 0, 1, view));
   }
 
-  overlapping(box: ArrayLike<number>, options?: QueryOptions): Float64Array {
+  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Float64Array {
     return this.#asker.overlapping(box, options);
   }
 

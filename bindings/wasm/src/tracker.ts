@@ -1,10 +1,12 @@
 // Trackers of arrays of boxes.
-import type { BoxArray, Dimension, Events, Tracker, TrackerOptions, TrackerUpdateOptions } from "../types/types.d.ts";
+import type {
+  BoxArray, Dimension, Events, FrameOptions, Tracker, TrackerOptions, TrackerUpdateOptions,
+} from "../types/types.d.ts";
 import {
   type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters, putWords,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
-import { checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 
 /** The module and the spec of an object that is made with options, checked. */
@@ -17,9 +19,10 @@ export function specOf(cores: Cores, options: TrackerOptions, known: readonly st
   return { core, algorithm };
 }
 
+export const frameOptions = ["changed", "filters"];
+
 /** Puts a frame's arguments into the module. */
-export function putFrame(core: Core, boxes: Given, options: TrackerUpdateOptions) {
-  checkOptions(options, ["changed", "filters"]);
+export function putFrame(core: Core, boxes: Given, options: FrameOptions) {
   const { changed, filters } = options;
   const count = countOf(core, boxes);
   const changedCount = changed === undefined ? 0 : countIn(changed, 1, "changed");
@@ -35,13 +38,12 @@ export function putFrame(core: Core, boxes: Given, options: TrackerUpdateOptions
 }
 
 const noOptions: TrackerUpdateOptions = {};
-export const noIds = new Uint32Array(0);
-
-/** An array of ids or of pairs of them in the module, the `number`-th one of its reply. */
-export function idsOf(core: Core, number: number, each: number): Uint32Array {
+/** The ids, or pairs of them, in the `number`-th array of the module's reply: a copy, or a view of its memory. */
+export function idsOf(core: Core, number: number, each: number, view: boolean): Uint32Array {
   const { u32, reply } = core;
   const count = u32[reply + 2 * number + 1] as number;
-  return count === 0 ? noIds : new Uint32Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+  const ids = new Uint32Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+  return view ? ids : ids.slice();
 }
 
 export class KeptTracker extends Kept implements Tracker {
@@ -60,9 +62,11 @@ export class KeptTracker extends Kept implements Tracker {
   update(boxes: BoxArray, options: TrackerUpdateOptions = noOptions): Events<Uint32Array> {
     const core = this.#core;
     const tracker = this.address;
+    checkOptions(options, [...frameOptions, "view"]);
+    const view = asksForView(options);
     const frame = putFrame(core, boxes as Given, options);
     core.check(core.exports.tracker_update(tracker, frame.at, frame.count, frame.changed, frame.changedCount,
       frame.filters));
-    return { begun: idsOf(core, 0, 2), ended: idsOf(core, 1, 2) };
+    return { begun: idsOf(core, 0, 2, view), ended: idsOf(core, 1, 2, view) };
   }
 }

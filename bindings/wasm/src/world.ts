@@ -1,12 +1,12 @@
 // Worlds.
 import type {
-  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, World, WorldOptions,
+  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, ResultOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
   type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilter, putFilters, putFloats,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
-import { checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 import { specOf } from "./tracker.ts";
 
@@ -15,12 +15,12 @@ const worldOptions = ["margin", "relativeMargin", "predictedFrames", "events"];
 /** A handle's lowest bits are its slot: module/handles.hpp. */
 const mostSlots = 2 ** 24;
 
-const noHandles = new Float64Array(0);
-
-export function handlesOf(core: Core, number: number, each: number): Float64Array {
+/** The handles, or other doubles, in the `number`-th array of the module's reply: a copy, or a view of its memory. */
+export function handlesOf(core: Core, number: number, each: number, view: boolean): Float64Array {
   const { u32, reply } = core;
   const count = u32[reply + 2 * number + 1] as number;
-  return count === 0 ? noHandles : new Float64Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+  const handles = new Float64Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
+  return view ? handles : handles.slice();
 }
 
 function countOfHandles(handles: Handles): number {
@@ -98,16 +98,20 @@ export class KeptWorld extends Kept implements World {
     core.check(core.exports.world_remove(world, putHandles(core, handles, count), count));
   }
 
-  update(): Events<Float64Array> {
+  update(options: ResultOptions = {}): Events<Float64Array> {
     const { core } = this;
-    core.check(core.exports.world_update(this.address));
-    return { begun: handlesOf(core, 0, 1), ended: handlesOf(core, 1, 1) };
+    const world = this.address;
+    const view = viewAlone(options);
+    core.check(core.exports.world_update(world));
+    return { begun: handlesOf(core, 0, 1, view), ended: handlesOf(core, 1, 1, view) };
   }
 
-  pairs(): Float64Array {
+  pairs(options: ResultOptions = {}): Float64Array {
     const { core } = this;
-    core.check(core.exports.world_pairs(this.address));
-    return handlesOf(core, 0, 1);
+    const world = this.address;
+    const view = viewAlone(options);
+    core.check(core.exports.world_pairs(world));
+    return handlesOf(core, 0, 1, view);
   }
 
   has(handle: Handle): boolean {
@@ -138,6 +142,11 @@ export class KeptWorld extends Kept implements World {
   unignore(a: Handle, b: Handle): void {
     this.core.check(this.core.exports.world_ignore(this.address, checked(a), checked(b), 0));
   }
+}
+
+function viewAlone(options: ResultOptions): boolean {
+  checkOptions(options, ["view"]);
+  return asksForView(options);
 }
 
 function checked(handle: unknown): number {

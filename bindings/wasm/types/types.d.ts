@@ -43,7 +43,15 @@ export interface CountOptions {
   readonly filters?: Filters;
 }
 
-export interface PairsOptions extends CountOptions {
+export interface ResultOptions {
+  /**
+   * Whether the arrays that a call returns are views of the module's memory. A view costs no copy, and the next such
+   * call changes it; memory that grows empties it. If left out, arrays are copies, which nothing changes.
+   */
+  readonly view?: boolean;
+}
+
+export interface PairsOptions extends CountOptions, ResultOptions {
   /** Whether pairs are sorted. Otherwise they have an order that the algorithm and the boxes fix. */
   readonly sorted?: boolean;
 }
@@ -86,7 +94,7 @@ export interface Boxes extends Freeable {
   readonly data: Float32Array;
 }
 
-/** What one update brought, sorted: two numbers a pair. The arrays hold until the next update of the same object. */
+/** What one update brought, sorted: two numbers a pair. */
 export interface Events<Numbers> {
   readonly begun: Numbers;
   readonly ended: Numbers;
@@ -104,10 +112,12 @@ export interface Tracker extends Freeable {
   update(boxes: BoxArray, options?: TrackerUpdateOptions): Events<Uint32Array>;
 }
 
-export interface TrackerUpdateOptions {
+export interface FrameOptions {
   readonly changed?: ArrayLike<number>;
   readonly filters?: Filters;
 }
+
+export interface TrackerUpdateOptions extends FrameOptions, ResultOptions {}
 
 /** A whole number that names one box of a world for ever, and can be the key of a `Map`. */
 export type Handle = number;
@@ -127,9 +137,9 @@ export interface World extends Freeable {
   /** Takes boxes out. Their pairs end at the next update. */
   remove(handles: Handles): void;
   /** Brings the pairs up to date. Each pair is two handles. */
-  update(): Events<Float64Array>;
-  /** The pairs that hold since the last update, sorted, each as two handles. They hold until the next call. */
-  pairs(): Float64Array;
+  update(options?: ResultOptions): Events<Float64Array>;
+  /** The pairs of the last update, sorted, each as two handles. */
+  pairs(options?: ResultOptions): Float64Array;
   has(handle: Handle): boolean;
   /** The box's coordinates. */
   box(handle: Handle): Float32Array;
@@ -149,7 +159,9 @@ export interface QueryOptions {
   readonly except?: number;
 }
 
-export interface NearestOptions extends QueryOptions {
+export interface OverlappingOptions extends QueryOptions, ResultOptions {}
+
+export interface NearestOptions extends OverlappingOptions {
   /** Boxes farther away are not found. */
   readonly maxDistance?: number;
 }
@@ -173,10 +185,10 @@ export interface Neighbours<Numbers> {
   readonly distances: Float64Array;
 }
 
-/** Questions about boxes. What is found holds until the next question; its order means nothing unless it says so. */
+/** Questions about boxes. The order of what is found means nothing unless it says so. */
 export interface Queries<Numbers> {
   /** The boxes that overlap a box. For the boxes that contain a point, give it as minima and as maxima. */
-  overlapping(box: ArrayLike<number>, options?: QueryOptions): Numbers;
+  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Numbers;
   /** The `k` boxes nearest to a point. */
   nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Numbers>;
   /** The box that a ray meets first. */
@@ -187,7 +199,7 @@ export interface Queries<Numbers> {
 export interface Index extends Queries<Uint32Array>, Freeable {
   readonly dimension: Dimension;
   /** Takes other boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
-  update(boxes: BoxArray, options?: TrackerUpdateOptions): void;
+  update(boxes: BoxArray, options?: FrameOptions): void;
 }
 
 /** A world to ask as well. */
@@ -196,8 +208,7 @@ export interface QueriedWorld extends World, Queries<Float64Array> {}
 /** Pairs, trackers and worlds. */
 export interface PairFinding {
   /**
-   * Every pair of overlapping boxes, once, as places in the array: `a0, b0, a1, b1, ...` with `a < b`. The array holds
-   * until the next call of `pairs` or `join`; `.slice()` keeps it.
+   * Every pair of overlapping boxes, once, as places in the array: `a0, b0, a1, b1, ...` with `a < b`.
    */
   pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array;
   /** Every pair of a box of `left` and an overlapping one of `right`, likewise. */

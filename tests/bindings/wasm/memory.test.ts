@@ -8,7 +8,7 @@ import { type Broadside, type Dimension, load } from "broadside";
 
 import type { Exports } from "../../../bindings/wasm/src/core.ts";
 import { importsOf } from "../../../bindings/wasm/src/imports.ts";
-import { at, pairsByDefinition, scenes } from "./support.ts";
+import { at, scenes } from "./support.ts";
 
 const uniform = scenes[0] as (typeof scenes)[0];
 
@@ -42,14 +42,77 @@ test("memory grows under the results of a world", async () => {
   assert.equal(handles.length, 20_000);
 });
 
-test("a view holds until the next call", async () => {
+/** Every call that returns arrays, on few boxes (compared in JavaScript) and on many. */
+function resultsOf(broadside: Broadside, boxes: Float32Array, view?: boolean): (() => ArrayLike<number>[])[] {
+  const options = view === undefined ? {} : { view };
+  const tracker = broadside.tracker();
+  const world = broadside.world();
+  const handles = world.add(boxes);
+  const index = broadside.index(boxes);
+  const point = boxes.subarray(0, 2);
+  const box = [...point, ...point.map((x) => x + 20)];
+  const events = ({ begun, ended }: { begun: ArrayLike<number>; ended: ArrayLike<number> }) => [begun, ended];
+  const neighbours = ({ ids, distances }: { ids: ArrayLike<number>; distances: ArrayLike<number> }) => [ids, distances];
+  return [
+    () => [broadside.pairs(boxes.subarray(0, 120), options)],
+    () => [broadside.pairs(boxes, options)],
+    () => [broadside.join(boxes, boxes.subarray(0, 400), options)],
+    () => events(tracker.update(boxes, options)),
+    () => [world.add(boxes.subarray(0, 4)), world.box(at(handles, 0))],
+    () => events(world.update(options)),
+    () => [world.pairs(options)],
+    () => [index.overlapping(box, options)],
+    () => neighbours(index.nearest(point, 3, options)),
+    () => [world.overlapping(box, options)],
+    () => neighbours(world.nearest(point, 3, options)),
+  ];
+}
+
+test("results are copies: no later call changes them, and no memory that grows takes them", async () => {
   const broadside = await load();
-  const boxes = uniform.boxes(200, 2, 3);
-  const pairs = broadside.pairs(boxes, { sorted: true });
-  const kept = pairs.slice();
-  assert.deepEqual([...pairs], pairsByDefinition(boxes, 2));
-  broadside.pairs(uniform.boxes(100, 2, 4));
-  assert.deepEqual([...kept], pairsByDefinition(boxes, 2));
+  const boxes = uniform.boxes(2000, 2, 3);
+  const found = resultsOf(broadside, boxes).flatMap((call) => call());
+  const copies = found.map((result) => Array.from(result));
+  assert.ok(copies.filter((copy) => copy.length > 0).length >= 11, "nearly all found something");
+  const shifted = boxes.map((x) => x * 0.9);
+  for (let i = 0; i < 2; ++i) for (const call of resultsOf(broadside, shifted)) call();
+  broadside.boxes(4_000_000);
+  assert.deepEqual(found.map((result) => Array.from(result)), copies);
+  // Whoever gets an array may hand its memory over to a worker.
+  for (const result of found as Float64Array[]) structuredClone(result, { transfer: [result.buffer as ArrayBuffer] });
+  assert.deepEqual([...broadside.pairs([0, 0, 1, 1])], []);
+
+  const index = broadside.index([0, 0, 1, 1, 9, 9, 10, 10]);
+  const queries = [[0, 0], [9, 9]];
+  assert.deepEqual(queries.map((q) => [...index.nearest(q, 1).ids]), [[0], [1]]);
+  const [first, second] = queries.map((q) => index.nearest(q, 1).ids);
+  assert.deepEqual([[...first as Uint32Array], [...second as Uint32Array]], [[0], [1]]);
+});
+
+test("views equal copies, share memory with the next call, and are refused where they mean nothing", async () => {
+  const broadside = await load();
+  const boxes = uniform.boxes(2000, 2, 3);
+  const copies = resultsOf(broadside, boxes).map((call) => call().map((result) => Array.from(result)));
+  const views = resultsOf(broadside, boxes, true).map((call) => call().map((result) => Array.from(result)));
+  // The handles differ: each world has its own.
+  assert.deepEqual(views.slice(0, 4), copies.slice(0, 4));
+  assert.deepEqual(views.map((call) => call.map((one) => one.length)), copies.map((call) => call.map((one) => one.length)));
+
+  for (const some of [boxes.subarray(0, 120), boxes]) {
+    const one = broadside.pairs(some, { view: true });
+    assert.equal(broadside.pairs(some, { view: true }).buffer, one.buffer);
+    assert.notEqual(broadside.pairs(some).buffer, broadside.pairs(some).buffer);
+  }
+  const index = broadside.index(boxes);
+  const world = broadside.world();
+  for (const call of [
+    () => broadside.pairs(boxes, { view: 1 } as object), () => broadside.pairs(boxes.subarray(0, 8), { view: "yes" } as object),
+    () => broadside.count(boxes, { view: true } as object), () => index.update(boxes, { view: true } as object),
+    () => index.firstHit([0, 0], [1, 0], { view: true } as object), () => index.overlapping([0, 0, 1, 1], { view: 0 } as object),
+    () => world.update({ view: null } as object), () => world.pairs({ copy: true } as object),
+    () => broadside.tracker().update(boxes, { view: "no" } as object),
+  ])
+    assert.throws(call, { code: "INVALID_ARGUMENT" });
 });
 
 /** Everything that takes memory, and gives it back. */
