@@ -2,7 +2,7 @@
 import { standardKnobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
-import type { SceneChoice } from "../scene/catalogue.ts";
+import { sceneEntry, type SceneChoice } from "../scene/catalogue.ts";
 import type { StepAlgorithm } from "../engine/types.ts";
 
 export type Mode = "play" | "steps" | "lesson";
@@ -44,3 +44,13 @@ export const standardState: State = {
   steps: { algorithm: "grid", at: 0, count: 12, cell: 0, capacity: 3 },
   embed: false,
 };
+
+/** What a scene begins with, whether the menu or a link names it: how many boxes, and which panels show them. */
+export function startOf(scene: string): { count: number; panels: readonly PanelChoice[] } {
+  const entry = sceneEntry(scene);
+  const count = entry?.count ?? standardState.scene.count;
+  if (entry?.breaks === undefined) return { count, panels: standardState.panels };
+  // A preset shows what it breaks, beside what does better.
+  const { spec, follow } = entry.breaks;
+  return { count, panels: [{ spec, follow }, { spec: "auto", follow }] };
+}

@@ -5,7 +5,7 @@ import type { Algorithm } from "../engine/types.ts";
 import type { Duel, Measured, PanelChoice, Setup, Shown } from "../bench/protocol.ts";
 import { fileScene, sceneEntry } from "../scene/catalogue.ts";
 import { countWith, withEdit, type Edit } from "../scene/edits.ts";
-import { mostPanels, standardState, type State } from "./state.ts";
+import { mostPanels, standardState, startOf, type State } from "./state.ts";
 
 export const state = signal<State>(standardState);
 /** The scene's seconds. Of what is on the screen, `shown` has its own. */
@@ -56,12 +56,10 @@ export function chooseScene(name: string): void {
   if (entry === undefined && name !== fileScene) return;
   batch(() => {
     const { scene } = state.value;
-    patch({ scene: { ...scene, name, count: entry?.count ?? scene.count }, edits: [], selected: -1 });
-    // A preset shows what it breaks, beside what does better.
-    if (entry?.breaks !== undefined) {
-      const { spec, follow } = entry.breaks;
-      patch({ panels: [{ spec, follow }, { spec: "auto", follow }], panel: 0 });
-    }
+    const start = startOf(name);
+    patch({ scene: { ...scene, name, count: entry === undefined ? scene.count : start.count }, edits: [], selected: -1 });
+    // A scene without panels of its own keeps those that are there.
+    if (entry?.breaks !== undefined) patch({ panels: start.panels, panel: 0 });
     clock.value = 0;
     latest.value = 0;
     problem.value = "";

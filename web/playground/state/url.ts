@@ -1,8 +1,9 @@
-// The state as the part of an address behind "#", and back. Only what differs from the standard is written.
+// The state as the part of an address behind "#", and back. Only what differs from the standard is written; the number of
+// boxes and the panels, where they differ from what the scene begins with.
 import { standardKnobs, type Knobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
-import { mostBoxes, mostPanels, standardState, type Mode, type State } from "./state.ts";
+import { mostBoxes, mostPanels, standardState, startOf, type Mode, type State } from "./state.ts";
 
 /** Four significant digits are finer than a pixel. */
 function short(value: number): string {
@@ -53,14 +54,15 @@ export function writeState(state: State, time: number): string {
   };
   const { scene, steps } = state;
   const usual = standardState;
+  const start = startOf(scene.name);
   put("mode", state.mode, usual.mode);
   if (state.mode === "lesson") query.set("lesson", String(state.lesson + 1));
   put("scene", scene.name, usual.scene.name);
-  put("n", String(scene.count), String(usual.scene.count));
+  put("n", String(scene.count), String(start.count));
   put("seed", String(scene.seed), String(usual.scene.seed));
   for (const name of Object.keys(knobNames) as (keyof Knobs)[])
     put(name, short(scene.knobs[name]), short(standardKnobs[name]));
-  put("a", writePanels(state.panels), writePanels(usual.panels));
+  put("a", writePanels(state.panels), writePanels(start.panels));
   put("panel", String(state.panel), "0");
   put("structure", state.structure ? "1" : "0", "1");
   put("overlaps", state.overlaps ? "1" : "0", "1");
@@ -99,15 +101,17 @@ export function readState(search: string, hash: string): { state: State; time: n
   const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree"] as const;
   const whole = (name: string, standard: number, least: number, most: number): number =>
     Math.round(numberOf(query.get(name), standard, least, most));
-  const shownPanels = panels.length > 0 ? panels : usual.panels;
+  const name = query.get("scene") ?? usual.scene.name;
+  const start = startOf(name);
+  const shownPanels = panels.length > 0 ? panels : start.panels;
   return {
     time: numberOf(query.get("t"), 0, 0, 1e6),
     state: {
       mode: query.has("lesson") ? "lesson" : modes.find((mode) => mode === query.get("mode")) ?? usual.mode,
       lesson: whole("lesson", 1, 1, 5) - 1,
       scene: {
-        name: query.get("scene") ?? usual.scene.name,
-        count: whole("n", usual.scene.count, 1, mostBoxes),
+        name,
+        count: whole("n", start.count, 1, mostBoxes),
         seed: whole("seed", usual.scene.seed, 0, 2 ** 31 - 1),
         knobs,
       },

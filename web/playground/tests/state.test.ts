@@ -2,10 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { sceneEntries } from "../scene/catalogue.ts";
 import { edited, withEdit, type Edit } from "../scene/edits.ts";
 import { linesFor } from "../state/lines.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
-import { standardState, type State } from "../state/state.ts";
+import { standardState, startOf, type State } from "../state/state.ts";
 import { readState, writeState } from "../state/url.ts";
 
 const edit: Edit = { box: 3, time: 1.5, x: 20, y: 30, width: 4, height: 5, vx: 6, vy: -7 };
@@ -28,6 +29,19 @@ test("an address holds the whole state", () => {
 test("the standard state is an empty address, and an empty address the standard state", () => {
   assert.equal(writeState(standardState, 0), "");
   assert.deepEqual(readState("", "").state, standardState);
+});
+
+test("a link that names only a scene shows what the menu shows", () => {
+  const { state } = readState("", "#scene=huge_floor");
+  assert.deepEqual(state.panels, [{ spec: "paper_quadtree", follow: false }, { spec: "auto", follow: false }]);
+  assert.equal(state.scene.count, 400);
+  assert.equal(writeState(state, 0), "scene=huge_floor");
+  for (const { name, count } of sceneEntries) {
+    const read = readState("", `#scene=${name}`).state;
+    assert.deepEqual([read.scene.count, read.panels], [count, startOf(name).panels]);
+    const other: State = { ...read, panels: standardState.panels, scene: { ...read.scene, count: 7 } };
+    assert.deepEqual(readState("", writeState(other, 0)).state, other);
+  }
 });
 
 test("what an address says wrongly is as usual, and numbers keep to their range", () => {
