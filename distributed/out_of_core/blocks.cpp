@@ -1,6 +1,7 @@
 // Files of blocks, each with a checksum.
 #include "blocks.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -84,6 +85,10 @@ bool BlockReader::next(std::vector<std::byte>& bytes) {
       std::fread(&header, 1, sizeof(header), file.get()) != sizeof(header))
     refuse("ends early");
   if (header.bytes > max_block_bytes) refuse("has a damaged block");
+  // Nor must one that names more than the file has.
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path_, error);
+  if (error || header.bytes > size - std::min(size, offset_ + sizeof(header))) refuse("ends early");
   bytes.resize(header.bytes);
   if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) refuse("ends early");
   if (checksum_of(bytes, {}) != header.checksum) refuse("has a damaged block");

@@ -171,7 +171,7 @@ void Input::copy() {
   } catch (const std::bad_alloc&) {
     // As too much for the machine's memory.
   }
-  kept_ = {};
+  std::string().swap(kept_);
   throw FileError(fmt::format(
       "{}: goes on after {} bytes{}; expected {}", name_, used,
       is_device_ ? ", and is a device" : ", more than memory can hold beside its boxes",

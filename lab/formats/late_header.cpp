@@ -24,7 +24,7 @@ void LateHeader::finish(std::string_view header) {
   if (begin_ == std::ostream::pos_type(-1)) {
     put(header);
     put(kept_);
-    kept_ = {};
+    std::string().swap(kept_);
     return;
   }
   const std::ostream::pos_type end = stream_.tellp();

@@ -1,4 +1,4 @@
-// Vectors that grow by an eighth.
+// Vectors that grow by an eighth, and that give their memory back.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,13 @@ template <typename T>
 void resize_by_eighths(std::vector<T>& vector, std::size_t size, const T& value = T{}) {
   if (size > vector.capacity()) vector.reserve(size + size / 8);
   vector.resize(size, value);
+}
+
+/// Empties vectors and gives their memory back. `vector = {}` would not: it assigns an empty list and keeps
+/// the memory.
+template <typename... Vectors>
+void give_back(Vectors&... vectors) noexcept {
+  ((vectors = Vectors()), ...);
 }
 
 }  // namespace broadside::core

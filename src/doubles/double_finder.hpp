@@ -24,6 +24,8 @@ template <int D>
 class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, double> {
  public:
   Outlined<D, double>* outlined() noexcept override { return this; }
+  /// It gives up where the finder of floats does, whose boxes is_left() asks for.
+  Yielding<D>* yielding() noexcept override { return finder_->yielding(); }
 
   explicit DoubleFinder(std::unique_ptr<PairFinder<D>> finder);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "interface/candidate_tracker.hpp"
@@ -11,14 +12,17 @@ namespace broadside::algorithm {
 namespace {
 
 /// False candidates a box that cost about what rounding all boxes anew does.
-constexpr double most_false_candidates = 32;
+constexpr std::uint64_t most_false_candidates = 32;
 
-/// Writes the events among candidates, and counts the candidates that are false.
+struct TooManyFalse {};
+
+/// Writes the events among candidates, and counts the candidates that are false. Throws
+/// TooManyFalse where these are more than `most`.
 template <int D>
 class Candidates final : public PairSink {
  public:
-  Candidates(const Change<D, double>& change, PairSink& begun, PairSink& ended)
-      : change_(change), begun_(begun), ended_(ended) {}
+  Candidates(const Change<D, double>& change, std::uint64_t most, PairSink& begun, PairSink& ended)
+      : change_(change), most_(most), begun_(begun), ended_(ended) {}
 
   std::uint64_t count() const noexcept { return count_; }
   std::uint64_t false_count() const noexcept { return false_count_; }
@@ -32,9 +36,11 @@ class Candidates final : public PairSink {
       const bool is_near = overlap(change_.now[index(pair.first)], change_.now[index(pair.second)]);
       false_count_ += static_cast<std::uint64_t>(!was_near && !is_near);
     }
+    if (false_count_ > most_) throw TooManyFalse();
   }
 
   const Change<D, double>& change_;
+  std::uint64_t most_;
   PairSink& begun_;
   PairSink& ended_;
   std::uint64_t count_ = 0;
@@ -43,15 +49,30 @@ class Candidates final : public PairSink {
 
 }  // namespace
 
+/// Boxes that a rounding no longer tells apart make false candidates: where these become too many, also in
+/// the middle of a frame, all boxes are rounded anew. By events that were written already nothing is lost:
+/// they may be written more than once.
 template <int D>
 void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
-  const double most = most_false_candidates * static_cast<double>(change.now.size());
-  const bool starts = change.rebuild || static_cast<double>(false_candidates_) > most;
-  if (starts) start(change);
+  const std::uint64_t most = most_false_candidates * change.now.size();
+  if (!change.rebuild && false_candidates_ <= most) {
+    try {
+      return follow(change, false, most - false_candidates_, begun, ended);
+    } catch (const TooManyFalse&) {
+    }
+  }
+  start(change);
+  follow(change, true, std::numeric_limits<std::uint64_t>::max(), begun, ended);
+}
+
+/// Follows until there are more false candidates than `most`.
+template <int D>
+void DoubleFollower<D>::follow(const Change<D, double>& change, bool starts, std::uint64_t most,
+                               PairSink& begun, PairSink& ended) {
   before_.resize(change.now.size(), absent_box<D>());
   now_.resize(change.now.size(), absent_box<D>());
   for (const BoxId id : change.changed) now_[index(id)] = rounded(change.now[index(id)]);
-  Candidates<D> candidates(change, begun, ended);
+  Candidates<D> candidates(change, most, begun, ended);
   Statistics statistics = floats_->candidate_tracker()->candidates(
       {.before = before_, .now = now_, .changed = change.changed, .flags = change.flags, .rebuild = starts},
       candidates);

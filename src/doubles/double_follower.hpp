@@ -31,6 +31,8 @@ class DoubleFollower final : public PairTracker<D, double> {
 
   Box<D> rounded(const Box<D, double>& box) const;
   void start(const Change<D, double>& change);
+  void follow(const Change<D, double>& change, bool starts, std::uint64_t most, PairSink& begun,
+              PairSink& ended);
 
   std::array<core::LinearRounding, D> fit_{};
   std::array<core::QuantileRounding, D> quantiles_;

@@ -13,9 +13,12 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/grow.hpp"
 #include "core/lean.hpp"
 #include "core/sample.hpp"
+#include "interface/candidate_limit.hpp"
 #include "interface/pair_difference.hpp"
+#include "interface/yielding.hpp"
 
 namespace broadside::core {
 namespace {
@@ -122,18 +125,60 @@ bool AdaptiveTracker<D, Real>::are_few(std::size_t boxes) const {
 
 template <int D, typename Real>
 void AdaptiveTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  const auto find = [this](std::span<const Box<D, Real>> boxes, std::vector<Pair>& pairs) {
+  const auto find_into = [this](std::vector<Pair>& pairs, std::span<const Box<D, Real>> boxes,
+                                std::span<const Filter> filters) {
     pairs.clear();
-    PairCollector collector(pairs);
-    finder_->find(boxes, collector);
+    CandidateCollector<D, Real> collector(pairs, {most_pairs_});
+    if (is_limited())
+      find_within_limits(boxes, filters, collector);
+    else
+      finder_->find(boxes, collector);
   };
-  if (change.rebuild || !has_pairs_) find(change.before, pairs_);
-  find(change.now, found_);
+  if (change.rebuild || !has_pairs_) find_into(pairs_, change.before, change.filters_before);
+  find_into(found_, change.now, change.filters_now);
   report_differences<D, Real>(change, found_, pairs_, this->workers(), parallel_, begun, ended);
   std::swap(pairs_, found_);
   has_pairs_ = true;
   this->count(finder_->statistics());
   policy_.found(change.now.size(), pairs_.size(), this->statistics());
+}
+
+/// The tests have a limit where the finder can give up; an algorithm that chooses lets another one go on.
+template <int D, typename Real>
+void AdaptiveTracker<D, Real>::find_within_limits(std::span<const Box<D, Real>> boxes,
+                                                  std::span<const Filter> filters, PairSink& pairs) {
+  this->count(std::nullopt);
+  Yielding<D>* const yielding = finder_->yielding();
+  if (yielding != nullptr) yielding->let_yield(true);
+  const auto end = [&] {
+    if (yielding != nullptr) yielding->let_yield(false);
+    this->count(finder_->statistics());
+  };
+  try {
+    finder_->find(boxes, pairs, {.filters = filters});
+  } catch (...) {
+    end();
+    throw;
+  }
+  end();
+  if (yielding != nullptr && yielding->has_yielded()) throw LimitPassed();
+}
+
+template <int D, typename Real>
+void AdaptiveTracker<D, Real>::start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs) {
+  forget();
+  were_few_ = false;
+  policy_.found(boxes.size(), pairs, finder_->statistics());
+  start_following(boxes);
+}
+
+template <int D, typename Real>
+void AdaptiveTracker<D, Real>::forget() noexcept {
+  give_back(pairs_, found_);
+  has_pairs_ = false;
+  follower_.reset();
+  was_followed_ = false;
+  policy_.lost();
 }
 
 template <int D, typename Real>

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "interface/follow_policy.hpp"
 
@@ -39,6 +41,22 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
 
   std::string explanation() const override;
 
+  /// Finds all pairs that filters accept, and changes nothing but the statistics. Throws LimitPassed where
+  /// that takes far more tests than boxes and pairs account for, and what the sink throws.
+  void find_within_limits(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters,
+                          PairSink& pairs);
+
+  /// After that search, which found so many pairs: makes ready to follow these boxes from the next update on.
+  void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs);
+
+  /// From now on an update that finds all pairs anew keeps at most so many, and none that filters refuse.
+  /// Where there are more, or tests as above, it throws LimitPassed, and the next one has to be a rebuild.
+  void limit_pairs(std::size_t most) noexcept { most_pairs_ = most; }
+  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+
+  /// Gives back what is kept of the last frame. The next update has to be a rebuild.
+  void forget() noexcept;
+
   /// Where it does nothing but follow.
   core::CandidateTracker<D>* candidate_tracker() override {
     return policy_.update() == Update::follow ? follower().candidate_tracker() : nullptr;
@@ -52,6 +70,7 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
   std::size_t algorithm_bytes() const noexcept override;
   const BoxIndex<D, Real>* algorithm_index() const noexcept override;
 
+  bool is_limited() const noexcept { return !is_lean && most_pairs_ != no_limit; }
   bool are_few(std::size_t boxes) const;
   void rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
@@ -73,6 +92,7 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
   std::vector<Pair> found_;
   Parallel parallel_;
   bool has_pairs_ = false;
+  std::size_t most_pairs_ = no_limit;
 };
 
 }  // namespace broadside::core

@@ -2,10 +2,8 @@
 #include "interface/margin_tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <optional>
 #include <span>
@@ -13,9 +11,10 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/grow.hpp"
 #include "core/number_text.hpp"
-#include "core/sample.hpp"
 #include "core/sort_pairs.hpp"
+#include "interface/candidate_limit.hpp"
 #include "interface/pair_difference.hpp"
 #include "kernels/overlap_flags.hpp"
 
@@ -41,157 +40,124 @@ constexpr double candidates_a_mover = 96;
 constexpr double candidates_a_test = 1.5;
 constexpr std::size_t most_calm_frames = 8;
 
-/// The displacement in a frame, over their shortest side, up to which boxes are enlarged.
-constexpr double largest_displacement = 0.0125;
-
-/// A margin over that displacement: boxes stay within it for at least about so many frames. And its limits,
-/// over a box's shortest side: a large one makes far more candidates than pairs.
-constexpr double frames_within_margin = 48;
-constexpr double smallest_margin = 0.01;
-constexpr double largest_margin = 0.2;
-
-/// How many displacements are sampled, and the quantile of them that counts.
-constexpr std::size_t most_sampled = 64;
-constexpr double quantile = 0.75;
-
-/// More candidates than this, a pair that holds and a box, are not kept.
-constexpr std::size_t most_candidates_a_pair = 4;
-constexpr std::size_t most_candidates_a_box = 16;
+/// The most candidates that are kept, for each pair that holds and each box. Where there would be more, boxes
+/// are no longer enlarged.
+constexpr std::size_t max_candidates_per_pair = 4;
+constexpr std::size_t max_candidates_per_box = 16;
 
 /// Of the changed boxes, the part that may leave their enlarged ones, and the frames over which it is
 /// averaged: boxes that move alike leave in the same frame.
 constexpr double most_left = 0.1;
 constexpr double averaged_frames = 16;
-constexpr std::size_t shortest_pause = 16;
-constexpr std::size_t longest_pause = 1024;
+constexpr std::size_t min_pause = 16;
+constexpr std::size_t max_pause = 1024;
+constexpr std::size_t max_pause_after_limit = 16 * max_pause;
 
 }  // namespace
 
 template <int D, typename Real>
 void MarginTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild;
-  if (was_enlarged_) {
-    follow_enlarged(change, begun, ended);
-    return;
-  }
-  Change<D, Real> exact = change;
-  exact.rebuild |= std::exchange(boxes_, Boxes::exact) != Boxes::exact;
-  this->update_with(*tracker_, exact, begun, ended);
+  was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && follow_enlarged(change, begun, ended);
+  if (was_enlarged_) return;
+  update_exactly(change, begun, ended);
   if (change.rebuild || !suits_margins(change)) return;
+  Statistics statistics = this->statistics().value_or(Statistics{});
   try {
-    start(change);
+    statistics.tests += start(change);
+  } catch (const LimitPassed&) {
+    // What was spent counts. The other tracker is where it was.
+    statistics.tests += candidates_.size() + tracker_->statistics().value_or(Statistics{}).tests;
+    give_up(pause_after_limit());
   } catch (const std::bad_alloc&) {
     // The frame itself is whole.
-    give_up(longest_pause);
+    give_up(max_pause);
   }
+  this->count(statistics);
 }
 
-/// Whether many boxes moved and hardly any far; sets margins_ then. Margins are a part of a box's shortest
-/// side: by a part of the longest, thin boxes would meet many more. And at most by what boxes move, so that
-/// large ones at rest do not meet all small ones around them.
+template <int D, typename Real>
+void MarginTracker<D, Real>::update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  Change<D, Real> exact = change;
+  if (boxes_ != Boxes::exact) {
+    exact.rebuild = true;
+    release();
+    tracker_->limit_pairs(AdaptiveTracker<D, Real>::no_limit);
+    boxes_ = Boxes::exact;
+  }
+  this->update_with(*tracker_, exact, begun, ended);
+}
+
+/// Whether many boxes moved and hardly any far; sets margins_ then.
 template <int D, typename Real>
 bool MarginTracker<D, Real>::suits_margins(const Change<D, Real>& change) {
-  const std::size_t count = change.changed.size();
-  if (change.now.size() < least_boxes || count < change.now.size() / many_movers) return false;
+  if (change.now.size() < least_boxes || change.changed.size() < change.now.size() / many_movers)
+    return false;
   if (pause_ > 0) {
     --pause_;
     return false;
   }
-  struct Displacement {
-    Real relative;
-    Real absolute;
-  };
-  std::array<Displacement, most_sampled> sampled;
-  for (std::size_t i = 0; i < most_sampled; ++i) {
-    const std::size_t place = index(change.changed[sampled_place(i, count)]);
-    const Box<D, Real>& before = change.before[place];
-    const Box<D, Real>& now = change.now[place];
-    Real displacement = 0;
-    Real side = std::numeric_limits<Real>::infinity();
-    for (int axis = 0; axis < D; ++axis) {
-      displacement = std::max({displacement, std::abs(now.min[axis] - before.min[axis]),
-                               std::abs(now.max[axis] - before.max[axis])});
-      side = std::min(side, now.max[axis] - now.min[axis]);
-    }
-    const Real over_side = displacement / side;
-    // Not for absent boxes, nor for those without a side.
-    sampled[i] = {over_side >= 0 ? over_side : std::numeric_limits<Real>::infinity(), displacement};
-  }
-  const auto at = sampled.begin() + static_cast<std::ptrdiff_t>(quantile * (most_sampled - 1));
-  std::nth_element(sampled.begin(), at, sampled.end(),
-                   [](const auto& a, const auto& b) { return a.absolute < b.absolute; });
-  const Real absolute = at->absolute;
-  std::nth_element(sampled.begin(), at, sampled.end(),
-                   [](const auto& a, const auto& b) { return a.relative < b.relative; });
-  // None where the boxes that are listed did not move.
-  if (!(at->relative <= static_cast<Real>(largest_displacement)) || !(absolute > 0)) return false;
-  const Real relative = std::clamp(static_cast<Real>(frames_within_margin) * at->relative,
-                                   static_cast<Real>(smallest_margin), static_cast<Real>(largest_margin));
-  margins_ = {.margin = absolute * (relative / at->relative),
-              .relative = relative,
-              .frames = 0,
-              .is_of_shortest = true};
-  return true;
+  const std::optional<Margins<D, Real>> margins = margins_for(change);
+  if (margins) margins_ = *margins;
+  return margins.has_value();
 }
 
-/// Enlarges all boxes of a frame whose events are told, and finds the candidates.
+/// Enlarges all boxes of a frame whose events are told, and finds the candidates. Returns the tests.
 template <int D, typename Real>
-void MarginTracker<D, Real>::start(const Change<D, Real>& change) {
-  Statistics statistics = this->statistics().value_or(Statistics{});
-  boxes_ = Boxes::ending;  // until all is made
+std::uint64_t MarginTracker<D, Real>::start(const Change<D, Real>& change) {
   const std::size_t size = change.now.size();
-  before_.assign(size, absent_box<D, Real>());
   now_.resize(size);
-  left_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    now_[i] = margins_.enlarged(change.now[i], nullptr);
-    left_[i] = BoxId(i);
-  }
-  flags_.assign(size, 1);
-  candidates_.clear();
-  {
-    PairCollector all(candidates_);
-    PairCounter none;
-    this->update_with(*tracker_,
-                      {before_, now_, left_, flags_, true, change.filters_now, change.filters_now, nullptr},
-                      all, none);
-    all.flush();
-  }
+  for (std::size_t i = 0; i < size; ++i) now_[i] = margins_.enlarged(change.now[i], nullptr);
+  CandidateCollector<D, Real> collector(candidates_, {max_candidates_per_box * size, max_candidates_per_pair},
+                                        change.now);
+  tracker_->find_within_limits(now_, change.filters_now, collector);
+  std::uint64_t tests = tracker_->statistics().value_or(Statistics{}).tests;
   sort_unique(candidates_, spare_);
   test_candidates(change.now);
-  statistics.tests += this->statistics().value_or(Statistics{}).tests + candidates_.size();
-  this->count(statistics);
-  const auto pairs = static_cast<std::size_t>(std::ranges::count(holds_, std::uint8_t{1}));
-  if (candidates_.size() > most_candidates_a_pair * pairs + most_candidates_a_box * size)
-    return give_up(longest_pause);
+  tests += candidates_.size();
+  holding_ = static_cast<std::size_t>(std::ranges::count(holds_, std::uint8_t{1}));
+  boxes_ = Boxes::ending;  // until all is made
+  tracker_->start_at(now_, candidates_.size());
   before_ = now_;
   flags_.assign(size, 0);
   boxes_ = Boxes::enlarged;
   left_share_ = 0;
   calm_frames_ = 0;
   lasted_ = 0;
+  return tests;
 }
 
+/// The most candidates that are kept.
 template <int D, typename Real>
-void MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, PairSink& begun,
+std::size_t MarginTracker<D, Real>::max_candidates() const noexcept {
+  return max_candidates_per_box * now_.size() + max_candidates_per_pair * holding_;
+}
+
+/// A try that ends at a limit costs about as much as one that lasts, so each costs less than a hundredth of
+/// the frames until the next; and where one after the other does, the same boxes will most likely again.
+template <int D, typename Real>
+std::size_t MarginTracker<D, Real>::pause_after_limit() const noexcept {
+  return std::clamp(2 * next_pause_, max_pause, max_pause_after_limit);
+}
+
+/// False where there would be too many candidates: no event of this frame is told then, and nothing is left
+/// of the enlarged boxes.
+template <int D, typename Real>
+bool MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, PairSink& begun,
                                              PairSink& ended) {
   left_.clear();
   candidate_count_ = 0;
   changed_ = change.changed.size();
   this->count(Statistics{});
-  if (change.changed.empty()) return;
+  if (change.changed.empty()) return true;
   enlarge_anew(change);
   Statistics statistics;
   if (!left_.empty()) {
-    begun_.clear();
-    ended_.clear();
-    PairCollector begun_candidates(begun_);
-    PairCollector ended_candidates(ended_);
-    this->update_with(
-        *tracker_, {before_, now_, left_, flags_, false, change.filters_before, change.filters_now, nullptr},
-        begun_candidates, ended_candidates);
-    begun_candidates.flush();
-    ended_candidates.flush();
+    try {
+      find_candidates(change);
+    } catch (const LimitPassed&) {
+      give_up(pause_after_limit());
+      return false;
+    }
     statistics = this->statistics().value_or(Statistics{});
     change_candidates(ended);
     for (const BoxId id : left_) {
@@ -204,6 +170,31 @@ void MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, Pair
   statistics.tests += candidate_count_;
   this->count(statistics);
   judge();
+  return true;
+}
+
+/// Sets begun_ and ended_, by the other tracker. Throws LimitPassed.
+template <int D, typename Real>
+void MarginTracker<D, Real>::find_candidates(const Change<D, Real>& change) {
+  begun_.clear();
+  ended_.clear();
+  const std::size_t max = max_candidates();
+  {
+    PairCollector begun_candidates(begun_);
+    PairCollector ended_candidates(ended_);
+    // A tracker may write an event more than once.
+    LimitSink limited(2 * max, begun_candidates);
+    tracker_->limit_pairs(max);
+    this->update_with(
+        *tracker_, {before_, now_, left_, flags_, false, change.filters_before, change.filters_now, nullptr},
+        limited, ended_candidates);
+    limited.flush();
+    begun_candidates.flush();
+    ended_candidates.flush();
+  }
+  sort_unique(begun_, spare_);
+  sort_unique(ended_, spare_);
+  if (candidates_.size() + begun_.size() > max + ended_.size()) throw LimitPassed();
 }
 
 /// Sets left_ and flags_, and enlarges the boxes that are in left_.
@@ -233,8 +224,6 @@ void MarginTracker<D, Real>::enlarge_anew(const Change<D, Real>& change) {
 /// Takes out the candidates that ended, whose pairs ended if they held, and puts in those that began.
 template <int D, typename Real>
 void MarginTracker<D, Real>::change_candidates(PairSink& ended) {
-  sort_unique(begun_, spare_);
-  sort_unique(ended_, spare_);
   if (begun_.empty() && ended_.empty()) return;
   spare_.clear();
   held_.clear();
@@ -244,7 +233,9 @@ void MarginTracker<D, Real>::change_candidates(PairSink& ended) {
     const Pair pair = candidates_[i];
     if (next_ended != ended_.end() && *next_ended == pair) {
       ++next_ended;
-      if (holds_[i] != 0) ended.add(pair.first, pair.second);
+      if (holds_[i] == 0) continue;
+      ended.add(pair.first, pair.second);
+      --holding_;
       continue;
     }
     for (; next_begun != begun_.end() && *next_begun < pair; ++next_begun) {
@@ -278,8 +269,10 @@ void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& beg
   std::swap(held_, holds_);
   test_candidates(change.now);
   const auto compare = [&](std::size_t i) {
-    if (holds_[i] != held_[i])
-      (holds_[i] != 0 ? begun : ended).add(candidates_[i].first, candidates_[i].second);
+    if (holds_[i] == held_[i]) return;
+    (holds_[i] != 0 ? begun : ended).add(candidates_[i].first, candidates_[i].second);
+    holding_ += holds_[i];
+    holding_ -= held_[i];
   };
   // Nearly all are as they were.
   constexpr std::size_t at_once = sizeof(std::uint64_t);
@@ -294,6 +287,8 @@ void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& beg
 /// Decides whether boxes stay enlarged, by how many changed and how many of them left.
 template <int D, typename Real>
 void MarginTracker<D, Real>::judge() {
+  // Where pairs part, their candidates count for less.
+  if (candidates_.size() > max_candidates()) return give_up(pause_after_limit());
   ++lasted_;
   const auto boxes = static_cast<double>(now_.size());
   const auto candidates = static_cast<double>(candidates_.size());
@@ -305,23 +300,22 @@ void MarginTracker<D, Real>::judge() {
   const double left = static_cast<double>(left_.size()) / static_cast<double>(changed_);
   left_share_ += (left - left_share_) / averaged_frames;
   if (left_share_ <= most_left && calm_frames_ < most_calm_frames) return;
-  give_up(lasted_ > next_pause_ ? shortest_pause : std::min(2 * next_pause_, longest_pause));
+  give_up(lasted_ > next_pause_ ? min_pause : std::min(2 * next_pause_, max_pause));
 }
 
 /// From the next frame on, the other tracker gets the boxes themselves.
 template <int D, typename Real>
 void MarginTracker<D, Real>::give_up(std::size_t pause) noexcept {
-  boxes_ = Boxes::ending;
+  if (boxes_ == Boxes::enlarged) boxes_ = Boxes::ending;
   pause_ = next_pause_ = pause;
-  before_ = {};
-  now_ = {};
-  flags_ = {};
-  candidates_ = {};
-  holds_ = {};
-  held_ = {};
-  begun_ = {};
-  ended_ = {};
-  spare_ = {};
+  release();
+}
+
+/// Gives back what enlarged boxes took.
+template <int D, typename Real>
+void MarginTracker<D, Real>::release() noexcept {
+  give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
+  if (boxes_ != Boxes::exact) tracker_->forget();
 }
 
 template <int D, typename Real>

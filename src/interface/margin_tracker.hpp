@@ -25,11 +25,13 @@ namespace broadside::core {
 /// events are the same either way.
 ///
 /// Cost of a frame with enlarged boxes: a comparison a changed box, a test a candidate, and the other
-/// tracker's for the boxes that left theirs.
+/// tracker's for the boxes that left theirs. Candidates, and what is spent on finding them, have a limit by
+/// the numbers of boxes and of pairs, which is tested while they are found. Where it is passed, boxes are no
+/// longer enlarged, the frame is done without, and all that memory is given back.
 template <int D, typename Real = float>
 class MarginTracker final : public PairTracker<D, Real> {
  public:
-  explicit MarginTracker(std::unique_ptr<PairTracker<D, Real>> tracker) : tracker_(std::move(tracker)) {}
+  explicit MarginTracker(std::unique_ptr<AdaptiveTracker<D, Real>> tracker) : tracker_(std::move(tracker)) {}
 
   std::string explanation() const override;
 
@@ -41,10 +43,15 @@ class MarginTracker final : public PairTracker<D, Real> {
     return boxes_ == Boxes::exact ? this->index_of(*tracker_) : nullptr;
   }
 
+  void update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   bool suits_margins(const Change<D, Real>& change);
-  void start(const Change<D, Real>& change);
+  std::uint64_t start(const Change<D, Real>& change);
+  std::size_t max_candidates() const noexcept;
+  std::size_t pause_after_limit() const noexcept;
   void give_up(std::size_t pause) noexcept;
-  void follow_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void release() noexcept;
+  bool follow_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void find_candidates(const Change<D, Real>& change);
   void enlarge_anew(const Change<D, Real>& change);
   void change_candidates(PairSink& ended);
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
@@ -58,7 +65,7 @@ class MarginTracker final : public PairTracker<D, Real> {
     ending  ///< enlarged ones of former frames: it has to be rebuilt
   };
 
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  std::unique_ptr<AdaptiveTracker<D, Real>> tracker_;
   Margins<D, Real> margins_{};
   Boxes boxes_ = Boxes::exact;
   bool was_enlarged_ = false;  // whether the last update tested candidates
@@ -70,6 +77,7 @@ class MarginTracker final : public PairTracker<D, Real> {
   std::vector<Pair> candidates_;     // sorted
   std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap
   std::vector<std::uint8_t> held_;   // likewise, in the frame before
+  std::size_t holding_ = 0;          // candidates that hold
   std::vector<Pair> begun_;          // candidates
   std::vector<Pair> ended_;
   std::vector<Pair> spare_;

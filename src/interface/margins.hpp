@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "broadside/box.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::core {
 
@@ -16,6 +18,10 @@ struct Margins {
   Real relative;
   Real frames;
   bool is_of_shortest = false;  ///< whether `relative` is of a box's shortest side, instead of its longest
+
+  /// Whether each of the two counts. One that was given and rounds to 0 does: it limits the other one to 0.
+  bool has_margin = margin > 0;
+  bool has_relative = relative > 0;
 
   /// Whether boxes are enlarged at all.
   bool any() const noexcept { return margin > 0 || relative > 0 || frames > 0; }
@@ -54,7 +60,7 @@ struct Margins {
 
   /// A side that is not finite counts for nothing.
   Real margin_of(const Box<D, Real>& box) const noexcept {
-    if (relative == 0) return margin;
+    if (!has_relative) return margin;
     constexpr Real infinity = std::numeric_limits<Real>::infinity();
     Real longest = 0;
     Real shortest = infinity;
@@ -64,8 +70,13 @@ struct Margins {
       shortest = std::min(shortest, side);
     }
     const Real share = relative * (is_of_shortest ? std::min(shortest, longest) : longest);
-    return margin > 0 ? std::min(margin, share) : share;
+    return has_margin ? std::min(margin, share) : share;
   }
 };
+
+/// The margins for boxes of which many moved and hardly any far, by a sample of those that changed; nothing
+/// where that is not so.
+template <int D, typename Real>
+std::optional<Margins<D, Real>> margins_for(const Change<D, Real>& change);
 
 }  // namespace broadside::core

@@ -22,8 +22,8 @@ class Yielding {
   Yielding& operator=(const Yielding&) = delete;
   virtual ~Yielding() = default;
 
-  /// Searches give up from now on; before, none does.
-  void let_yield() noexcept { may_yield_ = true; }
+  /// Whether searches may give up from now on; at first, none may.
+  void let_yield(bool may_yield) noexcept { may_yield_ = may_yield; }
 
   /// Whether the last search gave up. It has then written some of the pairs; is_left() tells the others.
   bool has_yielded() const noexcept { return has_yielded_; }

@@ -136,8 +136,10 @@ class BlockPool {
   /// Drops all blocks, and gives memory back that far exceeds what was in use.
   void clear() {
     if (blocks_.capacity() > 4 * (blocks_.size() - free_.size()) + 1024) {
-      heads_ = {};
-      blocks_ = {};
+      // Not `= {}`, which assigns an empty list and keeps the memory.
+      heads_ = std::vector<BlockHead>();
+      blocks_ = std::vector<Block<D>>();
+      free_ = std::vector<std::uint32_t>();
     }
     heads_.clear();
     blocks_.clear();

@@ -122,8 +122,11 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     auto& finder = finders_[static_cast<std::size_t>(choice_)];
     if (!finder) {
       const Algorithm& algorithm = algorithm_of(choice_);
-      finder = make_finder<D>(algorithm, Spec{algorithm.name, {}});
-      if (core::Yielding<D>* const search = finder->yielding()) search->let_yield();
+      Spec spec{algorithm.name, {}};
+      // In stripes a sweep does not give up.
+      if (algorithm.name == "sweep_and_prune") spec.values.emplace_back("axes", "1");
+      finder = make_finder<D>(algorithm, spec);
+      if (core::Yielding<D>* const search = finder->yielding()) search->let_yield(true);
     }
     return *finder;
   }

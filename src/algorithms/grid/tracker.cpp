@@ -12,6 +12,7 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/filter_sink.hpp"
 #include "core/lean.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
@@ -125,19 +126,23 @@ void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& 
     events.flush();
   };
   if (parallel_.workers() == 1) return search(parts_.front(), begun, ended);
+  // A sink with a limit counts while threads search, not once their lists are full.
+  const core::FilterSink* const limit = begun.as_filter();
   parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t) {
     for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {
       part.begun.clear();
       part.ended.clear();
       PairCollector its_begun(part.begun);
       PairCollector its_ended(part.ended);
-      search(part, its_begun, its_ended);
+      const auto limited = limit != nullptr ? limit->onto(its_begun) : nullptr;
+      search(part, limited ? *limited : static_cast<PairSink&>(its_begun), its_ended);
+      if (limited) limited->flush();
       its_begun.flush();
       its_ended.flush();
     }
   });
   for (const Part& part : parts()) {
-    begun.put(part.begun);
+    (limit != nullptr ? limit->target() : begun).put(part.begun);
     ended.put(part.ended);
   }
 }

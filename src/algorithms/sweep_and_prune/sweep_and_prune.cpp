@@ -62,7 +62,7 @@ class SweepAndPrune final : public PairFinder<D>,
     if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
   }
 
-  /// It gives up before it has searched.
+  /// It gives up before it has searched, and only along one axis: in stripes it does not.
   bool is_left(const Box<D>&, BoxId, const Box<D>&, BoxId) const override { return true; }
 
  private:
@@ -85,9 +85,8 @@ class SweepAndPrune final : public PairFinder<D>,
     for (int i = D - 1; i > 0; --i) {
       if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
     }
-    // A search that may give up is asked for along one axis, or not at all.
     borders_.clear();
-    if (!this->may_yield()) choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
+    choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     return axes;
   }
 

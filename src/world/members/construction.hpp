@@ -63,9 +63,11 @@ template <int D, typename Real>
 World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
                              const WorldOptions& its_options, bool is_own)
     : options(its_options),
-      margins{checked_distance<Real>("margin", its_options.margin),
-              checked_distance<Real>("relative margin", its_options.relative_margin),
-              checked_distance<Real>("number of predicted frames", its_options.predicted_frames)},
+      margins{.margin = checked_distance<Real>("margin", its_options.margin),
+              .relative = checked_distance<Real>("relative margin", its_options.relative_margin),
+              .frames = checked_distance<Real>("number of predicted frames", its_options.predicted_frames),
+              .has_margin = its_options.margin > 0,
+              .has_relative = its_options.relative_margin > 0},
       is_own_tracker(is_own),
       tracker(core::is_lean || is_own || !its_tracker || !its_options.shadow
                   ? std::move(its_tracker)

@@ -10,6 +10,7 @@
 
 #include "broadside/error.hpp"
 
+#include "lab/measure/memory.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/model.hpp"
 
@@ -279,6 +280,32 @@ TEST_F(OutOfCore, MakesAgainWhatIsDamaged) {
   const std::filesystem::path pairs = work_files(".pairs").front();
   damage(pairs);
   expect_mended(pairs);
+}
+
+TEST_F(OutOfCore, TakesNoMemoryForADamagedSize) {
+  struct Ended {};
+  const std::vector<Box2> boxes = scattered<2>(12'000, 60);
+  {
+    Given<2, float> source(boxes);
+    OutOfCoreOptions ending = options();
+    ending.progress = [](OutOfCoreStage stage, std::uint64_t done, std::uint64_t) {
+      if (stage == OutOfCoreStage::joining && done > 0) throw Ended();
+    };
+    EXPECT_THROW((OutOfCoreJoin<2, float>(source, ending).run()), Ended);
+  }
+  // A block begins with its size.
+  const std::uint64_t size = std::uint64_t{1} << 29;
+  std::fstream file(work_files(".boxes").back(), std::ios::binary | std::ios::in | std::ios::out);
+  file.write(reinterpret_cast<const char*>(&size), sizeof(size));
+  file.close();
+  Given<2, float> source(boxes);
+  OutOfCoreJoin<2, float> join(source, options());
+  const lab::AllocationMeter meter;
+  EXPECT_EQ(sorted_pairs(join), expected(boxes));
+  if (const auto allocation = meter.read()) {
+    EXPECT_LT(allocation->peak, std::int64_t{1} << 26);
+  }
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("ends early")));
 }
 
 TEST_F(OutOfCore, RefusesAFolderThatIsInUseOrOfOtherBoxes) {

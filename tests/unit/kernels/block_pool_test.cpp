@@ -63,5 +63,15 @@ TEST(BlockPool, KeepsInEachChainWhatAMapWould) {
   });
 }
 
+TEST(BlockPool, GivesMemoryBackThatFarExceedsWhatWasInUse) {
+  BlockPool<2> pool;
+  std::uint32_t first = no_slot;
+  for (int i = 0; i < 10'000; ++i) pool.add_block(first, 0);
+  const std::size_t many = pool.bytes();
+  while (first != no_slot) pool.remove_block(first, first);
+  pool.clear();
+  EXPECT_LT(pool.bytes(), many / 100);
+}
+
 }  // namespace
 }  // namespace broadside::kernels

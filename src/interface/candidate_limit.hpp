@@ -1,0 +1,83 @@
+// Sinks of candidates that stop a search: a limit is tested while pairs are written, not after the search.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "core/filter_sink.hpp"
+#include "kernels/overlap_flags.hpp"
+
+namespace broadside::core {
+
+/// Thrown out of a search where it would keep more pairs, or make more tests, than it may.
+struct LimitPassed {};
+
+/// How many candidates may be kept, beside those that each one that holds allows for.
+struct CandidateLimit {
+  std::size_t candidates;
+  std::size_t candidates_per_holding = 0;
+
+  std::size_t max(std::size_t holding) const noexcept {
+    return candidates + candidates_per_holding * holding;
+  }
+};
+
+/// Appends candidates to a vector, and throws before it has more than `limit` allows. By `boxes` it decides
+/// which candidates hold.
+template <int D, typename Real>
+class CandidateCollector final : public PairSink {
+ public:
+  CandidateCollector(std::vector<Pair>& candidates, CandidateLimit limit,
+                     std::span<const Box<D, Real>> boxes = {})
+      : candidates_(candidates), limit_(limit), boxes_(boxes) {}
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    if (limit_.candidates_per_holding > 0) {
+      std::array<std::uint8_t, 2 * max_room> holds;
+      kernels::set_overlap_flags(boxes_, pairs, holds.data());
+      holding_ += static_cast<std::size_t>(std::count(holds.begin(), holds.begin() + pairs.size(), 1));
+    }
+    if (candidates_.size() + pairs.size() > limit_.max(holding_)) throw LimitPassed();
+    candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
+  }
+
+  std::vector<Pair>& candidates_;
+  CandidateLimit limit_;
+  std::span<const Box<D, Real>> boxes_;
+  std::size_t holding_ = 0;
+};
+
+/// Passes pairs on until there are more than `most`, of all threads together.
+class LimitSink final : public FilterSink {
+ public:
+  LimitSink(std::size_t most, PairSink& target) : FilterSink(target), most_(most), passed_(&count_) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    auto sink = std::make_unique<LimitSink>(most_, target);
+    sink->passed_ = passed_;
+    return sink;
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    if (passed_->fetch_add(pairs.size(), std::memory_order_relaxed) + pairs.size() > most_)
+      throw LimitPassed();
+    target().put(pairs);
+  }
+
+  std::size_t most_;
+  std::atomic<std::size_t> count_ = 0;
+  std::atomic<std::size_t>* passed_;  // the first one's
+};
+
+}  // namespace broadside::core
