@@ -71,6 +71,9 @@ void MarginTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSin
   } catch (const std::bad_alloc&) {
     // The frame itself is whole.
     give_up(max_pause);
+  } catch (...) {  // a checkpoint's or an executor's
+    give_up(min_pause);
+    throw;
   }
   this->count(statistics);
 }

@@ -20,6 +20,9 @@ constexpr double least_boxes_per_cell = 16;
 /// Where cells are asked for by their size, there may be this many for each box.
 constexpr double most_cells_per_box = 4;
 
+/// And the most cells that a box may be in on average.
+constexpr double max_references_per_box = 64;
+
 /// The cost, in tests of two boxes, of inserting a box into one more cell, beyond the tests there.
 constexpr double grid_reference_cost = 20;
 
@@ -76,7 +79,23 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
     return cells;
   };
   if (cell) {
-    set(sample, cells_of_size([&](const core::AxisSample&) { return *cell; }));
+    std::array<double, gridded> cells = cells_of_size([&](const core::AxisSample&) { return *cell; });
+    // Boxes that are in very many cells would be compared in each of them.
+    const auto references = [&](int axis) {
+      const core::AxisSample& on_axis = sample[axes_[axis + 1]];
+      return cells[axis] > 1 ? 1 + on_axis.mean_extent / range_of(on_axis) * cells[axis] : 1;
+    };
+    for (;;) {
+      double product = 1;
+      int most = 0;
+      for (int axis = 0; axis < gridded; ++axis) {
+        product *= references(axis);
+        if (references(axis) > references(most)) most = axis;
+      }
+      if (product <= max_references_per_box) break;
+      cells[most] = std::max(1.0, std::floor(cells[most] / 2));
+    }
+    set(sample, cells);
     return;
   }
 

@@ -6,14 +6,6 @@
 #include <limits>
 
 namespace broadside::algorithm {
-namespace {
-
-/// The most references a box that splitting may lead to. Of the generated scenes thin boxes in 3D have most,
-/// 5; long lines have as many as they may, and are better followed by bounds.
-constexpr std::size_t most_references = 6;
-
-}  // namespace
-
 template <int D>
 void QuadtreeNodes<D>::build(std::span<const Box<D>> boxes) {
   chains_.pool().clear();

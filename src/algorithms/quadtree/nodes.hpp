@@ -107,14 +107,20 @@ class QuadtreeNodes {
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
 
-  /// Whether the tree has become too deep to be left as it is.
-  bool needs_rebuild() const noexcept { return is_too_deep_; }
+  /// Whether the tree has become too deep to be left as it is, or its boxes are in too many nodes: splitting
+  /// keeps that limit, and boxes that grow do not.
+  bool needs_rebuild() const noexcept {
+    return is_too_deep_ || references_ > most_references * homes_.size();
+  }
 
   std::size_t bytes() const noexcept;
 
  private:
   static constexpr std::size_t samples = 31;
   static constexpr std::uint32_t most_depth = 64;
+  /// The most references a box that splitting may lead to. Of the generated scenes thin boxes in 3D have
+  /// most, 5; long lines have as many as they may, and are better followed by bounds.
+  static constexpr std::size_t most_references = 6;
 
   using Sizes = std::array<std::size_t, child_count>;
 
