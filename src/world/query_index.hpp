@@ -15,6 +15,8 @@
 #include "broadside/pair.hpp"
 #include "broadside/queries.hpp"
 
+#include "core/grow.hpp"
+
 namespace broadside::core {
 
 /// Built by the first query that needs it. From then on it lists the slots that changed since the index took
@@ -66,8 +68,7 @@ class QueryIndex {
   /// Gives back all memory; the next query builds the index.
   void drop() noexcept {
     index_.reset();
-    marked_ = {};
-    is_marked_ = {};
+    give_back(marked_, is_marked_);
     is_current_.store(false, std::memory_order_relaxed);
   }
 

@@ -308,6 +308,27 @@ TEST_F(OutOfCore, TakesNoMemoryForADamagedSize) {
   EXPECT_THAT(said_, ElementsAre(HasSubstr("ends early")));
 }
 
+TEST_F(OutOfCore, AllocatesNoMoreThanItsLimit) {
+  const std::vector<Box2> boxes = scattered<2>(200'000, 200);
+  for (const std::uint64_t memory : {std::uint64_t{1} << 22, std::uint64_t{1} << 24}) {
+    Given<2, float> source(boxes);
+    OutOfCoreOptions limited = options();
+    limited.memory = memory;
+    limited.threads = 1;
+    const lab::AllocationMeter meter;
+    OutOfCoreJoin<2, float> join(source, limited);
+    join.run();
+    std::uint64_t pairs = 0;
+    join.visit_sorted(std::function<void(std::span<const Pair>)>(
+        [&](std::span<const Pair> some) { pairs += some.size(); }));
+    const auto allocation = meter.read();
+    if (!allocation) GTEST_SKIP() << "this build does not count allocations";
+    EXPECT_LE(allocation->peak, static_cast<std::int64_t>(memory)) << memory;
+    EXPECT_EQ(pairs, join.pairs());
+    join.remove_folder();
+  }
+}
+
 TEST_F(OutOfCore, RefusesAFolderThatIsInUseOrOfOtherBoxes) {
   Given<2, float> source(scattered<2>(100, 10));
   {
