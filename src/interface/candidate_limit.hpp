@@ -12,8 +12,10 @@
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
+#include "core/lean.hpp"
 #include "kernels/overlap_flags.hpp"
 
 namespace broadside::core {
@@ -38,20 +40,21 @@ class CandidateCollector final : public PairSink {
  public:
   CandidateCollector(std::vector<Pair>& candidates, CandidateLimit limit,
                      std::span<const Box<D, Real>> boxes = {})
-      : candidates_(candidates), limit_(limit), boxes_(boxes) {}
+      : candidates_(candidates), collector_(candidates), limit_(limit), boxes_(boxes) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    if (limit_.candidates_per_holding > 0) {
+    if (!is_lean && limit_.candidates_per_holding > 0) {
       std::array<std::uint8_t, 2 * max_room> holds;
       kernels::set_overlap_flags(boxes_, pairs, holds.data());
       holding_ += static_cast<std::size_t>(std::count(holds.begin(), holds.begin() + pairs.size(), 1));
     }
     if (candidates_.size() + pairs.size() > limit_.max(holding_)) throw LimitPassed();
-    candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
+    collector_.put(pairs);
   }
 
-  std::vector<Pair>& candidates_;
+  const std::vector<Pair>& candidates_;
+  PairCollector collector_;  // for its large pages
   CandidateLimit limit_;
   std::span<const Box<D, Real>> boxes_;
   std::size_t holding_ = 0;
