@@ -1,5 +1,5 @@
-# Fails where the shared library LIBRARY exports what no header of ROOT marks, or a function that takes a container of the
-# standard library, or misses a function that broadside.h marks. NM lists symbols.
+# Fails where the shared library LIBRARY exports what no header of ROOT marks, exports a function that takes a container
+# of the standard library, or misses a function that broadside.h marks. NM lists symbols.
 #
 # Exported may be: functions marked BROADSIDE_API or BROADSIDE_EXPERIMENTAL in broadside.h; what is marked
 # BROADSIDE_PUBLIC in the headers of C++, with members, virtual tables and type information; and what the C++ compiler
@@ -32,15 +32,16 @@ execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT
 string(REGEX MATCHALL "[^\n]+" lines "${lines}")
 set(strays "")
 set(containers "")
+set(container "St(6vector|5deque|12forward_list|3map|3set|8multimap|8multiset|[0-9]+unordered_|6bitset)|__cxx114listI")
 set(c_symbols "")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^[^ ]+" symbol "${line}")
-  if(symbol MATCHES "^_Z[A-Z]*[ZNVPFKhvn0-9_]*9broadside([0-9]+)(.*)")
-    string(SUBSTRING "${CMAKE_MATCH_2}" 0 ${CMAKE_MATCH_1} name)
+  if(symbol MATCHES "^_Z[A-Z]*[ZNVPFKhvn0-9_]*9broadside(6detail)?([0-9]+)(.*)")
+    string(SUBSTRING "${CMAKE_MATCH_3}" 0 ${CMAKE_MATCH_2} name)
     if(NOT name IN_LIST public)
       list(APPEND strays ${symbol})
     endif()
-    if(NOT symbol MATCHES "^_ZT" AND symbol MATCHES "St(6vector|5deque|12forward_list|3map|3set|8multimap|8multiset|[0-9]+unordered_|6bitset)|__cxx114listI")
+    if(symbol MATCHES "${container}" AND NOT symbol MATCHES "^_ZT")
       list(APPEND containers ${symbol})
     endif()
   elseif(symbol MATCHES "^broadside_")

@@ -259,13 +259,12 @@ void print_sizes() {
 }  // namespace
 
 int main() {
-  for (const std::size_t size : {sizeof(Spec),          sizeof(Tunable),         sizeof(Settings),
-                                 sizeof(Algorithm),     sizeof(Workers),         sizeof(Executor),
-                                 sizeof(IgnoredPairs),  sizeof(PairFilters),     sizeof(FindOptions),
-                                 sizeof(PairSink),      sizeof(PairCollector),   sizeof(PairCounter),
-                                 sizeof(PairFunction),  sizeof(PairHasher),      sizeof(WorldOptions),
-                                 sizeof(BoxOptions),    sizeof(WorldStatistics), sizeof(Events),
-                                 sizeof(PairPredicate), sizeof(ShadowOptions),   sizeof(InvalidInput)})
+  for (const std::size_t size :
+       {sizeof(Spec),        sizeof(Tunable),       sizeof(Settings),      sizeof(Algorithm),
+        sizeof(Workers),     sizeof(Executor),      sizeof(IgnoredPairs),  sizeof(PairFilters),
+        sizeof(FindOptions), sizeof(PairSink),      sizeof(PairCollector), sizeof(PairCounter),
+        sizeof(PairHasher),  sizeof(WorldOptions),  sizeof(BoxOptions),    sizeof(WorldStatistics),
+        sizeof(Events),      sizeof(PairPredicate), sizeof(ShadowOptions), sizeof(InvalidInput)})
     std::printf("%zu ", size);
   std::printf("\n");
   print_sizes<2, float>();
