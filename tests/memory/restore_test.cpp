@@ -90,6 +90,17 @@ std::vector<std::vector<HandlePair>> future(World2& world) {
   return told;
 }
 
+/// Whether a query about each box's place finds it, and one about all places as many as there are.
+bool finds_all(const World2& world) {
+  std::size_t found = 0;
+  std::size_t found_again = 0;
+  world.overlapping({{-1e6F, -1e6F}, {1e6F, 1e6F}}, [&](Handle handle) {
+    ++found;
+    world.containing(world.box(handle).max, [&](Handle other) { found_again += handle == other ? 1 : 0; });
+  });
+  return found == world.size() && found_again == found;
+}
+
 /// Calls `call` with every allocation failing, once and from then on, until one needs no more of them. `make`
 /// makes the object for the call anew; `check` looks at it, and at whether the call threw, when there is
 /// memory again. Returns how many calls threw.
@@ -129,6 +140,7 @@ TEST(RestoreOutOfMemory, LeavesTheWorldAsItWas) {
     const auto world_at = [&](const SnapshotBytes& bytes) {
       World2 world = world_of(kind);
       world.restore(bytes);
+      EXPECT_TRUE(finds_all(world));  // from now on it has an index, which a restore takes over
       return world;
     };
     World2 was_world = world_at(was);
@@ -139,6 +151,7 @@ TEST(RestoreOutOfMemory, LeavesTheWorldAsItWas) {
                                        [&to = to](World2& world) { world.restore(to); },
                                        [&, &was = was, &to = to](World2& world, bool has_thrown) {
                                          EXPECT_EQ(world.snapshot(), has_thrown ? was : to);
+                                         EXPECT_TRUE(finds_all(world));
                                          EXPECT_EQ(future(world), has_thrown ? after_was : after_to);
                                        });
     EXPECT_GT(thrown, 20);
