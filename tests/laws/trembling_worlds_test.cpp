@@ -31,7 +31,7 @@ using HandlePairs = std::vector<HandlePair>;
 /// What the worlds with a predicate ask about a pair.
 bool is_liked(Handle a, Handle b) { return (a.slot + b.slot + a.generation) % 5 != 0; }
 
-struct Course {
+struct TremblingCourse {
   std::string name;
   std::string algorithm;
   std::size_t boxes;
@@ -42,11 +42,11 @@ struct Course {
   std::size_t threads = 1;
 };
 
-void PrintTo(const Course& course, std::ostream* out) { *out << course.name; }
+void PrintTo(const TremblingCourse& course, std::ostream* out) { *out << course.name; }
 
 /// What a world knows, in plain containers.
 template <int D, typename Real>
-struct Model {
+struct KnownWorld {
   struct Member {
     Handle handle;
     Box<D, Real> rest;
@@ -84,7 +84,7 @@ struct Model {
 template <int D, typename Real>
 class History {
  public:
-  History(const Course& course, std::uint64_t seed) : course_(course), world_(made()), rng_(seed) {
+  History(const TremblingCourse& course, std::uint64_t seed) : course_(course), world_(made()), rng_(seed) {
     // Some four neighbours each.
     side_ = static_cast<float>(D == 2 ? std::sqrt(course.boxes) : std::cbrt(course.boxes)) * 1.1F;
     for (std::size_t i = 0; i < course.boxes; ++i) add();
@@ -102,7 +102,7 @@ class History {
   }
 
  private:
-  using Member = typename Model<D, Real>::Member;
+  using Member = typename KnownWorld<D, Real>::Member;
 
   World<D, Real> made() const {
     WorldOptions options;
@@ -175,7 +175,7 @@ class History {
 
   void toggle(Handle a, Handle b) {
     if (a == b) return;
-    const HandlePair pair = Model<D, Real>::ordered(a, b);
+    const HandlePair pair = KnownWorld<D, Real>::ordered(a, b);
     if (model_.ignored.erase(pair) != 0) return world_.unignore(a, b);
     model_.ignored.insert(pair);
     world_.ignore(a, b);
@@ -333,10 +333,10 @@ class History {
     return filter;
   }
 
-  Course course_;
+  TremblingCourse course_;
   World<D, Real> world_;
-  Model<D, Real> model_{};
-  std::optional<std::pair<std::vector<std::byte>, Model<D, Real>>> kept_{};
+  KnownWorld<D, Real> model_{};
+  std::optional<std::pair<std::vector<std::byte>, KnownWorld<D, Real>>> kept_{};
   Rng rng_;
   float side_ = 0;
   bool throws_ = false;
@@ -344,8 +344,8 @@ class History {
 };
 
 /// Only `auto` enlarges boxes of doubles by itself.
-std::vector<Course> courses(const std::vector<std::string>& algorithms) {
-  std::vector<Course> courses;
+std::vector<TremblingCourse> courses(const std::vector<std::string>& algorithms) {
+  std::vector<TremblingCourse> courses;
   for (const std::string& algorithm : algorithms) {
     courses.push_back({algorithm, algorithm, 700, 160});
   }
@@ -361,7 +361,7 @@ std::vector<Course> courses(const std::vector<std::string>& algorithms) {
   return courses;
 }
 
-class TremblingWorld : public testing::TestWithParam<Course> {};
+class TremblingWorld : public testing::TestWithParam<TremblingCourse> {};
 
 INSTANTIATE_TEST_SUITE_P(Courses, TremblingWorld,
                          testing::ValuesIn(courses({"auto", "grid", "sweep_and_prune", "quadtree", "bvh"})),

@@ -23,9 +23,9 @@ namespace broadside {
 namespace {
 
 /// Boxes of side 1, about one in each square of side 2, and what is done to them.
-class Game {
+class Crowd {
  public:
-  Game(World2 its_world, std::size_t boxes)
+  Crowd(World2 its_world, std::size_t boxes)
       : world(std::move(its_world)), side(2 * std::sqrt(static_cast<float>(boxes))) {
     for (std::size_t i = 0; i < boxes; ++i) add();
     world.update();
@@ -113,55 +113,55 @@ class IndexMeter {
 struct Turn {
   std::string name;
   std::size_t changes;  ///< boxes that change in a turn
-  std::function<void(Game&)> before_query;
-  std::function<void(Game&)> after_query{};
+  std::function<void(Crowd&)> before_query;
+  std::function<void(Crowd&)> after_query{};
   WorldOptions options{};
 };
 
 std::vector<Turn> turns() {
-  const auto update = [](Game& game) { game.world.update(); };
+  const auto update = [](Crowd& crowd) { crowd.world.update(); };
   WorldOptions exact;
   exact.margin = 0.5;
   WorldOptions enlarged = exact;
   enlarged.events = WorldEvents::enlarged;
   WorldOptions bvh;
   bvh.algorithm = "bvh:update=follow";
-  const auto move_many = [](Game& game) {
+  const auto move_many = [](Crowd& crowd) {
     std::vector<Handle> moved;
     std::vector<Box2> boxes;
     for (int i = 0; i < 4; ++i) {
-      moved.push_back(game.any());
-      boxes.push_back(i % 2 == 0 ? game.anywhere() : game.near(moved.back()));
+      moved.push_back(crowd.any());
+      boxes.push_back(i % 2 == 0 ? crowd.anywhere() : crowd.near(moved.back()));
     }
-    game.world.move(moved, boxes);
+    crowd.world.move(moved, boxes);
   };
-  const auto filter = [](Game& game) {
-    game.world.set_filter(game.any(), {.category = 1U << game.rng.below(9)});
+  const auto filter = [](Crowd& crowd) {
+    crowd.world.set_filter(crowd.any(), {.category = 1U << crowd.rng.below(9)});
   };
-  const auto all = [filter](Game& game) {
-    game.add();
-    game.move_near();
-    game.move_far();
-    game.remove();
-    filter(game);
+  const auto all = [filter](Crowd& crowd) {
+    crowd.add();
+    crowd.move_near();
+    crowd.move_far();
+    crowd.remove();
+    filter(crowd);
   };
-  const auto move_and_update = [update](Game& game) {
-    game.move_far();
-    update(game);
+  const auto move_and_update = [update](Crowd& crowd) {
+    crowd.move_far();
+    update(crowd);
   };
-  return {{"Added", 1, &Game::add},
-          {"MovedNear", 1, &Game::move_near},
-          {"MovedFar", 1, &Game::move_far},
-          {"Removed", 1, &Game::remove},
+  return {{"Added", 1, &Crowd::add},
+          {"MovedNear", 1, &Crowd::move_near},
+          {"MovedFar", 1, &Crowd::move_far},
+          {"Removed", 1, &Crowd::remove},
           {"Filtered", 1, filter},
           {"MovedAtOnce", 4, move_many},
           {"ChangedInAllWays", 5, all},
           {"ChangedAndUpdated", 5, all, update},
-          {"MovedWithinEnlargedOnes", 1, &Game::move_near, {}, enlarged},
-          {"MovedOutOfEnlargedOnes", 1, &Game::move_far, {}, enlarged},
-          {"MovedInExactOnes", 1, &Game::move_near, {}, exact},
+          {"MovedWithinEnlargedOnes", 1, &Crowd::move_near, {}, enlarged},
+          {"MovedOutOfEnlargedOnes", 1, &Crowd::move_far, {}, enlarged},
+          {"MovedInExactOnes", 1, &Crowd::move_near, {}, exact},
           {"OfATrackersIndex", 5, all, {}, bvh},
-          {"OfATrackersIndexAndUpdated", 2, &Game::move_far, move_and_update, bvh}};
+          {"OfATrackersIndexAndUpdated", 2, &Crowd::move_far, move_and_update, bvh}};
 }
 
 class QueryCost : public testing::TestWithParam<Turn> {};
@@ -173,54 +173,54 @@ TEST_P(QueryCost, IsForWhatChangedSinceTheLastQuery) {
   const Turn& turn = GetParam();
   for (const std::size_t size : {500U, 8000U}) {
     // As many turns as boxes, so that a build now and then, after a part of all have changed, is counted.
-    Game game(World2(turn.options), turn.name == "Removed" ? 2 * size : size);
+    Crowd crowd(World2(turn.options), turn.name == "Removed" ? 2 * size : size);
     IndexMeter meter;
-    game.move_near();
-    game.query();
-    meter.read(game.world);
+    crowd.move_near();
+    crowd.query();
+    meter.read(crowd.world);
     const std::uint64_t first = meter.taken();
     for (std::size_t i = 0; i < size; ++i) {
-      turn.before_query(game);
-      meter.start(game.world);
-      game.query();
-      meter.read(game.world);
-      if (turn.after_query) turn.after_query(game);
+      turn.before_query(crowd);
+      meter.start(crowd.world);
+      crowd.query();
+      meter.read(crowd.world);
+      if (turn.after_query) turn.after_query(crowd);
     }
     EXPECT_GE(meter.taken() - first, size * turn.changes * 3 / 4) << size << " boxes";
     EXPECT_LE(meter.taken() - first, size * turn.changes * 6) << size << " boxes";
     // Whatever happens, all memory is for the boxes there are, and not for what was done to them.
-    EXPECT_LE(game.world.statistics().bytes.queries, 400 * game.world.slots() + 100'000);
+    EXPECT_LE(crowd.world.statistics().bytes.queries, 400 * crowd.world.slots() + 100'000);
   }
 }
 
 TEST(QueryCost, AfterARollbackIsForWhatDiffers) {
   for (const std::size_t size : {500U, 8000U}) {
-    Game game(World2(), size);
-    game.move_near();
-    game.query();
-    game.world.update();
+    Crowd crowd(World2(), size);
+    crowd.move_near();
+    crowd.query();
+    crowd.world.update();
     IndexMeter meter;
-    meter.read(game.world);
-    const std::vector<std::byte> snapshot = game.world.snapshot();
+    meter.read(crowd.world);
+    const std::vector<std::byte> snapshot = crowd.world.snapshot();
     for (int i = 0; i < 10; ++i) {
-      game.move_far();
-      game.query();
-      game.world.update();
-      game.add();
+      crowd.move_far();
+      crowd.query();
+      crowd.world.update();
+      crowd.add();
     }
-    game.world.set_filter(game.any(), {.mask = 5});
-    game.query();
-    meter.read(game.world);
+    crowd.world.set_filter(crowd.any(), {.mask = 5});
+    crowd.query();
+    meter.read(crowd.world);
     const std::uint64_t before = meter.taken();
-    game.world.restore(snapshot);
-    game.query();
-    meter.read(game.world);
+    crowd.world.restore(snapshot);
+    crowd.query();
+    meter.read(crowd.world);
     EXPECT_LE(meter.taken() - before, 40U) << size << " boxes";
   }
 }
 
 /// Counts the boxes that it is told to have changed.
-class CountingTracker final : public PairTracker<2> {
+class ChangeCounter final : public PairTracker<2> {
  public:
   std::size_t changed = 0;
 
@@ -233,7 +233,7 @@ class CountingTracker final : public PairTracker<2> {
 struct Deed {
   std::string name;
   std::size_t changed;  ///< boxes, however many there are
-  std::function<void(Game&)> deed;
+  std::function<void(Crowd&)> deed;
   WorldOptions options{};
 };
 
@@ -242,35 +242,35 @@ std::vector<Deed> deeds() {
   exact.margin = 0.5;
   WorldOptions enlarged = exact;
   enlarged.events = WorldEvents::enlarged;
-  const auto move_twice = [](Game& game) {
-    const Handle handle = game.any();
-    game.world.move(handle, game.anywhere());
-    game.world.move(handle, game.anywhere());
+  const auto move_twice = [](Crowd& crowd) {
+    const Handle handle = crowd.any();
+    crowd.world.move(handle, crowd.anywhere());
+    crowd.world.move(handle, crowd.anywhere());
   };
-  const auto filter = [](Game& game) {
-    game.world.set_filter(game.any(), {.category = game.rng.bits() | 1});
+  const auto filter = [](Crowd& crowd) {
+    crowd.world.set_filter(crowd.any(), {.category = crowd.rng.bits() | 1});
   };
-  const auto ignore = [](Game& game) { game.world.ignore(game.handles[1], game.handles[2]); };
-  const auto all = [filter](Game& game) {
-    game.world.move(game.handles[5], game.anywhere());
-    game.world.set_filter(game.handles[6], {.category = game.rng.bits() | 1});
-    game.world.remove(game.handles.back());
-    game.handles.pop_back();
-    game.add();
+  const auto ignore = [](Crowd& crowd) { crowd.world.ignore(crowd.handles[1], crowd.handles[2]); };
+  const auto all = [filter](Crowd& crowd) {
+    crowd.world.move(crowd.handles[5], crowd.anywhere());
+    crowd.world.set_filter(crowd.handles[6], {.category = crowd.rng.bits() | 1});
+    crowd.world.remove(crowd.handles.back());
+    crowd.handles.pop_back();
+    crowd.add();
   };
-  return {{"Nothing", 0, [](Game&) {}},
-          {"Query", 0, &Game::query},
-          {"Add", 1, &Game::add},
-          {"Move", 1, &Game::move_near},
+  return {{"Nothing", 0, [](Crowd&) {}},
+          {"Query", 0, &Crowd::query},
+          {"Add", 1, &Crowd::add},
+          {"Move", 1, &Crowd::move_near},
           {"MoveTwice", 1, move_twice},
-          {"Remove", 1, &Game::remove},
+          {"Remove", 1, &Crowd::remove},
           {"Filter", 1, filter},
           {"Ignore", 0, ignore},
           {"All", 4, all},
-          {"MoveWithinEnlarged", 0, &Game::move_near, enlarged},
-          {"MoveWithinExact", 0, &Game::move_near, exact},
-          {"MoveOutOfEnlarged", 1, &Game::move_far, enlarged},
-          {"MoveOutOfExact", 1, &Game::move_far, exact}};
+          {"MoveWithinEnlarged", 0, &Crowd::move_near, enlarged},
+          {"MoveWithinExact", 0, &Crowd::move_near, exact},
+          {"MoveOutOfEnlarged", 1, &Crowd::move_far, enlarged},
+          {"MoveOutOfExact", 1, &Crowd::move_far, exact}};
 }
 
 class UpdateCost : public testing::TestWithParam<Deed> {};
@@ -280,15 +280,15 @@ INSTANTIATE_TEST_SUITE_P(Deeds, UpdateCost, testing::ValuesIn(deeds()),
 
 TEST_P(UpdateCost, IsForWhatChangedSinceTheLastUpdate) {
   for (const std::size_t size : {100U, 10'000U}) {
-    auto tracker = std::make_unique<CountingTracker>();
-    const CountingTracker& counted = *tracker;
-    Game game(World2(std::move(tracker), GetParam().options), size);
-    game.world.set_filter(game.handles[0], {.category = 2});  // the first one takes all boxes for changed
-    game.world.update();
+    auto tracker = std::make_unique<ChangeCounter>();
+    const ChangeCounter& counted = *tracker;
+    Crowd crowd(World2(std::move(tracker), GetParam().options), size);
+    crowd.world.set_filter(crowd.handles[0], {.category = 2});  // the first one takes all boxes for changed
+    crowd.world.update();
     EXPECT_EQ(counted.changed, size);
     for (int i = 0; i < 3; ++i) {
-      GetParam().deed(game);
-      game.world.update();
+      GetParam().deed(crowd);
+      crowd.world.update();
       EXPECT_EQ(counted.changed, GetParam().changed) << size << " boxes";
     }
   }
@@ -296,13 +296,13 @@ TEST_P(UpdateCost, IsForWhatChangedSinceTheLastUpdate) {
 
 TEST(UpdateCost, OfARollbackIsForWhatDiffers) {
   for (const std::size_t size : {100U, 10'000U}) {
-    auto tracker = std::make_unique<CountingTracker>();
-    const CountingTracker& counted = *tracker;
-    Game game(World2(std::move(tracker)), size);
-    const std::vector<std::byte> snapshot = game.world.snapshot();
-    for (const std::size_t place : {3U, 30U, 50U}) game.world.move(game.handles[place], game.anywhere());
-    game.world.update();
-    game.world.restore(snapshot);
+    auto tracker = std::make_unique<ChangeCounter>();
+    const ChangeCounter& counted = *tracker;
+    Crowd crowd(World2(std::move(tracker)), size);
+    const std::vector<std::byte> snapshot = crowd.world.snapshot();
+    for (const std::size_t place : {3U, 30U, 50U}) crowd.world.move(crowd.handles[place], crowd.anywhere());
+    crowd.world.update();
+    crowd.world.restore(snapshot);
     EXPECT_EQ(counted.changed, 3U) << size << " boxes";
   }
 }
@@ -311,11 +311,11 @@ TEST(UpdateCost, OfFollowersIsTestsAroundWhatMoved) {
   for (const char* const spec : {"grid:update=follow", "quadtree:update=follow", "bvh:update=follow"}) {
     std::array<double, 2> tests{};
     for (const bool is_large : {false, true}) {
-      Game game(World2(spec), is_large ? 32'000 : 2000);
+      Crowd crowd(World2(spec), is_large ? 32'000 : 2000);
       for (int i = 0; i < 100; ++i) {
-        game.move_near();
-        game.world.update();
-        tests[is_large] += static_cast<double>(game.world.statistics().tracker->tests);
+        crowd.move_near();
+        crowd.world.update();
+        tests[is_large] += static_cast<double>(crowd.world.statistics().tracker->tests);
       }
     }
     EXPECT_GT(tests[0], 100) << spec;
