@@ -45,12 +45,13 @@ std::string current_spec(std::string_view spec) {
   Spec current = Spec::parse(spec);
   current.name = current_algorithm(current.name);
   for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
-  const auto rest = std::ranges::remove_if(current.values, [&current](const auto& given) {
-    const auto& [tunable, value] = given;
-    return !former_tunable(current.name, tunable).empty() ||
-           !former_value(current.name, tunable, value).empty();
-  });
-  current.values.erase(rest.begin(), rest.end());
+  // Not std::ranges::remove_if(), whose subrange clang 14 does not compile.
+  const auto is_gone = [&current](const auto& given) {
+    return !former_tunable(current.name, given.first).empty() ||
+           !former_value(current.name, given.first, given.second).empty();
+  };
+  current.values.erase(std::remove_if(current.values.begin(), current.values.end(), is_gone),
+                       current.values.end());
   return current.text();
 }
 

@@ -251,7 +251,7 @@ std::vector<Deed> deeds() {
     crowd.world.set_filter(crowd.any(), {.category = crowd.rng.bits() | 1});
   };
   const auto ignore = [](Crowd& crowd) { crowd.world.ignore(crowd.handles[1], crowd.handles[2]); };
-  const auto all = [filter](Crowd& crowd) {
+  const auto all = [](Crowd& crowd) {
     crowd.world.move(crowd.handles[5], crowd.anywhere());
     crowd.world.set_filter(crowd.handles[6], {.category = crowd.rng.bits() | 1});
     crowd.world.remove(crowd.handles.back());

@@ -195,9 +195,9 @@ std::vector<std::string> odd_specs() {
                           is_choice ? tunable.choices.front() : fmt::format("{:.3f}", number));
     }
     specs.push_back(spec.text());
-    for (auto& [tunable, value] : spec.values) {
-      const auto is_it = [&](const Tunable& one) { return one.name == tunable; };
-      value = std::ranges::find_if(algorithm.tunables, is_it)->standard;
+    for (auto& given : spec.values) {
+      const auto is_it = [&given](const Tunable& one) { return one.name == given.first; };
+      given.second = std::ranges::find_if(algorithm.tunables, is_it)->standard;
     }
     specs.push_back(spec.text());
   }
