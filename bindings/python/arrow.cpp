@@ -3,15 +3,19 @@
 // boxes in.
 #include "bindings/python/arrow.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <nanobind/stl/string.h>
 
+#include "bindings/python/input.hpp"
 #include "bindings/python/running.hpp"
 
 namespace broadside::python {
@@ -219,117 +223,178 @@ struct Taken {
 
 using TakenArray = std::shared_ptr<Taken<ArrowArray>>;
 
-nb::dlpack::dtype type_of(const ArrowSchema& schema) {
+/// The type of a column's numbers; none if they are no numbers.
+std::optional<nb::dlpack::dtype> type_of(const ArrowSchema& schema) {
+  const std::string_view format = schema.format;
+  if (schema.dictionary != nullptr || format.size() != 1) return std::nullopt;
+  switch (format[0]) {
+    case 'c':
+      return nb::dtype<std::int8_t>();
+    case 'C':
+      return nb::dtype<std::uint8_t>();
+    case 's':
+      return nb::dtype<std::int16_t>();
+    case 'S':
+      return nb::dtype<std::uint16_t>();
+    case 'i':
+      return nb::dtype<std::int32_t>();
+    case 'I':
+      return nb::dtype<std::uint32_t>();
+    case 'l':
+      return nb::dtype<std::int64_t>();
+    case 'L':
+      return nb::dtype<std::uint64_t>();
+    case 'e':
+      return nb::dlpack::dtype{static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float), 16, 1};
+    case 'f':
+      return nb::dtype<float>();
+    case 'g':
+      return nb::dtype<double>();
+    default:
+      return std::nullopt;
+  }
+}
+
+/// What a column holds that is no number.
+std::string kind_of(const ArrowSchema& schema) {
+  if (schema.dictionary != nullptr) return "dictionary";
+  const std::string_view format = schema.format;
+  if (format == "u" || format == "U" || format == "vu") return "text";
+  if (format == "z" || format == "Z" || format == "vz") return "binary";
+  if (format == "b") return "bool";
+  if (format == "n") return "null";
+  if (format.starts_with("d:")) return "decimal";
+  if (format.starts_with('t')) return "time";
+  if (format.starts_with("+l") || format.starts_with("+L") || format.starts_with("+v")) return "list";
+  return "'" + std::string(format) + "'";
+}
+
+const char* name_of(const ArrowSchema& schema) { return schema.name == nullptr ? "" : schema.name; }
+
+constexpr std::string_view fixed_size_list = "+w:";
+
+/// How many numbers a row of lists of a fixed size has; 0 for other types.
+std::int64_t list_size_of(const ArrowSchema& schema) {
   const std::string format = schema.format;
-  if (schema.dictionary == nullptr && format.size() == 1) {
-    switch (format[0]) {
-      case 'c':
-        return nb::dtype<std::int8_t>();
-      case 'C':
-        return nb::dtype<std::uint8_t>();
-      case 's':
-        return nb::dtype<std::int16_t>();
-      case 'S':
-        return nb::dtype<std::uint16_t>();
-      case 'i':
-        return nb::dtype<std::int32_t>();
-      case 'I':
-        return nb::dtype<std::uint32_t>();
-      case 'l':
-        return nb::dtype<std::int64_t>();
-      case 'L':
-        return nb::dtype<std::uint64_t>();
-      case 'f':
-        return nb::dtype<float>();
-      case 'g':
-        return nb::dtype<double>();
-      default:
-        break;
-    }
-  }
-  throw nb::type_error(
-      ("an Arrow column '" + std::string(schema.name == nullptr ? "" : schema.name) + "' of type '" + format +
-       "'" + (schema.dictionary == nullptr ? "" : " in a dictionary") + "; expected floats or integers")
-          .c_str());
+  return format.starts_with(fixed_size_list) ? std::stoll(format.substr(fixed_size_list.size())) : 0;
 }
 
-/// Throws ValueError if one of the rows is null.
-void check_nulls(const ArrowArray& array, std::int64_t offset, std::int64_t length, const char* name) {
-  if (array.null_count == 0 || array.n_buffers < 1 || array.buffers[0] == nullptr) return;
-  const auto* const bits = static_cast<const std::uint8_t*>(array.buffers[0]);
-  for (std::int64_t i = 0; i < length; ++i) {
-    if ((bits[(offset + i) / 8] >> ((offset + i) % 8) & 1) != 0) continue;
-    throw nb::value_error(("the Arrow column '" + std::string(name == nullptr ? "" : name) +
-                           "' is null in row " + std::to_string(i) + "; expected a number in each row")
-                              .c_str());
+/// A column, or a field of columns that are structs: the places of children from the outermost on.
+struct Leaf {
+  std::vector<std::int64_t> path;
+  std::vector<std::string> names;
+  const ArrowSchema* schema;
+};
+
+void add_leaves(const ArrowSchema& schema, const Leaf& above, std::vector<Leaf>& leaves) {
+  for (std::int64_t i = 0; i < schema.n_children; ++i) {
+    Leaf leaf = above;
+    leaf.path.push_back(i);
+    leaf.schema = schema.children[i];
+    leaf.names.emplace_back(name_of(*leaf.schema));
+    if (std::string_view(leaf.schema->format) == "+s")
+      add_leaves(*leaf.schema, leaf, leaves);
+    else
+      leaves.push_back(std::move(leaf));
   }
 }
 
-/// `columns` = 0: one value a row.
+/// `width` = 0: one value a row.
 nb::object array_of_type(const nb::dlpack::dtype& type, const void* data, std::int64_t rows,
-                         std::size_t columns, nb::handle owner) {
-  const std::array<std::size_t, 2> shape{static_cast<std::size_t>(rows), columns};
-  return nb::cast(nb::ndarray<nb::numpy, nb::ro>(const_cast<void*>(data), columns == 0 ? 1 : 2, shape.data(),
+                         std::int64_t width, nb::handle owner) {
+  const std::array<std::size_t, 2> shape{static_cast<std::size_t>(rows), static_cast<std::size_t>(width)};
+  return nb::cast(nb::ndarray<nb::numpy, nb::ro>(const_cast<void*>(data), width == 0 ? 1 : 2, shape.data(),
                                                  owner, nullptr, type),
                   nb::rv_policy::reference);
 }
 
-nb::object column(const TakenArray& taken, const ArrowSchema& schema, const ArrowArray& values,
-                  std::int64_t first, std::int64_t rows, std::size_t columns) {
-  const nb::dlpack::dtype type = type_of(schema);
-  const auto width = static_cast<std::int64_t>(columns == 0 ? 1 : columns);
-  check_nulls(values, first, rows * width, schema.name);
-  const auto* const bytes = static_cast<const std::byte*>(values.buffers[1]);
-  auto kept = std::make_unique<TakenArray>(taken);
-  nb::capsule owner(kept.get(), [](void* held) noexcept { delete static_cast<TakenArray*>(held); });
-  static_cast<void>(kept.release());
-  const void* const data = bytes == nullptr ? nullptr : bytes + first * (type.bits / 8);
-  return array_of_type(type, data, rows, columns, owner);
-}
-
-/// The columns of a struct by name, or the one array of rows of lists of a fixed length, without a name. Each
-/// is what array_of(schema, i, width) gives for its child; width 0: one value a row.
-template <typename ArrayOf>
-nb::list named_columns(const ArrowSchema& schema, const ArrayOf& array_of) {
-  const std::string format = schema.format;
-  nb::list columns;
-  if (format == "+s") {
-    for (std::int64_t i = 0; i < schema.n_children; ++i) {
-      const ArrowSchema& child = *schema.children[i];
-      columns.append(
-          nb::make_tuple(std::string(child.name == nullptr ? "" : child.name), array_of(child, i, 0)));
-    }
-  } else if (format.starts_with("+w:")) {
-    columns.append(
-        nb::make_tuple(std::string(), array_of(*schema.children[0], 0, std::stoll(format.substr(3)))));
-  } else {
+/// The values of a column and, where some are null, a byte for each value that says so, else None. `array` is
+/// null for no rows.
+nb::object values_of(const TakenArray* array, const Leaf& leaf) {
+  const std::int64_t width = list_size_of(*leaf.schema);
+  const ArrowSchema& numbers = width == 0 ? *leaf.schema : *leaf.schema->children[0];
+  const std::optional<nb::dlpack::dtype> type = type_of(numbers);
+  if (!type) {
+    std::string name;
+    for (const std::string& part : leaf.names) name += (name.empty() ? "" : ".") + part;
     throw nb::type_error(
-        ("an Arrow array of type '" + format + "'; expected a struct of columns or lists of a fixed size")
+        ("the Arrow column '" + name + "' is of type " + kind_of(numbers) + "; expected floats or integers")
             .c_str());
   }
-  return columns;
+  if (array == nullptr)
+    return nb::make_tuple(array_of_type(*type, nullptr, 0, width, nb::none()), nb::none());
+
+  const std::int64_t values_of_row = std::max<std::int64_t>(width, 1);
+  const ArrowArray* level = nullptr;
+  const std::int64_t rows = (*array)->structure.length;
+  std::vector<std::uint8_t> are_null;
+  std::int64_t first = 0;
+  // From the struct of all columns to the numbers. An entry that is null makes all its values null.
+  const auto go_to = [&](const ArrowArray& next, std::int64_t values_of_entry) {
+    level = &next;
+    first += next.offset;
+    if (next.null_count == 0 || next.n_buffers < 1 || next.buffers[0] == nullptr) return;
+    const auto* const bits = static_cast<const std::uint8_t*>(next.buffers[0]);
+    are_null.resize(static_cast<std::size_t>(rows * values_of_row));
+    for (std::size_t i = 0; i < are_null.size(); ++i) {
+      const std::int64_t bit = first + static_cast<std::int64_t>(i) / values_of_entry;
+      if ((bits[bit / 8] >> (bit % 8) & 1) == 0) are_null[i] = 1;
+    }
+  };
+  go_to((*array)->structure, values_of_row);
+  for (const std::int64_t child : leaf.path) go_to(*level->children[child], values_of_row);
+  if (width != 0) {
+    first *= width;
+    go_to(*level->children[0], 1);
+  }
+  const auto* const bytes = static_cast<const std::byte*>(level->buffers[1]);
+  auto kept = std::make_unique<TakenArray>(*array);
+  nb::capsule owner(kept.get(), [](void* held) noexcept { delete static_cast<TakenArray*>(held); });
+  static_cast<void>(kept.release());
+  const void* const data = bytes == nullptr ? nullptr : bytes + first * (type->bits / 8);
+  const std::size_t values = are_null.size();
+  nb::object mask = are_null.empty() ? nb::none() : array_of(std::move(are_null), {values});
+  return nb::make_tuple(array_of_type(*type, data, rows, width, owner), mask);
 }
 
-nb::list columns_of(const ArrowSchema& schema, ArrowArray& exported) {
-  const auto taken = std::make_shared<Taken<ArrowArray>>(exported);
-  const ArrowArray& array = taken->structure;
-  check_nulls(array, array.offset, array.length, schema.name);
-  return named_columns(schema, [&](const ArrowSchema& child, std::int64_t i, std::int64_t width) {
-    const ArrowArray& values = *array.children[i];
-    const std::int64_t first = array.offset * (width == 0 ? 1 : width) + values.offset;
-    return column(taken, child, values, first, array.length, static_cast<std::size_t>(width));
-  });
-}
+/// What is asked for of a table, or of an array of structs or of lists of a fixed size.
+class Choice {
+ public:
+  /// `choose` is given the path of names of each column, and returns the places of those that are wanted.
+  Choice(const ArrowSchema& schema, nb::handle choose) {
+    const std::string_view format = schema.format;
+    if (format != "+s") {
+      if (!format.starts_with(fixed_size_list))
+        throw nb::type_error(("an Arrow array of type '" + std::string(format) +
+                              "'; expected a struct of columns or lists of a fixed size")
+                                 .c_str());
+      chosen_.push_back({{}, {name_of(schema)}, &schema});
+      return;
+    }
+    std::vector<Leaf> leaves;
+    add_leaves(schema, {}, leaves);
+    nb::list names;
+    for (const Leaf& leaf : leaves) {
+      nb::list path;
+      for (const std::string& name : leaf.names) path.append(text_of(name));
+      names.append(path);
+    }
+    for (const nb::handle place : choose(names)) chosen_.push_back(leaves.at(nb::cast<std::size_t>(place)));
+  }
 
-/// The columns of no rows.
-nb::list empty_columns_of(const ArrowSchema& schema) {
-  return named_columns(schema, [](const ArrowSchema& child, std::int64_t, std::int64_t width) {
-    return array_of_type(type_of(child), nullptr, 0, static_cast<std::size_t>(width), nb::none());
-  });
-}
+  /// Of no rows where the array is null.
+  nb::list values(const TakenArray* array) const {
+    nb::list columns;
+    for (const Leaf& leaf : chosen_) columns.append(values_of(array, leaf));
+    return columns;
+  }
 
-/// Those of each chunk; of a stream of none, those of no rows.
-nb::list columns_of_stream(nb::handle capsule) {
+ private:
+  std::vector<Leaf> chosen_;
+};
+
+/// The chosen columns of each chunk; of a stream of none, those of no rows.
+nb::list columns_of_stream(nb::handle capsule, nb::handle choose) {
   Taken<ArrowArrayStream> stream(structure_of<ArrowArrayStream>(capsule));
   const auto check = [&](int error) {
     if (error == 0) return;
@@ -340,20 +405,26 @@ nb::list columns_of_stream(nb::handle capsule) {
   ArrowSchema exported{};
   check(stream.structure.get_schema(&stream.structure, &exported));
   const Taken<ArrowSchema> schema(exported);
+  const Choice choice(schema.structure, choose);
   nb::list chunks;
   while (true) {
     ArrowArray array{};
     check(stream.structure.get_next(&stream.structure, &array));
     if (array.release == nullptr) break;
-    chunks.append(columns_of(schema.structure, array));
+    const auto taken = std::make_shared<Taken<ArrowArray>>(array);
+    chunks.append(choice.values(&taken));
   }
-  if (nb::len(chunks) == 0) chunks.append(empty_columns_of(schema.structure));
+  if (nb::len(chunks) == 0) chunks.append(choice.values(nullptr));
   return chunks;
 }
 
-nb::list columns_of_array(nb::handle schema_capsule, nb::handle array_capsule) {
+/// Likewise of one array.
+nb::list columns_of_array(nb::handle schema_capsule, nb::handle array_capsule, nb::handle choose) {
   const Taken<ArrowSchema> schema(structure_of<ArrowSchema>(schema_capsule));
-  return columns_of(schema.structure, structure_of<ArrowArray>(array_capsule));
+  const auto taken = std::make_shared<Taken<ArrowArray>>(structure_of<ArrowArray>(array_capsule));
+  nb::list chunks;
+  chunks.append(Choice(schema.structure, choose).values(&taken));
+  return chunks;
 }
 
 }  // namespace
@@ -376,7 +447,8 @@ void add_arrow(nb::module_& module) {
       "Pairs as a table of two columns of uint32, `first` and `second`, by the Arrow C data interface.\n\n"
       "pyarrow, polars and duckdb take it as it is: ``pyarrow.table(pairs)``, ``polars.DataFrame(pairs)``. "
       "They\n"
-      "share its memory.")
+      "share its memory.",
+      nb::is_weak_referenceable())
       .def("__len__", &PairTable::size)
       .def("__arrow_c_schema__", [](const PairTable&) { return schema_capsule(); })
       .def(
@@ -388,8 +460,8 @@ void add_arrow(nb::module_& module) {
       .def(
           "__arrow_c_stream__", [](const PairTable& table, nb::handle) { return stream_capsule(table); },
           nb::arg("requested_schema") = nb::none());
-  module.def("arrow_columns", &columns_of_array, nb::arg("schema"), nb::arg("array"));
-  module.def("arrow_chunks", &columns_of_stream, nb::arg("stream"));
+  module.def("arrow_array", &columns_of_array, nb::arg("schema"), nb::arg("array"), nb::arg("choose"));
+  module.def("arrow_stream", &columns_of_stream, nb::arg("stream"), nb::arg("choose"));
 }
 
 }  // namespace broadside::python

@@ -18,11 +18,16 @@ nb::object convert(const char* function) { return nb::module_::import_("broadsid
 std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, const char* name,
                                       std::uint64_t most) {
   const nb::object array = convert(function)(object, name, most);
-  Py_buffer buffer;
-  if (PyObject_GetBuffer(array.ptr(), &buffer, PyBUF_C_CONTIGUOUS) != 0) throw nb::python_error();
-  std::vector<std::uint64_t> numbers(static_cast<std::size_t>(buffer.len) / sizeof(std::uint64_t));
-  if (!numbers.empty()) std::memcpy(numbers.data(), buffer.buf, numbers.size() * sizeof(std::uint64_t));
-  PyBuffer_Release(&buffer);
+  const Buffer buffer(array, PyBUF_C_CONTIGUOUS);
+  std::vector<std::uint64_t> numbers(buffer.text().size() / sizeof(std::uint64_t));
+  if (!numbers.empty())
+    std::memcpy(numbers.data(), buffer.text().data(), numbers.size() * sizeof(std::uint64_t));
+  // The array may be the caller's, which another thread may have changed since it was checked.
+  for (const std::uint64_t number : numbers) {
+    if (number > most)
+      throw std::invalid_argument(std::string(name) + " has " + std::to_string(number) +
+                                  "; expected integers from 0 to " + std::to_string(most));
+  }
   return numbers;
 }
 
@@ -33,6 +38,18 @@ char native_format(const Py_buffer& buffer) {
   constexpr std::string_view native = std::endian::native == std::endian::little ? "@=^<" : "@=^>!";
   if (format.size() == 2 && native.find(format[0]) != native.npos) format.remove_prefix(1);
   return format.size() == 1 ? format[0] : '\0';
+}
+
+/// Of what broadside._convert gives.
+std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
+  const Buffer buffer(array, PyBUF_C_CONTIGUOUS);
+  // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
+  std::vector<Filter> filters;
+  filters.reserve(count);
+  const auto* numbers = reinterpret_cast<const std::uint64_t*>(buffer.text().data());
+  for (std::size_t i = 0; i < count; ++i, numbers += 4)
+    filters.push_back({numbers[0], numbers[1], static_cast<std::int32_t>(numbers[2]), numbers[3] != 0});
+  return filters;
 }
 
 PyObject* array_type = nullptr;
@@ -151,17 +168,12 @@ std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name
 
 std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name) {
   if (object.is_none()) return {};
-  const nb::object array = convert("filters")(object, count, name);
-  Py_buffer buffer;
-  if (PyObject_GetBuffer(array.ptr(), &buffer, PyBUF_C_CONTIGUOUS) != 0) throw nb::python_error();
-  // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
-  std::vector<Filter> filters;
-  filters.reserve(count);
-  const auto* numbers = static_cast<const std::uint64_t*>(buffer.buf);
-  for (std::size_t i = 0; i < count; ++i, numbers += 4)
-    filters.push_back({numbers[0], numbers[1], static_cast<std::int32_t>(numbers[2]), numbers[3] != 0});
-  PyBuffer_Release(&buffer);
-  return filters;
+  return filters_of(convert("filters")(object, count, name), count);
+}
+
+std::vector<Filter> query_filters(nb::handle object, std::size_t count) {
+  if (object.is_none()) return {};
+  return filters_of(convert("query_filters")(object, count, "filters"), count);
 }
 
 std::vector<Handle> handles(nb::handle object, const char* name) {

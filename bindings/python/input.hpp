@@ -24,6 +24,26 @@ namespace broadside::python {
 
 namespace nb = nanobind;
 
+/// The memory of an object, which Python keeps as it is while this lives. To be made and destroyed with the
+/// GIL held.
+class Buffer {
+ public:
+  /// Throws what Python raises where the object has no such memory.
+  Buffer(nb::handle object, int flags) {
+    if (PyObject_GetBuffer(object.ptr(), &view_, flags) != 0) throw nb::python_error();
+  }
+  ~Buffer() { PyBuffer_Release(&view_); }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+
+  std::string_view text() const noexcept {
+    return {static_cast<const char*>(view_.buf), static_cast<std::size_t>(view_.len)};
+  }
+
+ private:
+  Py_buffer view_;
+};
+
 /// Rows of floats or doubles, each in one piece, which Python keeps as they are while this lives. To be made
 /// and destroyed with the GIL held.
 class Rows {
@@ -141,6 +161,9 @@ std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name
 
 /// None: none. Else one for each of `count` boxes.
 std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name);
+
+/// Likewise one for each of `count` queries, perhaps the same for all.
+std::vector<Filter> query_filters(nb::handle object, std::size_t count);
 
 /// A handle as Python has it: one number, the generation in its upper half and the slot in its lower one.
 inline std::uint64_t number_of(const Handle& handle) noexcept {

@@ -1,6 +1,7 @@
 // What the lab brings: advice, files, drawings, and scenes for the tests.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -77,10 +78,13 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
   });
 }
 
-/// The boxes of one frame of a file, and what could not be read of it.
-nb::object read(const nb::bytes& name, const std::string& format, const std::string& boxes,
-                const std::string& columns, const std::string& layer, int dimension, std::size_t frame,
-                bool skips_invalid) {
+/// The boxes of one frame of a file, and what could not be read of it. `content`: the file's bytes where they
+/// are in memory, or None.
+nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
+                const std::string& boxes, const std::string& columns, const std::string& layer, int dimension,
+                std::size_t frame, bool skips_invalid) {
+  std::optional<Buffer> bytes;
+  if (!content.is_none()) bytes.emplace(content, PyBUF_SIMPLE);
   const std::string path(name.c_str(), name.size());
   lab::ReadOptions options;
   options.format = format;
@@ -109,7 +113,9 @@ nb::object read(const nb::bytes& name, const std::string& format, const std::str
       std::variant<std::vector<Box2>, std::vector<Box3>, std::vector<DoubleBox2>, std::vector<DoubleBox3>>;
   AnyBoxes found = without_gil([&](WithoutGil& released) {
     options.progress = [&released](std::uint64_t, std::uint64_t) { released.check_signals(); };
-    lab::BoxFile file = lab::open_file(path, options);
+    lab::BoxFile file =
+        bytes ? lab::open_input(lab::Input::in_memory(path, bytes->text(), options.progress), options)
+              : lab::open_file(path, options);
     return std::visit([&](const auto& frames) -> AnyBoxes { return read_frame(*frames, released); },
                       file.frames);
   });
@@ -211,8 +217,9 @@ void add_lab(nb::module_& module) {
   module.def("algorithms", &algorithms);
   module.def("advise", &advise, nb::arg("boxes").none(), nb::arg("algorithms"), nb::arg("threads"),
              nb::arg("budget"));
-  module.def("read", &read, nb::arg("path"), nb::arg("format"), nb::arg("boxes"), nb::arg("columns"),
-             nb::arg("layer"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));
+  module.def("read", &read, nb::arg("path"), nb::arg("content").none(), nb::arg("format"), nb::arg("boxes"),
+             nb::arg("columns"), nb::arg("layer"), nb::arg("dimension"), nb::arg("frame"),
+             nb::arg("skips_invalid"));
   module.def("formats", &formats);
   module.def("resolve_columns", &resolve_columns, nb::arg("names"), nb::arg("are_chosen"));
   module.def("draw", &draw, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("most"), nb::arg("title"));

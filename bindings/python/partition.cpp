@@ -103,10 +103,16 @@ class PartitionOf final : public AnyPartition {
       for_each_touched(all, released, [&](std::size_t part, std::size_t) { ++starts[part + 1]; });
       std::partial_sum(starts.begin(), starts.end(), starts.begin());
       touching.resize(static_cast<std::size_t>(starts.back()));
+      // What another thread writes to the caller's boxes meanwhile must not lead beyond what was counted.
       std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
+      bool as_counted = true;
       for_each_touched(all, released, [&](std::size_t part, std::size_t row) {
-        touching[static_cast<std::size_t>(next[part]++)] = static_cast<std::uint32_t>(row);
+        as_counted = as_counted && next[part] < starts[part + 1];
+        if (as_counted) touching[static_cast<std::size_t>(next[part]++)] = static_cast<std::uint32_t>(row);
       });
+      if (!as_counted || !std::equal(next.begin(), next.end(), starts.begin() + 1))
+        throw std::invalid_argument(
+            "boxes were changed by another thread during the call; expected them to stay as they are");
     });
     const std::size_t count = touching.size();
     return nb::make_tuple(array_of(std::move(starts), {size() + 1}), array_of(std::move(touching), {count}));
@@ -145,8 +151,8 @@ class PartitionOf final : public AnyPartition {
   void for_each_touched(std::span<const Box<D, Real>> boxes, WithoutGil& released, const Visit& visit) const {
     for (std::size_t row = 0; row < boxes.size(); ++row) {
       if (row % boxes_at_once == 0) released.check_signals();
-      if (!is_present(boxes[row])) continue;
-      partition_.for_each_part(boxes[row], [&](std::size_t part) { visit(part, row); });
+      const Box<D, Real> box = boxes[row];
+      if (is_present(box)) partition_.for_each_part(box, [&](std::size_t part) { visit(part, row); });
     }
   }
 

@@ -21,8 +21,15 @@
 
 namespace broadside::python {
 
-/// Asks a BoxIndex. `Asked` has `Number`, what Python calls a box by; ask(released, body), which calls
-/// body(index, number_of) with the GIL given away and the index as it is then; and D and Real.
+/// What a query may find, as Python hands it in: filters and boxes that are not found, of each query or one
+/// of all, or None.
+struct QueryChoice {
+  nb::handle filters;
+  nb::handle exclude;
+};
+
+/// Asks a BoxIndex. `Asked` has `Number`, what Python calls a box by; ask(body), which calls
+/// body(index, number_of, place_of) with the GIL given away and the index as it is then; and D and Real.
 template <typename Asked>
 class Queries {
   static constexpr int D = Asked::dimension;
@@ -30,6 +37,7 @@ class Queries {
   using Number = typename Asked::Number;
   using Box = broadside::Box<D, Real>;
   using Point = broadside::Point<D, Real>;
+  using QueryOptions = broadside::QueryOptions<BoxId>;
 
   static constexpr bool are_doubles = std::is_same_v<Real, double>;
 
@@ -39,66 +47,76 @@ class Queries {
  public:
   explicit Queries(Asked& asked) : asked_(asked) {}
 
-  nb::object overlapping(nb::handle queries) const {
+  nb::object overlapping(nb::handle queries, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", 2 * D, are_doubles);
     std::vector<Box> memory;
-    return overlapped(rows.array(memory), [](const Box& box) { return box; });
+    return overlapped(rows.array(memory), choice, [](const Box& box) { return box; });
   }
 
-  nb::object containing(nb::handle points) const {
+  nb::object containing(nb::handle points, const QueryChoice& choice) const {
     const Rows rows = Rows::of(points, "points", D, are_doubles);
     std::vector<Point> memory;
-    return overlapped(rows.array(memory), [](const Point& point) { return Box{point, point}; });
+    return overlapped(rows.array(memory), choice, [](const Point& point) { return Box{point, point}; });
   }
 
-  nb::object hits(nb::handle origins, nb::handle directions, double t_max) const {
+  nb::object hits(nb::handle origins, nb::handle directions, double t_max, const QueryChoice& choice) const {
     std::vector<std::uint32_t> queries;
     std::vector<Number> boxes;
     std::vector<Real> enters;
     const Rays rays(origins, directions, t_max);
-    ask_each(rays.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
-      index.hits(rays[i], [&](const Hit<Real>& hit) {
-        queries.push_back(static_cast<std::uint32_t>(i));
-        boxes.push_back(number_of(hit.box));
-        enters.push_back(hit.t_enter);
-      });
-    });
+    ask_each(rays.size(), choice,
+             [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
+               index.hits(
+                   rays[i],
+                   [&](const Hit<Real>& hit) {
+                     queries.push_back(static_cast<std::uint32_t>(i));
+                     boxes.push_back(number_of(hit.box));
+                     enters.push_back(hit.t_enter);
+                   },
+                   options);
+             });
     const std::size_t count = queries.size();
     return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}),
                           array_of(std::move(enters), {count}));
   }
 
-  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) const {
+  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
+                       const QueryChoice& choice) const {
     const Rays rays(origins, directions, t_max);
     std::vector<Number> boxes(rays.size(), none);
     std::vector<Real> enters(rays.size(), std::numeric_limits<Real>::infinity());
-    ask_each(rays.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
-      const std::optional<Hit<Real>> hit = index.first_hit(rays[i]);
-      if (!hit) return;
-      boxes[i] = number_of(hit->box);
-      enters[i] = hit->t_enter;
-    });
+    ask_each(rays.size(), choice,
+             [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
+               const std::optional<Hit<Real>> hit = index.first_hit(rays[i], options);
+               if (!hit) return;
+               boxes[i] = number_of(hit->box);
+               enters[i] = hit->t_enter;
+             });
     const std::size_t count = rays.size();
     return nb::make_tuple(array_of(std::move(boxes), {count}), array_of(std::move(enters), {count}));
   }
 
-  nb::object nearest(nb::handle points, std::size_t k) const {
+  nb::object nearest(nb::handle points, std::size_t k, double max_distance, const QueryChoice& choice) const {
     const Rows rows = Rows::of(points, "points", D, are_doubles);
     std::vector<Point> memory;
     const std::span<const Point> asked = rows.array(memory);
     if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(asked.size(), 1))
       throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(asked.size()) +
                                   " points; expected at most 2^32 answers");
+    const Real most = rounded_down(max_distance);
     std::vector<Number> boxes(k * asked.size(), none);
     std::vector<Real> distances(k * asked.size(), std::numeric_limits<Real>::infinity());
     std::vector<Neighbour<Real>> found;
-    ask_each(asked.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
-      index.nearest(asked[i], k, found);
-      for (std::size_t j = 0; j < found.size(); ++j) {
-        boxes[i * k + j] = number_of(found[j].box);
-        distances[i * k + j] = found[j].distance_squared;
-      }
-    });
+    ask_each(asked.size(), choice,
+             [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
+               // Another thread may write to the caller's points once they are checked.
+               const Point point = asked[i];
+               index.nearest(point, k, found, {options.filter, options.except, most});
+               for (std::size_t j = 0; j < found.size(); ++j) {
+                 boxes[i * k + j] = number_of(found[j].box);
+                 distances[i * k + j] = found[j].distance_squared;
+               }
+             });
     const std::size_t count = asked.size();
     return nb::make_tuple(array_of(std::move(boxes), {count, k}), array_of(std::move(distances), {count, k}));
   }
@@ -106,6 +124,14 @@ class Queries {
  private:
   /// Queries between two looks at signals.
   static constexpr std::size_t queries_at_once = 64;
+
+  /// The greatest Real up to a limit, so that a hit's t, or a distance, is at most what was asked for.
+  static Real rounded_down(double limit) {
+    constexpr double most = std::numeric_limits<Real>::max();
+    if (std::isfinite(limit)) limit = std::clamp(limit, -most, most);
+    const Real rounded = static_cast<Real>(limit);
+    return rounded > limit ? std::nextafter(rounded, -std::numeric_limits<Real>::infinity()) : rounded;
+  }
 
   /// Rays of which each has a row in two arrays.
   class Rays {
@@ -126,14 +152,6 @@ class Queries {
     Ray<D, Real> operator[](std::size_t i) const { return {origins_[i], directions_[i], t_max_}; }
 
    private:
-    /// The greatest Real up to t_max, so that a hit's t is at most what was asked for.
-    static Real rounded_down(double t_max) {
-      constexpr double most = std::numeric_limits<Real>::max();
-      if (std::isfinite(t_max)) t_max = std::clamp(t_max, -most, most);
-      const Real rounded = static_cast<Real>(t_max);
-      return rounded > t_max ? std::nextafter(rounded, -std::numeric_limits<Real>::infinity()) : rounded;
-    }
-
     Rows origin_rows_;
     Rows direction_rows_;
     std::vector<Point> origin_memory_;
@@ -143,18 +161,29 @@ class Queries {
     Real t_max_;
   };
 
-  /// Calls ask(index, number_of, i) for each i < count, with the GIL given away.
+  /// Calls ask(index, number_of, i, options) for each i < count, with the GIL given away.
   template <typename Ask>
-  void ask_each(std::size_t count, const Ask& ask) const {
+  void ask_each(std::size_t count, const QueryChoice& choice, const Ask& ask) const {
     if (count > std::numeric_limits<std::uint32_t>::max())
       throw std::invalid_argument("there are " + std::to_string(count) +
                                   " queries; expected at most 2^32 - 1");
+    const std::vector<Filter> filters = query_filters(choice.filters, count);
+    std::vector<std::uint64_t> excluded;
+    if (!choice.exclude.is_none()) excluded = integers(choice.exclude, "exclude", none);
+    if (excluded.size() == 1) excluded.resize(count, excluded.front());
+    if (!choice.exclude.is_none() && excluded.size() != count)
+      throw std::invalid_argument("there are " + std::to_string(count) + " queries and " +
+                                  std::to_string(excluded.size()) +
+                                  " boxes in exclude; expected one for each query, or one for all");
     without_gil([&](WithoutGil& released) {
-      asked_.ask([&](const auto& index, const auto& number_of) {
+      asked_.ask([&](const auto& index, const auto& number_of, const auto& place_of) {
         for (std::size_t i = 0; i < count; ++i) {
           if (i % queries_at_once == 0) released.check_signals();
+          QueryOptions options;
+          if (!filters.empty()) options.filter = &filters[i];
+          if (!excluded.empty()) options.except = place_of(static_cast<Number>(excluded[i]));
           try {
-            ask(index, number_of, i);
+            ask(index, number_of, i, options);
           } catch (const InvalidQuery& error) {
             throw InvalidQuery("query " + std::to_string(i) + ": " + error.what());
           }
@@ -164,20 +193,64 @@ class Queries {
   }
 
   template <typename Row, typename BoxOf>
-  nb::object overlapped(std::span<const Row> rows, const BoxOf& box_of) const {
+  nb::object overlapped(std::span<const Row> rows, const QueryChoice& choice, const BoxOf& box_of) const {
     std::vector<std::uint32_t> queries;
     std::vector<Number> boxes;
-    ask_each(rows.size(), [&](const auto& index, const auto& number_of, std::size_t i) {
-      index.overlapping(box_of(rows[i]), [&](BoxId id) {
-        queries.push_back(static_cast<std::uint32_t>(i));
-        boxes.push_back(number_of(id));
-      });
-    });
+    ask_each(rows.size(), choice,
+             [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
+               index.overlapping(
+                   box_of(rows[i]),
+                   [&](BoxId id) {
+                     queries.push_back(static_cast<std::uint32_t>(i));
+                     boxes.push_back(number_of(id));
+                   },
+                   options);
+             });
     const std::size_t count = queries.size();
     return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}));
   }
 
   Asked& asked_;
 };
+
+/// The queries of an index or a world, as Python calls them.
+template <typename Queried>
+void add_queries(nb::class_<Queried>& type) {
+  using Choice = QueryChoice;
+  using nb::handle;
+  type.def(
+      "overlapping",
+      [](Queried& self, handle queries, handle filters, handle exclude) {
+        return self.overlapping(queries, Choice{filters, exclude});
+      },
+      nb::arg("queries").none(), nb::arg("filters").none(), nb::arg("exclude").none());
+  type.def(
+      "containing",
+      [](Queried& self, handle points, handle filters, handle exclude) {
+        return self.containing(points, Choice{filters, exclude});
+      },
+      nb::arg("points").none(), nb::arg("filters").none(), nb::arg("exclude").none());
+  type.def(
+      "hits",
+      [](Queried& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+        return self.hits(origins, directions, t_max, Choice{filters, exclude});
+      },
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("filters").none(),
+      nb::arg("exclude").none());
+  type.def(
+      "first_hit",
+      [](Queried& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+        return self.first_hit(origins, directions, t_max, Choice{filters, exclude});
+      },
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("filters").none(),
+      nb::arg("exclude").none());
+  type.def(
+      "nearest",
+      [](Queried& self, handle points, std::size_t k, double max_distance, handle filters, handle exclude) {
+        return self.nearest(points, k, max_distance, Choice{filters, exclude});
+      },
+      nb::arg("points").none(), nb::arg("k"), nb::arg("max_distance"), nb::arg("filters").none(),
+      nb::arg("exclude").none());
+}
 
 }  // namespace broadside::python

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include <nanobind/stl/string.h>
@@ -56,11 +57,14 @@ class AnyWorld {
   virtual nb::object join(AnyWorld& other) = 0;
   virtual nb::bytes snapshot() = 0;
   virtual void restore(nb::bytes snapshot) = 0;
-  virtual nb::object overlapping(nb::handle queries) = 0;
-  virtual nb::object containing(nb::handle points) = 0;
-  virtual nb::object hits(nb::handle origins, nb::handle directions, double t_max) = 0;
-  virtual nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) = 0;
-  virtual nb::object nearest(nb::handle points, std::size_t k) = 0;
+  virtual nb::object overlapping(nb::handle queries, const QueryChoice& choice) = 0;
+  virtual nb::object containing(nb::handle points, const QueryChoice& choice) = 0;
+  virtual nb::object hits(nb::handle origins, nb::handle directions, double t_max,
+                          const QueryChoice& choice) = 0;
+  virtual nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
+                               const QueryChoice& choice) = 0;
+  virtual nb::object nearest(nb::handle points, std::size_t k, double max_distance,
+                             const QueryChoice& choice) = 0;
 };
 
 template <int Dimension, typename Coordinate>
@@ -225,21 +229,36 @@ class WorldOf final : public AnyWorld {
     with_lock([&](WithoutGil&) { world_.restore(bytes); });
   }
 
-  nb::object overlapping(nb::handle queries) override { return Queries(*this).overlapping(queries); }
-  nb::object containing(nb::handle points) override { return Queries(*this).containing(points); }
-  nb::object hits(nb::handle origins, nb::handle directions, double t_max) override {
-    return Queries(*this).hits(origins, directions, t_max);
+  nb::object overlapping(nb::handle queries, const QueryChoice& choice) override {
+    return Queries(*this).overlapping(queries, choice);
   }
-  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max) override {
-    return Queries(*this).first_hit(origins, directions, t_max);
+  nb::object containing(nb::handle points, const QueryChoice& choice) override {
+    return Queries(*this).containing(points, choice);
   }
-  nb::object nearest(nb::handle points, std::size_t k) override { return Queries(*this).nearest(points, k); }
+  nb::object hits(nb::handle origins, nb::handle directions, double t_max,
+                  const QueryChoice& choice) override {
+    return Queries(*this).hits(origins, directions, t_max, choice);
+  }
+  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
+                       const QueryChoice& choice) override {
+    return Queries(*this).first_hit(origins, directions, t_max, choice);
+  }
+  nb::object nearest(nb::handle points, std::size_t k, double max_distance,
+                     const QueryChoice& choice) override {
+    return Queries(*this).nearest(points, k, max_distance, choice);
+  }
 
   /// For Queries.
   template <typename Body>
   void ask(const Body& body) {
     const std::lock_guard lock(mutex_);
-    body(world_.box_index(), [&](BoxId id) { return number_of(world_.handle_of(id)); });
+    // A handle that is not in the world leaves out nothing.
+    const auto place_of = [&](Number number) {
+      const Handle handle = handle_of(number);
+      return world_.contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;
+    };
+    body(
+        world_.box_index(), [&](BoxId id) { return number_of(world_.handle_of(id)); }, place_of);
   }
 
  private:
@@ -283,8 +302,8 @@ std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std:
 }  // namespace
 
 void add_world(nb::module_& module) {
-  nb::class_<AnyWorld>(module, "World")
-      .def("add", &AnyWorld::add, nb::arg("boxes").none(), nb::arg("filters").none())
+  nb::class_<AnyWorld> type(module, "World");
+  type.def("add", &AnyWorld::add, nb::arg("boxes").none(), nb::arg("filters").none())
       .def("move", &AnyWorld::move, nb::arg("handles").none(), nb::arg("boxes").none(),
            nb::arg("velocities").none())
       .def("remove", &AnyWorld::remove, nb::arg("handles").none())
@@ -301,13 +320,8 @@ void add_world(nb::module_& module) {
       .def("explanation", &AnyWorld::explanation)
       .def("join", &AnyWorld::join)
       .def("snapshot", &AnyWorld::snapshot)
-      .def("restore", &AnyWorld::restore)
-      .def("overlapping", &AnyWorld::overlapping, nb::arg("queries").none())
-      .def("containing", &AnyWorld::containing, nb::arg("points").none())
-      .def("hits", &AnyWorld::hits, nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"))
-      .def("first_hit", &AnyWorld::first_hit, nb::arg("origins").none(), nb::arg("directions").none(),
-           nb::arg("t_max"))
-      .def("nearest", &AnyWorld::nearest, nb::arg("points").none(), nb::arg("k"));
+      .def("restore", &AnyWorld::restore);
+  add_queries(type);
   module.def("make_world", &make_world, nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"),
              nb::arg("threads").none(), nb::arg("margin"), nb::arg("relative_margin"),
              nb::arg("predicted_frames"), nb::arg("exact"), nb::arg("quarantine"),

@@ -1,4 +1,4 @@
-// Bytes of a descriptor, as they come or decompressed.
+// Bytes of a descriptor or in memory, as they come or decompressed.
 #include "lab/formats/byte_source.hpp"
 
 #include <algorithm>
@@ -22,10 +22,24 @@ std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, cons
   return nullptr;
 }
 
+namespace {
+
+constexpr int no_descriptor = -1;
+
+}  // namespace
+
 ByteSource::ByteSource(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
+ByteSource::ByteSource(std::string_view bytes, std::string name)
+    : descriptor_(no_descriptor),
+      name_(std::move(name)),
+      has_begun_(true),
+      has_ended_(true),
+      rest_(bytes),
+      decompressor_(make_decompressor(bytes, name_)) {}
+
 ByteSource::~ByteSource() {
-  if (descriptor_ != platform::standard_input) platform::close(descriptor_);
+  if (descriptor_ != platform::standard_input && descriptor_ != no_descriptor) platform::close(descriptor_);
 }
 
 bool ByteSource::is_compressed() {
@@ -36,7 +50,7 @@ bool ByteSource::is_compressed() {
 std::size_t ByteSource::read(char* to, std::size_t most) {
   begin();
   if (decompressor_ == nullptr) {
-    if (rest_.empty()) return read_some(to, most);
+    if (rest_.empty()) return has_ended_ ? 0 : read_some(to, most);
     const std::size_t count = std::min(rest_.size(), most);
     std::memcpy(to, rest_.data(), count);
     rest_.remove_prefix(count);

@@ -41,13 +41,17 @@ std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, cons
 std::unique_ptr<Decompressor> gzip_decompressor(const std::string& name);
 std::unique_ptr<Decompressor> zstd_decompressor(const std::string& name);
 
-/// The bytes of a file, standard input or a pipe, decompressed if they begin as gzip or zstd do. One thread
-/// at a time.
+/// The bytes of a file, standard input, a pipe or in memory, decompressed if they begin as gzip or zstd do.
+/// One thread at a time.
 class ByteSource {
  public:
   /// Takes over a descriptor, and closes it in the end unless it is standard input's. `name` is what errors
   /// call it.
   ByteSource(int descriptor, std::string name);
+
+  /// Bytes in memory, which must outlive the source.
+  ByteSource(std::string_view bytes, std::string name);
+
   ~ByteSource();
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
@@ -66,12 +70,12 @@ class ByteSource {
   void fill();
   std::size_t read_some(char* to, std::size_t most);
 
-  int descriptor_;
+  int descriptor_;  // none for bytes in memory
   std::string name_;
   bool has_begun_ = false;
   bool has_ended_ = false;
   std::vector<char> buffer_;
-  std::string_view rest_;  // of what was read into the buffer
+  std::string_view rest_;  // of what was read into the buffer, or of the bytes in memory
   std::unique_ptr<Decompressor> decompressor_;
 };
 

@@ -167,7 +167,10 @@ std::span<const Format> formats() {
 }
 
 BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
-  auto input = std::make_unique<Input>(path, options.progress);
+  return open_input(std::make_unique<Input>(path, options.progress), options);
+}
+
+BoxFile open_input(std::unique_ptr<Input> input, const ReadOptions& options) {
   const Format& format = readable_format(*input, options);
   std::string name = input->name();
   check_options(format, name, options);

@@ -93,6 +93,9 @@ struct BoxFile {
 /// if the file is in none of them, and if an option does not apply to its format.
 BoxFile open_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// Likewise an input that is open already; its own progress counts.
+BoxFile open_input(std::unique_ptr<Input> input, const ReadOptions& options = {});
+
 /// What a file holds, as the lab's scenes need it: floats, in 2D, in 3D, or in both where 3D is made to be
 /// seen flat.
 struct FileContent {

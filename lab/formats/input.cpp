@@ -122,6 +122,20 @@ Input::Input(std::string name, std::string_view bytes)
       has_all_(true),
       buffer_(std::make_unique<Buffer>(bytes)) {}
 
+std::unique_ptr<Input> Input::in_memory(std::string name, std::string_view bytes, Progress progress) {
+  auto input = std::make_unique<Input>(std::move(name), bytes);
+  input->progress_ = std::move(progress);
+  if (input->progress_) input->next_report_ = bytes_a_report;
+  auto source = std::make_unique<ByteSource>(bytes, input->name_);
+  if (!source->is_compressed()) return input;
+  input->source_ = std::move(source);
+  input->all_ = {};
+  input->has_all_ = false;
+  input->size_ = 0;
+  input->buffer_ = std::make_unique<Buffer>(*input->source_);
+  return input;
+}
+
 std::unique_ptr<Input> Input::keeping(std::string name, std::string bytes) {
   auto input = std::make_unique<Input>(std::move(name), std::string_view());
   input->kept_ = std::move(bytes);

@@ -41,6 +41,10 @@ class Input {
   /// them.
   Input(std::string name, std::string_view bytes);
 
+  /// Bytes in memory, which must outlive the input. As those of a file they are decompressed if they begin as
+  /// gzip or zstd do.
+  static std::unique_ptr<Input> in_memory(std::string name, std::string_view bytes, Progress progress = {});
+
   /// Bytes in memory that the input keeps.
   static std::unique_ptr<Input> keeping(std::string name, std::string bytes);
 
@@ -88,7 +92,7 @@ class Input {
   std::filesystem::path path_;
   Progress progress_;
   std::uint64_t next_report_ = UINT64_MAX;
-  std::unique_ptr<ByteSource> source_;  // null in memory
+  std::unique_ptr<ByteSource> source_;  // null in memory, unless compressed
   bool is_regular_ = false;             // a regular file, whose size is known and which can be mapped
   bool is_device_ = false;              // and no terminal
   std::uint64_t size_ = 0;

@@ -7,34 +7,25 @@ one piece it never hands here.
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _core
+from broadside import _columns, _core
+from broadside._columns import Choice, Column, Columns
 
 Rows = NDArray[Any]
 
 FILTER = np.dtype([("category", np.uint64), ("mask", np.uint64), ("group", np.int32), ("is_static", np.bool_)])
 
-# Which columns of a table are the bounds of boxes, minima first; the first names that are all there.
-_COLUMN_NAMES = (
-    ("xmin", "ymin", "zmin", "xmax", "ymax", "zmax"),
-    ("xmin", "ymin", "xmax", "ymax"),
-    ("minx", "miny", "minz", "maxx", "maxy", "maxz"),
-    ("minx", "miny", "maxx", "maxy"),
-    ("min_x", "min_y", "min_z", "max_x", "max_y", "max_z"),
-    ("min_x", "min_y", "max_x", "max_y"),
-    # What pandas and polars call the columns of an array, which are taken by their places.
-    *(tuple(f"{prefix}{i}" for i in range(count)) for prefix in ("", "column_") for count in (6, 4)),
-)
 
-
-def boxes(found: Any, name: str) -> Rows:
-    """Rows of boxes, of float32 or float64."""
-    array = _with_float_rows(found, name, boxes_expected=True)
+def boxes(found: Any, name: str, columns: Columns | None = None) -> Rows:
+    """Rows of boxes, of float32 or float64. An empty list or tuple is no boxes, in 2D."""
+    chosen = _columns.checked(columns, name)
+    if is_empty_sequence(found):
+        return np.empty((0, 4))
+    array = _with_float_rows(found, name, _Boxes(name, chosen))
     if array.ndim != 2 or array.shape[1] not in (4, 6):
         raise ValueError(
             f"{name} has shape {array.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
@@ -42,11 +33,16 @@ def boxes(found: Any, name: str) -> Rows:
     return array
 
 
+def given(found: Any, name: str, columns: Columns | None) -> Any:
+    """What the extension module takes for boxes of which a caller says what the columns are, or says nothing."""
+    return found if columns is None else boxes(found, name, columns)
+
+
 def rows_of(found: Any, name: str, columns: int, are_doubles: bool) -> Rows:
     """Rows of so many float64, or float32 if they hold the numbers exactly. An empty list or tuple is no rows."""
     if is_empty_sequence(found):
         return np.empty((0, columns), np.float64 if are_doubles else np.float32)
-    array = _with_float_rows(found, name, boxes_expected=columns in (4, 6))
+    array = _with_float_rows(found, name, _Boxes(name, None) if columns in (4, 6) else _Points(name, columns))
     if array.ndim != 2 or array.shape[1] != columns:
         raise ValueError(f"{name} has shape {array.shape}; expected (n, {columns})")
     if are_doubles or array.dtype == np.float32:
@@ -68,55 +64,85 @@ def is_empty_sequence(found: Any) -> bool:
     return isinstance(found, (list, tuple)) and not found
 
 
-def _with_float_rows(found: Any, name: str, boxes_expected: bool) -> Rows:
-    """An array of float32 or float64 in native byte order, whose rows are in one piece."""
-    array = _as_array(found, name, boxes_expected)
-    kind, size = array.dtype.kind, array.dtype.itemsize
-    if kind in "iu":
-        array = _exact_floats(array, name)
-    elif kind != "f":
-        raise TypeError(
-            f"{name} has dtype {array.dtype}{_hint(array)}; expected float32 or float64, or integers that float64 holds"
-        )
-    elif size == 2:
-        array = array.astype(np.float32)
-    elif size > 8:
-        raise TypeError(f"{name} has dtype {array.dtype}; expected float32 or float64, which hold less than it")
-    # C-contiguous: the extension takes longer strides from row to row as well, but then these came by another way.
-    return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
+class _Boxes:
+    """Rows of boxes, made of the columns of a table or of an array."""
 
+    def __init__(self, name: str, columns: str | list[str] | None) -> None:
+        self.name = name
+        self.columns = columns
 
-def _exact_floats(array: Rows, name: str) -> Rows:
-    """Integers as float64; refused where one is not exact in it."""
-    floats: Rows = array.astype(np.float64)
-    if array.dtype.itemsize == 8:
-        # Python compares an integer with a float by value.
-        beyond = np.argwhere(np.abs(floats) >= 2.0**53)
-        for place in map(tuple, beyond):
-            if int(array[place]) != float(floats[place]):
-                raise ValueError(
-                    f"{name} is {array[place]} in row {place[0]}, which float64 does not hold; expected integers up to "
-                    "2**53, or floats"
+    def choose(self, labels: list[str]) -> Choice:
+        return _columns.choose(labels, self.name, self.columns)
+
+    def of_columns(self, choice: Choice, columns: list[Column]) -> Rows:
+        if choice.axes:
+            return _columns.rows_of(choice, columns, self.name)
+        return self._of_packed(columns[0])
+
+    def of_grid(self, grid: Column, columns: str | list[str] | None) -> Rows:
+        """Of columns without names, but for those that a caller gives them."""
+        if columns is None and grid.missing is None:
+            return grid.values
+        choice = _columns.of_places(grid.values.shape[1], self.name, columns)
+        return _columns.rows_of(choice, [grid.part(place) for place in choice.places], self.name)
+
+    def _of_packed(self, column: Column) -> Rows:
+        """A column of all numbers of a box, such as lists; a box that is missing is absent."""
+        if column.values.ndim == 1:
+            missing = np.zeros(len(column.values), np.bool_) if column.missing is None else column.missing
+            there = _of_sequence(list(column.values[~missing]), f"column {column.label} of {self.name}")
+            if there.ndim != 2:
+                raise TypeError(
+                    f"column {column.label} of {self.name} has elements of {there.dtype}; expected four or six numbers each"
                 )
-    return floats
+            values = np.zeros((len(missing), there.shape[1]), there.dtype)
+            values[~missing] = there
+            column = Column(column.label, values, np.repeat(missing[:, None], there.shape[1], axis=1))
+        return self.of_grid(column, self.columns if isinstance(self.columns, str) else None)
 
 
-def _hint(array: Rows) -> str:
-    if array.dtype.kind == "O" and array.size:
-        return f" (its first element is of {type(array.flat[0]).__name__})"
-    return ""
+class _Points:
+    """Rows of points."""
+
+    columns: str | list[str] | None = None
+
+    def __init__(self, name: str, dimension: int) -> None:
+        self.name = name
+        self.dimension = dimension
+
+    def choose(self, labels: list[str]) -> Choice:
+        return _columns.choose_points(labels, self.name, self.dimension)
+
+    def of_columns(self, choice: Choice, columns: list[Column]) -> Rows:
+        return np.column_stack([column.exact(self.name) for column in columns])
+
+    def of_grid(self, grid: Column, columns: str | list[str] | None) -> Rows:
+        return _columns.exact(grid.values, self.name, grid.missing)
 
 
-def _as_array(found: Any, name: str, boxes_expected: bool) -> Rows:
-    bounds = _bounds(found, name) if boxes_expected else None
-    if bounds is not None:
-        return bounds
+_Shape = _Boxes | _Points
+
+
+def _with_float_rows(found: Any, name: str, shape: _Shape) -> Rows:
+    """An array of float32 or float64 in native byte order, whose rows are in one piece."""
+    array = _columns.exact(_as_array(found, name, shape), name)
+    # C-contiguous: the extension takes longer strides from row to row as well, but then these came by another way.
+    return np.ascontiguousarray(array)
+
+
+def _as_array(found: Any, name: str, shape: _Shape) -> Rows:
+    rows = _of_frame(found, name, shape)
+    if rows is not None:
+        return rows
+    dask = sys.modules.get("dask")
+    if dask is not None and dask.is_dask_collection(found):
+        return _as_array(found.compute(), name, shape)
     if isinstance(found, np.ndarray):
         array = found
     elif hasattr(found, "__arrow_c_stream__"):
-        array = _of_chunks(_core.arrow_chunks(found.__arrow_c_stream__()), name)
+        return _of_arrow(name, shape, lambda choose: _core.arrow_stream(found.__arrow_c_stream__(), choose))
     elif hasattr(found, "__arrow_c_array__"):
-        array = _of_chunks([_core.arrow_columns(*found.__arrow_c_array__())], name)
+        return _of_arrow(name, shape, lambda choose: _core.arrow_array(*found.__arrow_c_array__(), choose))
     elif hasattr(found, "__array__"):
         array = np.asarray(found)
     elif hasattr(found, "__dlpack__"):
@@ -129,12 +155,15 @@ def _as_array(found: Any, name: str, boxes_expected: bool) -> Rows:
     if np.ma.isMaskedArray(array) and np.ma.getmaskarray(array).any():
         raise ValueError(f"{name} is a masked array with masked elements; expected a number in each place")
     if array.dtype.names is not None:
-        array = _of_columns({column: array[column] for column in array.dtype.names}, name)
-    if array.dtype.kind == "O":
-        bounds = _bounds_of_geometries(array) if boxes_expected else None
+        labels = list(array.dtype.names)
+        choice = shape.choose(labels)
+        columns = [Column(labels[place], array[labels[place]]) for place in choice.places]
+        return shape.of_columns(choice, columns)
+    if array.dtype.kind == "O" and isinstance(shape, _Boxes):
+        bounds = _bounds_of_geometries(array)
         if bounds is not None:
             return bounds
-    return array
+    return shape.of_grid(Column("", array), shape.columns) if array.ndim == 2 else array
 
 
 def _of_sequence(found: Any, name: str) -> Rows:
@@ -147,52 +176,77 @@ def _of_sequence(found: Any, name: str) -> Rows:
         raise ValueError(f"{name} is no array: {error}; expected rows of the same length") from error
     if array.ndim == 0:
         raise TypeError(f"{name} is of {type(found).__name__}; expected an array of shape (n, 4) or (n, 6)")
+    if array.dtype.kind == "f" and (np.isfinite(array) & (np.abs(array) >= 2.0**53)).any():
+        # NumPy has rounded integers that stand beside floats.
+        return np.asarray(found, dtype=object)
     return array
 
 
-def _of_chunks(chunks: list[list[tuple[str, Rows]]], name: str) -> Rows:
-    arrays = []
-    for columns in chunks:
-        if len(columns) == 1 and columns[0][1].ndim == 2:
-            arrays.append(columns[0][1])
-        else:
-            arrays.append(_of_columns(dict(columns), name))
-    if not arrays:
-        return np.empty((0, 4))
-    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+def _of_arrow(name: str, shape: _Shape, chunks_by: Any) -> Rows:
+    """A table, or an array of structs or of lists of a fixed size, in chunks."""
+    choice: Choice | None = None
+    labels: list[str] = [name]
+
+    def choose(paths: list[list[str]]) -> list[int]:
+        nonlocal choice, labels
+        labels = [".".join(path) for path in paths]
+        choice = shape.choose(labels)
+        return choice.places
+
+    chunks: list[list[tuple[Rows, NDArray[np.uint8] | None]]] = chunks_by(choose)
+    columns = []
+    for place, parts in enumerate(zip(*chunks, strict=True)):
+        values = parts[0][0] if len(parts) == 1 else np.concatenate([part for part, _ in parts])
+        missing = None
+        if any(mask is not None for _, mask in parts):
+            masks = [np.zeros(part.size, np.uint8) if mask is None else mask for part, mask in parts]
+            missing = np.concatenate(masks).astype(np.bool_).reshape(values.shape)
+        columns.append(Column(labels[place if choice is None else choice.places[place]], values, missing))
+    if choice is None:
+        return shape.of_grid(columns[0], shape.columns)
+    return shape.of_columns(choice, columns)
 
 
-def _of_columns(columns: dict[str, Rows], name: str) -> Rows:
-    return np.column_stack([columns[column] for column in columns_of_bounds(columns, name)])
-
-
-def columns_of_bounds(columns: Collection[str], name: str) -> tuple[str, ...]:
-    """Which of these columns are the bounds of boxes, minima first."""
-    for names in _COLUMN_NAMES:
-        # Names that tell nothing must be all there are.
-        if all(column in columns for column in names) and (names[0][-1:] != "0" or len(columns) == len(names)):
-            return names
-    expected = ", ".join(_COLUMN_NAMES[1])
-    raise ValueError(
-        f"{name} has the columns {', '.join(columns) or 'none'}; expected {expected}, in 3D zmin and zmax as well"
-    )
-
-
-def _bounds(found: Any, name: str) -> Rows | None:
-    """The bounds of a GeoDataFrame, a GeoSeries, a geometry array or a pandas DataFrame of bounds."""
+def _of_frame(found: Any, name: str, shape: _Shape) -> Rows | None:
+    """The bounds of a GeoDataFrame, a GeoSeries, a geometry array or the columns of a pandas DataFrame."""
     pandas = sys.modules.get("pandas")
     if pandas is None:
         return None
-    geometry = getattr(found, "geometry", None) if isinstance(found, (pandas.DataFrame, pandas.Series)) else found
-    # A DataFrame may have a column of that name that holds something else.
-    if isinstance(geometry, (pandas.Series, pandas.api.extensions.ExtensionArray)):
-        bounds = _bounds_of_geometries(np.asarray(geometry, dtype=object), str(geometry.dtype) == "geometry")
-        if bounds is not None:
-            return bounds
-    if isinstance(found, pandas.DataFrame):
-        columns = {str(column): found[column].to_numpy() for column in found.columns}
-        return _of_columns(columns, name)
-    return None
+    is_frame = isinstance(found, pandas.DataFrame)
+    if isinstance(shape, _Boxes) and not (is_frame and shape.columns is not None):
+        geometry = getattr(found, "geometry", None) if is_frame or isinstance(found, pandas.Series) else found
+        # A DataFrame may have a column of that name that holds something else.
+        if isinstance(geometry, (pandas.Series, pandas.api.extensions.ExtensionArray)):
+            bounds = _bounds_of_geometries(np.asarray(geometry, dtype=object), str(geometry.dtype) == "geometry")
+            if bounds is not None:
+                return bounds
+    if not is_frame:
+        return None
+    fields = [(place, key) for place in range(found.shape[1]) for key in _keys_of(found.iloc[:, place])]
+    labels = [f"{found.columns[place]}" + ("" if key is None else f".{key}") for place, key in fields]
+    choice = shape.choose(labels)
+    return shape.of_columns(choice, [_of_series(found, labels[place], *fields[place]) for place in choice.places])
+
+
+def _keys_of(series: Any) -> list[Any]:
+    """The fields of a column of dicts, as which pandas has structs of Parquet; of another column None, itself."""
+    if series.dtype != object:
+        return [None]
+    first = next((value for value in series.array if value is not None and not isinstance(value, float)), None)
+    return list(first) if isinstance(first, dict) else [None]
+
+
+def _of_series(frame: Any, label: str, place: int, key: Any) -> Column:
+    series = frame.iloc[:, place]
+    if key is not None:
+        series = series.map(lambda row: row.get(key) if isinstance(row, dict) else None)
+    missing = series.isna().to_numpy(dtype=np.bool_)
+    if not missing.any():
+        return Column(label, series.to_numpy())
+    there = np.asarray(series.array[~missing])
+    values = np.zeros(len(series), there.dtype)
+    values[~missing] = there
+    return Column(label, values, missing)
 
 
 def _bounds_of_geometries(array: Rows, are_known: bool = False) -> Rows | None:
@@ -213,9 +267,40 @@ def _bounds_of_geometries(array: Rows, are_known: bool = False) -> Rows | None:
     return bounds
 
 
+def crs_of(found: Any) -> Any:
+    """The coordinate reference system of a GeoPandas or dask-geopandas object; None if there is none."""
+    geopandas = sys.modules.get("geopandas")
+    if geopandas is None or isinstance(found, np.ndarray):
+        return None
+    kinds = (geopandas.GeoDataFrame, geopandas.GeoSeries, geopandas.array.GeometryArray)
+    if not isinstance(getattr(found, "_meta", found), kinds):
+        return None
+    try:
+        return found.crs
+    except AttributeError:  # of a frame without geometries
+        return None
+
+
+def common_crs(known: Any, known_name: str, found: Any, name: str) -> Any:
+    """The coordinate reference system of two sets, which may be None. Raises ValueError if they have two."""
+    crs = crs_of(found)
+    if crs is None or known is None:
+        return known if crs is None else crs
+    if crs != known:
+        raise ValueError(
+            f"{known_name} has the CRS {_name_of_crs(known)} and {name} {_name_of_crs(crs)}; expected one, as to_crs() makes it"
+        )
+    return known
+
+
+def _name_of_crs(crs: Any) -> str:
+    authority = crs.to_authority()
+    return ":".join(authority) if authority else str(crs.name)
+
+
 def integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     """A one-dimensional array of integers from 0 to `most`."""
-    array = _as_integers(found)
+    array = as_integers(found)
     if array.ndim == 0:
         array = array.reshape(1)
     if array.ndim != 1:
@@ -225,7 +310,7 @@ def integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
 
 def pairs_of_integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     """An array of two integers a row, from 0 to `most`."""
-    array = _as_integers(found)
+    array = as_integers(found)
     if array.size == 0 and array.ndim < 2:
         array = array.reshape(0, 2)
     if array.ndim != 2 or array.shape[1] != 2:
@@ -233,24 +318,25 @@ def pairs_of_integers(found: Any, name: str, most: int) -> NDArray[np.uint64]:
     return _integers(array, name, most)
 
 
-def _as_integers(found: Any) -> Rows:
+def as_integers(found: Any) -> Rows:
     """An array; of Python's own integers where NumPy would take a list for floats, as some are above 2**63."""
     array = np.asarray(found)
-    if isinstance(found, (list, tuple)) and array.dtype.kind == "f":
+    if isinstance(found, (list, tuple, int)) and array.dtype.kind in "fO":
         objects = np.asarray(found, dtype=object)
-        if _are_integers(objects):
+        if are_integers(objects):
             return objects
     return array
 
 
-def _are_integers(objects: Rows) -> bool:
-    return all(isinstance(element, (int, np.integer)) and not isinstance(element, bool) for element in objects.flat)
+def are_integers(objects: Rows) -> bool:
+    """Whether an array of objects holds nothing but integers."""
+    return objects.dtype.kind == "O" and all(isinstance(element, (int, np.integer)) and not isinstance(element, bool) for element in objects.flat)
 
 
 def _integers(array: Rows, name: str, most: int) -> NDArray[np.uint64]:
     if array.size == 0:
         return np.ascontiguousarray(array, dtype=np.uint64)
-    if array.dtype.kind not in "iu" and not (array.dtype.kind == "O" and _are_integers(array)):
+    if array.dtype.kind not in "iu" and not are_integers(array):
         raise TypeError(f"{name} has dtype {array.dtype}; expected integers")
     if int(array.min()) < 0 or int(array.max()) > most:
         wrong = array.min() if array.min() < 0 else array.max()
@@ -271,3 +357,9 @@ def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     packed[:, 2] = array["group"].astype(np.int64).view(np.uint64)
     packed[:, 3] = array["is_static"] != 0
     return packed
+
+
+def query_filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
+    """Likewise, or one for all queries."""
+    array = np.asarray(found)
+    return filters(np.broadcast_to(array, (count,)) if array.shape in ((), (1,)) else array, count, name)

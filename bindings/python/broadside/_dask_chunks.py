@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from broadside import _convert
+from broadside import _columns, _convert
+from broadside._columns import Columns
 
 dask = import_module("dask")
 dask_array = import_module("dask.array")
@@ -30,27 +31,23 @@ class ChunkedSet:
     """A set of boxes as chunks that tasks make."""
 
     name: str
-    columns: tuple[str, ...] | None
+    columns: str | list[str] | None
     has_index: bool  # whether the index is asked for
     tasks: Tasks
     chunks: list[Key]
 
 
-def chunked_set(found: Any, name: str, columns: Sequence[str] | None, ids: str) -> ChunkedSet:
+def chunked_set(found: Any, name: str, columns: Columns | None, ids: str) -> ChunkedSet:
     """The chunks of whatever `pairs` takes. Raises TypeError and ValueError about what tells without computing a chunk."""
-    if isinstance(columns, str) or (columns is not None and not all(isinstance(column, str) for column in columns)):
-        raise TypeError(f"the columns of {name} are {columns!r}; expected a list of names")
-    if columns is not None and len(columns) not in (4, 6):
-        raise ValueError(f"the columns of {name} are {len(columns)}; expected 4 or 6: the minima, then the maxima")
-    names = None if columns is None else tuple(columns)
-    tasks, chunks = _chunks_of(found, name, names)
-    return ChunkedSet(name, names, ids == "index", tasks, chunks)
+    chosen = _columns.checked(columns, name)
+    tasks, chunks = _chunks_of(found, name, chosen)
+    return ChunkedSet(name, chosen, ids == "index", tasks, chunks)
 
 
-def _chunks_of(found: Any, name: str, columns: tuple[str, ...] | None) -> tuple[Tasks, list[Key]]:
+def _chunks_of(found: Any, name: str, columns: str | list[str] | None) -> tuple[Tasks, list[Key]]:
     """Tasks that make the chunks, and their keys."""
     if isinstance(found, dask_array.Array):
-        if found.ndim != 2 or found.shape[1] not in (4, 6):
+        if found.ndim != 2 or (columns is None and found.shape[1] not in (4, 6)):
             raise ValueError(
                 f"{name} has shape {found.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
             )
@@ -67,7 +64,8 @@ def _chunks_of(found: Any, name: str, columns: tuple[str, ...] | None) -> tuple[
         return {}, []
     if isinstance(found, (list, tuple)) and all(map(_is_chunk, found)):
         return _tasks_of(found)
-    whole = found if isinstance(found, (pandas.DataFrame, pandas.Series)) else _convert.boxes(found, name)
+    is_kept = isinstance(found, (pandas.DataFrame, pandas.Series)) or (columns is not None and isinstance(found, np.ndarray))
+    whole = found if is_kept else _convert.boxes(found, name, columns)
     rows = getattr(whole, "iloc", whole)
     return _tasks_of(rows[row : row + ROWS_OF_CHUNK] for row in range(0, max(len(whole), 1), ROWS_OF_CHUNK))
 
@@ -78,24 +76,15 @@ def _is_chunk(found: Any) -> bool:
     return is_frame or (isinstance(found, np.ndarray) and found.ndim == 2)
 
 
-def _bounds_of(frame: Any, name: str, columns: tuple[str, ...] | None) -> Any:
+def _bounds_of(frame: Any, name: str, columns: str | list[str] | None) -> Any:
     """What the bounds are computed from, so that no other columns are read."""
-    if columns is not None:
-        if isinstance(frame, dask_frame.Series):
-            raise TypeError(f"{name} is a Series; expected a DataFrame, since columns are given")
-        missing = [column for column in columns if column not in frame.columns]
-        if missing:
-            raise ValueError(
-                f"{name} has the columns {', '.join(map(str, frame.columns)) or 'none'}; expected {', '.join(missing)} as well"
-            )
-        return frame[list(columns)]
     geometry = getattr(frame._meta, "geometry", None)
-    if str(getattr(geometry, "dtype", "")) == "geometry":
+    if columns is None and str(getattr(geometry, "dtype", "")) == "geometry":
         return frame.geometry
     if isinstance(frame, dask_frame.Series):
         raise TypeError(f"{name} is a Series of {frame.dtype}; expected a DataFrame of bounds, or geometries")
-    by_text = {str(column): column for column in frame.columns}
-    return frame[[by_text[column] for column in _convert.columns_of_bounds(by_text, name)]]
+    places = _columns.choose([str(column) for column in frame.columns], name, columns).places
+    return frame[[frame.columns[place] for place in places]]
 
 
 def _tasks_of(found: Iterable[Any]) -> tuple[Tasks, list[Key]]:

@@ -25,7 +25,7 @@ class LookOptions:
 
     name: str
     number: int
-    columns: tuple[str, ...] | None
+    columns: str | list[str] | None
     has_index: bool
     most_sampled: int
 
@@ -46,7 +46,7 @@ class Look(NamedTuple):
 def look(chunk: Any, options: LookOptions) -> Look:
     """The first task of a chunk, before space is cut."""
     where = f"chunk {options.number} of {options.name}"
-    rows = _rows_of(chunk, options.columns, where)
+    rows = _convert.boxes(chunk, where, options.columns)
     half = rows.shape[1] // 2
     present = rows[(rows[:, :half] <= rows[:, half:]).all(axis=1)]
     if len(present):
@@ -76,7 +76,7 @@ class Side:
     """What tasks know of a set of boxes."""
 
     name: str
-    columns: tuple[str, ...] | None
+    columns: str | list[str] | None
     starts: tuple[int, ...]  # the first row of each chunk, and the number of rows
     index: Any  # the dtype of its index; None where boxes are called by rows
 
@@ -136,7 +136,7 @@ def split(chunk: Any, plan: Plan, side: int, number: int, touched: NDArray[np.in
     """The boxes of a chunk and their ids, by the parts that they touch; a box on a cut several times."""
     this = plan.sides[side]
     where = f"chunk {number} of {this.name}"
-    rows = _rows_of(chunk, this.columns, where).astype(plan.dtype, copy=False)
+    rows = _convert.boxes(chunk, where, this.columns).astype(plan.dtype, copy=False)
     expected = this.starts[number + 1] - this.starts[number]
     if len(rows) != expected or rows.shape[1] != plan.width:
         raise ValueError(f"{where} has shape {rows.shape}; expected ({expected}, {plan.width}), as it had when it was looked at")
@@ -177,18 +177,6 @@ def sort(plan: Plan, several: list[Pieces]) -> Any:
 def as_frame(plan: Plan, first: NDArray[Any], second: NDArray[Any]) -> Any:
     """Pairs of ids as a DataFrame."""
     return pandas.DataFrame({"first": plan.sides[0].labels(first), "second": plan.sides[-1].labels(second)})
-
-
-def _rows_of(chunk: Any, columns: tuple[str, ...] | None, where: str) -> Rows:
-    """The boxes of a chunk as an array."""
-    if columns is None:
-        return _convert.boxes(chunk, where)
-    if not isinstance(chunk, pandas.DataFrame):
-        raise TypeError(f"{where} is of {type(chunk).__name__}; expected a DataFrame, since columns are given")
-    missing = [column for column in columns if column not in chunk.columns]
-    if missing:
-        raise ValueError(f"{where} has the columns {', '.join(map(str, chunk.columns))}; expected {', '.join(missing)} as well")
-    return _convert.boxes(np.column_stack([chunk[column].to_numpy() for column in columns]), where)
 
 
 def _index_of(chunk: Any, where: str) -> Any:

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import io
 import os
+import stat
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from broadside import _arguments, _convert, _core, _parquet
-from broadside._errors import InvalidBoxError
+from broadside import _arguments, _columns, _convert, _core, _parquet
+from broadside._columns import Columns
+from broadside._errors import FileError, InvalidBoxError
+
+_BYTES_AT_ONCE = 2**20
+
+
+class Readable(Protocol):
+    """What is open for reading."""
+
+    def read(self, size: int, /) -> bytes | str:
+        """The next bytes or characters, or none at the end."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +74,12 @@ class Advice:
 
 
 def advise(
-    boxes: Any, *, algorithms: str = "own", threads: int | list[int] = 1, budget: float = 6.0
+    boxes: Any,
+    *,
+    algorithms: str = "own",
+    threads: int | list[int] = 1,
+    budget: float = 6.0,
+    columns: Columns | None = None,
 ) -> Advice:
     """Measures which algorithm suits these boxes, and says why. Every result is verified.
 
@@ -71,6 +88,7 @@ def advise(
         algorithms: Names, specs or groups (own, paper, literature, all) with commas between.
         threads: Numbers of threads to try besides one.
         budget: About how many seconds it may take.
+        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
     Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C between two measurements.
     """
@@ -81,12 +99,12 @@ def advise(
     if not tried:
         raise ValueError("threads is empty; expected a number at least")
     tried = [_arguments.integer(count, "threads", 1, 1024) for count in tried]
-    return Advice(*_core.advise(_valid(boxes), _arguments.text(algorithms, "algorithms"), tried, budget))
+    return Advice(*_core.advise(_valid(boxes, columns), _arguments.text(algorithms, "algorithms"), tried, budget))
 
 
-def _valid(boxes: Any) -> NDArray[Any]:
+def _valid(boxes: Any, columns: Columns | None) -> NDArray[Any]:
     """The boxes as an array, or InvalidBoxError."""
-    array = _convert.boxes(boxes, "boxes")
+    array = _convert.boxes(boxes, "boxes", columns)
     invalid = _core.invalid_rows(array)
     if invalid.size:
         row = int(invalid[0])
@@ -97,11 +115,11 @@ def _valid(boxes: Any) -> NDArray[Any]:
 
 
 def read(
-    path: str | bytes | os.PathLike[str] | os.PathLike[bytes],
+    path: str | bytes | os.PathLike[str] | os.PathLike[bytes] | Readable,
     *,
     format: str | None = None,
     boxes: str | None = None,
-    columns: str | None = None,
+    columns: Columns | None = None,
     layer: str | None = None,
     dimension: int | None = None,
     frame: int = 0,
@@ -111,10 +129,12 @@ def read(
     and GeoParquet, if pyarrow is installed.
 
     Args:
-        path: The file.
+        path: The file: its path, or what has ``read()``, such as an open file or ``io.BytesIO``, from where it is to its
+            end; its ``name``, if it has one, counts as a path does. A named pipe is read until its writers have closed it.
         format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
-        columns: The names of a table's columns, with commas between.
+        columns: The columns of a table: a list of their names, a str of these with commas between, or what the numbers of
+            a row are, such as "xywh": see `pairs`. The names of CSV are those of its columns from left to right.
         layer: The layer of a map.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
@@ -124,42 +144,90 @@ def read(
     Returns:
         An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it. Of GeoParquet these are the
         bounds in its covering column or, where it has none, of its geometries, which takes shapely; of other Parquet the
-        columns min_x, min_y, max_x, max_y and, in 3D, min_z and max_z, or their like.
+        columns of bounds, by the names that `pairs` knows.
 
     Raises:
         FileNotFoundError: There is no such file.
         FileError: It cannot be read; the text says where and why. Arrays in .npz are read by ``numpy.load``, meshes of
             other formats by the program.
         ImportError: It takes pyarrow or shapely, which is not installed.
+
+    Cost: a file is read in place. What `path` reads is held in memory; of ``io.BytesIO`` it is not copied.
     """
-    name = os.fsencode(path)
-    os.stat(name)
+    name, content = _source_of(path)
+    chosen = _columns.checked(columns, "the file")
     found: NDArray[Any]
-    if not os.path.isdir(name) and _parquet.recognises(name, _text_or_none(format, "format")):
+    axes = 0 if dimension is None else _arguments.integer(dimension, "dimension", 2, 3)
+    number = _arguments.integer(frame, "frame", 0, 2**32 - 1)
+    wanted = _text_or_none(format, "format")
+    if (content is not None or not os.path.isdir(name)) and _parquet.recognises(name, content, wanted):
         shown = os.fsdecode(name)
-        for argument, given in (("boxes", boxes), ("columns", columns), ("layer", layer)):
+        for argument, given in (("boxes", boxes), ("layer", layer)):
             if given is not None:
                 raise ValueError(f"{argument} is {given!r}, and '{shown}' is Parquet; expected None")
-        if _arguments.integer(frame, "frame", 0, 2**32 - 1) != 0:
+        if number != 0:
             raise ValueError(f"frame is {frame}; expected at most 0, the last one of '{shown}'")
-        axes = 0 if dimension is None else _arguments.integer(dimension, "dimension", 2, 3)
-        found, warning = _parquet.read(name, shown, axes, bool(quarantine))
-        if warning:
-            warnings.warn(warning, stacklevel=2)
-        return found
-    found, warning = _core.read(
-        name,
-        _text_or_none(format, "format"),
-        _text_or_none(boxes, "boxes"),
-        _text_or_none(columns, "columns"),
-        _text_or_none(layer, "layer"),
-        0 if dimension is None else _arguments.integer(dimension, "dimension", 2, 3),
-        _arguments.integer(frame, "frame", 0, 2**32 - 1),
-        bool(quarantine),
-    )
+        found, warning = _parquet.read(name, content, chosen, axes, bool(quarantine))
+    else:
+        found, warning = _core.read(
+            name,
+            content,
+            wanted,
+            _text_or_none(boxes, "boxes"),
+            ",".join(chosen) if isinstance(chosen, list) else chosen or "",
+            _text_or_none(layer, "layer"),
+            axes,
+            number,
+            bool(quarantine),
+        )
     if warning:
         warnings.warn(warning, stacklevel=2)
     return found
+
+
+def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
+    """What errors and the extension call a file, and its bytes if these are not those of the file of this name."""
+    if hasattr(path, "read"):
+        name = getattr(path, "name", None)
+        called = os.fsencode(name) if isinstance(name, (str, bytes, os.PathLike)) else b"the file object"
+        return called, _content_of(path)
+    name = os.fsencode(path)
+    mode = os.stat(os.fsdecode(name)).st_mode
+    if not stat.S_ISFIFO(mode):
+        return name, None
+    with open(name, "rb") as pipe:
+        return name, _content_of(pipe)
+
+
+def _content_of(file: Any) -> _parquet.Content:
+    """The rest of an open file. Python's reading ends at Ctrl-C, also while a pipe has nothing."""
+    if isinstance(file, io.BytesIO):
+        rest = file.getbuffer()[file.tell() :]
+        file.seek(0, os.SEEK_END)
+        return rest
+    content = bytearray()
+    while True:
+        piece = file.read(_BYTES_AT_ONCE)
+        if isinstance(piece, str):
+            piece = piece.encode()
+        if not isinstance(piece, (bytes, bytearray, memoryview)):
+            raise TypeError(f"read() of {type(file).__name__} gave {type(piece).__name__}; expected bytes or a str")
+        if not piece:
+            return content
+        content += piece
+        if len(content) > _most_bytes():
+            raise FileError(
+                f"{getattr(file, 'name', 'the file object')}: goes on after {len(content)} bytes, more than memory can hold "
+                "beside its boxes; expected an end, or the path of a file, which is not copied"
+            )
+
+
+def _most_bytes() -> int:
+    """A quarter of the memory, as of pipes that the program reads."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 4
+    except (AttributeError, OSError, ValueError):
+        return 2**32
 
 
 def _text_or_none(found: str | None, name: str) -> str:
@@ -169,7 +237,7 @@ def _text_or_none(found: str | None, name: str) -> str:
 class Drawing:
     """A picture as SVG, which notebooks show."""
 
-    __slots__ = ("svg",)
+    __slots__ = ("__weakref__", "svg")
 
     def __init__(self, svg: str) -> None:
         self.svg = svg
@@ -185,7 +253,9 @@ class Drawing:
         return f"broadside.Drawing({len(self.svg)} characters of SVG)"
 
 
-def draw(boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "boxes") -> Drawing:
+def draw(
+    boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "boxes", columns: Columns | None = None
+) -> Drawing:
     """Draws boxes, and the cells, nodes or sweep that algorithms lay over them; 3D from three sides.
 
     Args:
@@ -194,9 +264,10 @@ def draw(boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "box
             side by side; empty: only the boxes.
         most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
         title: What the picture is called.
+        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
     Raises InvalidBoxError, InvalidAlgorithmError, ValueError.
     """
     most = _arguments.integer(most, "most", 1, 20_000)
     laid_over = _arguments.text(algorithms, "algorithms")
-    return Drawing(_core.draw(_valid(boxes), laid_over, most, _arguments.text(title, "title")))
+    return Drawing(_core.draw(_valid(boxes, columns), laid_over, most, _arguments.text(title, "title")))

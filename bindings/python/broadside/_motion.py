@@ -9,8 +9,18 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from broadside import _arguments, _core
-from broadside._queries import FirstHits, Found, Hits, Neighbours, _checked_dimension, _checked_k, _has_doubles
+from broadside import _arguments, _convert, _core, _pickling
+from broadside._columns import Columns
+from broadside._queries import (
+    FirstHits,
+    Found,
+    Hits,
+    Neighbours,
+    _checked_dimension,
+    _checked_distance,
+    _checked_k,
+    _has_doubles,
+)
 
 _worlds = itertools.count(1)
 
@@ -53,10 +63,11 @@ class World:
 
     Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not while
     the first query after a change makes its index: an update that was ended can be made again. Functions of many boxes
-    do all or, if one is wrong, nothing. A world can be pickled and copied, with its handles.
+    do all or, if one is wrong, nothing. A world can be pickled and copied, with its handles. Its queries take `filters`
+    and `exclude` as those of `Index` do, the latter handles.
     """
 
-    __slots__ = ("_has_doubles", "_options", "_world")
+    __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
 
     def __init__(
         self,
@@ -89,6 +100,7 @@ class World:
         options = {**self._options, "exact": events == "exact"}
         del options["events"]
         self._options["dimension"] = _checked_dimension(dimension)
+        self._crs: Any = None
         self._world = _core.make_world(self._options["dimension"], self._has_doubles, **options)
 
     @property
@@ -102,15 +114,22 @@ class World:
         """float32 or float64."""
         return np.dtype(np.float64 if self._has_doubles else np.float32)
 
-    def add(self, boxes: Any, *, filters: NDArray[np.void] | None = None) -> NDArray[np.uint64]:
-        """Adds n boxes, whatever `pairs` takes, and returns their handles, shape (n,).
+    def add(
+        self, boxes: Any, *, filters: NDArray[np.void] | None = None, columns: Columns | None = None
+    ) -> NDArray[np.uint64]:
+        """Adds n boxes, whatever `pairs` takes with these `columns`, and returns their handles, shape (n,).
 
         Raises InvalidBoxError, and adds none, if one is invalid or absent.
         """
-        return self._world.add(boxes, filters)
+        crs = _convert.common_crs(self._crs, "the world", boxes, "boxes")
+        handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
+        self._crs = crs
+        return handles
 
-    def move(self, handles: ArrayLike, boxes: Any, *, velocities: Any = None) -> None:
-        """Replaces boxes: those of `handles`, shape (n,), by `boxes`.
+    def move(
+        self, handles: ArrayLike, boxes: Any, *, velocities: Any = None, columns: Columns | None = None
+    ) -> None:
+        """Replaces boxes: those of `handles`, shape (n,), by `boxes`, whatever `pairs` takes with these `columns`.
 
         `velocities`, shape (n, dimension), says how far each box is expected to go in a frame, for `predicted_frames`.
         Raises InvalidHandleError, InvalidBoxError.
@@ -119,7 +138,8 @@ class World:
             raise ValueError(
                 "velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities"
             )
-        self._world.move(handles, boxes, velocities)
+        _convert.common_crs(self._crs, "the world", boxes, "boxes")
+        self._world.move(handles, _convert.given(boxes, "boxes", columns), velocities)
 
     def remove(self, handles: ArrayLike) -> None:
         """Takes boxes out; their pairs end at the next update. Raises InvalidHandleError."""
@@ -172,25 +192,56 @@ class World:
             raise TypeError(f"other is of {type(other).__name__}; expected a World")
         return self._world.join(other._world)
 
-    def overlapping(self, queries: Any) -> Found:
+    def overlapping(
+        self, queries: Any, *, filters: NDArray[np.void] | None = None, exclude: ArrayLike | None = None
+    ) -> Found:
         """The boxes that overlap each of `queries`, as they are now: see `Index.overlapping`."""
-        return Found(*self._world.overlapping(queries))
+        _convert.common_crs(self._crs, "the world", queries, "queries")
+        return Found(*self._world.overlapping(queries, filters, exclude))
 
-    def containing(self, points: Any) -> Found:
+    def containing(
+        self, points: Any, *, filters: NDArray[np.void] | None = None, exclude: ArrayLike | None = None
+    ) -> Found:
         """The boxes that contain each of `points`: see `Index.containing`."""
-        return Found(*self._world.containing(points))
+        return Found(*self._world.containing(points, filters, exclude))
 
-    def hits(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> Hits:
+    def hits(
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        t_max: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> Hits:
         """All boxes that each ray meets: see `Index.hits`."""
-        return Hits(*self._world.hits(origins, directions, _arguments.number(t_max, "t_max")))
+        return Hits(*self._world.hits(origins, directions, _arguments.number(t_max, "t_max"), filters, exclude))
 
-    def first_hit(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> FirstHits:
+    def first_hit(
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        t_max: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> FirstHits:
         """The box that each ray meets first: see `Index.first_hit`."""
-        return FirstHits(*self._world.first_hit(origins, directions, _arguments.number(t_max, "t_max")))
+        limit = _arguments.number(t_max, "t_max")
+        return FirstHits(*self._world.first_hit(origins, directions, limit, filters, exclude))
 
-    def nearest(self, points: Any, k: int = 1) -> Neighbours:
+    def nearest(
+        self,
+        points: Any,
+        k: int = 1,
+        *,
+        max_distance: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> Neighbours:
         """The k boxes nearest to each of `points`: see `Index.nearest`."""
-        return Neighbours(*self._world.nearest(points, _checked_k(k, len(self))))
+        limit = _checked_distance(max_distance)
+        return Neighbours(*self._world.nearest(points, _checked_k(k, len(self)), limit, filters, exclude))
 
     def snapshot(self) -> bytes:
         """All that the world's future depends on, as bytes that are the same on every machine."""
@@ -224,15 +275,20 @@ class World:
         return 0 <= int(handle) < 2**64 and self._world.contains(int(handle))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled_world, (self._options, self.dtype.str, self.snapshot())
+        made_of = (self._options, self.dtype.str, self.snapshot(), type(self), self._crs)
+        return _unpickled_world, made_of, _pickling.state_of(self, World)
 
     def __repr__(self) -> str:
         return f"broadside.World({len(self)} boxes, {self.dimension}D, {self.dtype})"
 
 
-def _unpickled_world(options: dict[str, Any], dtype: str, snapshot: bytes) -> World:
-    world = World(dtype=dtype, **options)
-    world.restore(snapshot)
+def _unpickled_world(
+    options: dict[str, Any], dtype: str, snapshot: bytes, kind: type[World] = World, crs: Any = None
+) -> World:
+    world = kind.__new__(kind)
+    World.__init__(world, dtype=dtype, **options)
+    world._world.restore(snapshot)
+    world._crs = crs
     return world
 
 
@@ -246,10 +302,10 @@ class Tracker:
         threads: The most threads; None: all cores, if there is enough to do.
         quarantine: Take invalid boxes for absent ones instead of raising.
 
-    Calls from several threads take turns.
+    Calls from several threads take turns. A tracker cannot be pickled or copied.
     """
 
-    __slots__ = ("_dtype", "_dimension", "_tracker")
+    __slots__ = ("__weakref__", "_dimension", "_dtype", "_tracker")
 
     def __init__(
         self,
@@ -278,7 +334,12 @@ class Tracker:
         return self._dtype
 
     def update(
-        self, boxes: Any, *, changed: ArrayLike | None = None, filters: NDArray[np.void] | None = None
+        self,
+        boxes: Any,
+        *,
+        changed: ArrayLike | None = None,
+        filters: NDArray[np.void] | None = None,
+        columns: Columns | None = None,
     ) -> Events:
         """Takes the boxes of the next frame and returns the pairs of rows, uint32, that began and ended.
 
@@ -288,16 +349,20 @@ class Tracker:
             boxes: n boxes, whatever `pairs` takes.
             changed: The rows that may differ from the frame before; a change that is not listed is not seen. None: any.
             filters: A filter for each box, made by `broadside.filters`; a change of one is listed as well.
+            columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
         Raises InvalidBoxError and ValueError, and has taken nothing then; so does Ctrl-C, after which the next update
         tells of all events since the last one that ended.
         """
-        return Events(*self._tracker.update(boxes, changed, filters))
+        return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
 
     @property
     def nbytes(self) -> int:
         """The bytes that the tracker holds."""
         return self._tracker.bytes()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a Tracker cannot be pickled or copied; expected a World, which can, or a new Tracker")
 
     def __repr__(self) -> str:
         return f"broadside.Tracker({self._dimension}D, {self._dtype})"

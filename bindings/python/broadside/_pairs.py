@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from broadside import _arguments, _convert, _core
+from broadside._columns import Columns
 from broadside._core import PairTable as PairTable
 
 _find = _core.find
@@ -24,6 +25,8 @@ def pairs(
     sort: bool = False,
     output: Literal["numpy"] = "numpy",
     threads: int | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
@@ -38,6 +41,8 @@ def pairs(
     sort: bool = False,
     output: Literal["arrow"],
     threads: int | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
@@ -52,6 +57,8 @@ def pairs(
     sort: bool = False,
     output: Literal["sparse"],
     threads: int | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
@@ -65,6 +72,8 @@ def pairs(
     sort: bool = False,
     output: str = "numpy",
     threads: int | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
@@ -77,10 +86,10 @@ def pairs(
             are taken as they are, without a copy if they are C-contiguous; rows farther apart are gathered by the
             search, and other strides, integers (refused where float64 does not hold one), float16 and nested lists
             are converted once. So are shapely geometries, GeoSeries and GeoDataFrames (by their bounds; empty ones
-            overlap nothing), pandas DataFrames and structured arrays with columns xmin, ymin, xmax, ymax, whatever
-            has ``__array__`` or ``__dlpack__``, and Arrow tables and arrays (structs of columns, lists of a fixed
-            size). Columns of other names are refused, but for the numbers that pandas and polars name the columns of
-            an array by. An empty list is no boxes. The array must not be changed by another thread meanwhile.
+            overlap nothing), whatever has ``__array__`` or ``__dlpack__``, and tables: pandas and polars DataFrames,
+            structured arrays, and Arrow tables and arrays (structs of columns, lists of a fixed size). Of tables only
+            the columns of bounds are looked at; a row without any bound is an absent box, as an empty geometry is. An
+            empty list is no boxes. The array must not be changed by another thread meanwhile.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
             found. If one set is float32 and the other float64, the former is widened, which is exact.
         algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
@@ -89,6 +98,12 @@ def pairs(
             with n rows and as many columns as the second set has boxes, whose true elements are the pairs: of one set
             those above the diagonal.
         threads: The most threads; None: all cores. A thread has at least 4096 boxes, so few boxes take one.
+        columns: Which columns of a table are the bounds: a list of their names, such as ``["x", "y", "w", "h"]``; names
+            without a meaning are minima, then maxima. Or what the numbers of a row are: ``"xyxy"``, ``"xywh"``,
+            ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, also of an array and of a column `bbox` of
+            lists. By default the names tell, as those of CSV do: xmin, ymin, xmax, ymax; left, top, right, bottom;
+            a struct `bbox` ...; and rows without names are minima, then maxima.
+        other_columns: Likewise for `other`.
         filters: Which boxes may pair: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
         ignored: Pairs that never count, shape (m, 2), in either order; of one set alone.
@@ -109,6 +124,7 @@ def pairs(
     share); it looks for signals every 50 milliseconds at most. A search by one of the paper's listings ends with its
     next pairs; sorting pairs is not interrupted. Any number of threads may call it at once.
     """
+    boxes, other = _sets(boxes, other, columns, other_columns)
     if output == "numpy":
         return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
     if output == "arrow":
@@ -131,6 +147,16 @@ def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
     return csr_array((trues, found[:, 1].astype(np.int64), starts), shape=(len(left), columns))
 
 
+def _sets(boxes: Any, other: Any, columns: Columns | None, other_columns: Columns | None) -> tuple[Any, Any]:
+    """Both sets as the extension module takes them. Raises ValueError if they are in different places."""
+    if other is not None:
+        _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
+        other = _convert.given(other, "other", other_columns)
+    elif other_columns is not None:
+        raise ValueError("other_columns are given without other boxes; expected both or neither")
+    return _convert.given(boxes, "boxes", columns), other
+
+
 def _kept(boxes: Any, name: str) -> Any:
     return boxes if _convert.is_empty_sequence(boxes) else _convert.boxes(boxes, name)
 
@@ -141,12 +167,15 @@ def count(
     *,
     algorithm: str = "auto",
     threads: int | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
+    boxes, other = _sets(boxes, other, columns, other_columns)
     found: int = _find(
         _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine
     )
@@ -176,8 +205,8 @@ def filters(
     made = np.empty(_arguments.integer(n, "n", 0, 2**32 - 1), _convert.FILTER)
     fields = {"category": category, "mask": mask, "group": group, "is_static": is_static}
     for name, values in fields.items():
-        given = np.asarray(values)
-        if name != "is_static" and given.dtype.kind not in "iu":
+        given = np.asarray(values) if name == "is_static" else _convert.as_integers(values)
+        if name != "is_static" and given.dtype.kind not in "iu" and not _convert.are_integers(given):
             raise TypeError(f"{name} has dtype {given.dtype}; expected integers")
         if name == "is_static" and given.dtype.kind != "b":
             raise TypeError(f"is_static has dtype {given.dtype}; expected booleans")
@@ -185,15 +214,16 @@ def filters(
             raise ValueError(f"{name} has shape {given.shape}; expected one value, or ({n},)")
         if name != "is_static" and given.size:
             limits = np.iinfo(_convert.FILTER[name])
-            if int(given.min()) < limits.min or int(given.max()) > limits.max:
-                raise ValueError(f"{name} has {given.min()} to {given.max()}; expected {limits.min} to {limits.max}")
+            for limit in (given.min(), given.max()):
+                if not limits.min <= int(limit) <= limits.max:
+                    raise ValueError(f"{name} has {limit}; expected integers from {limits.min} to {limits.max}")
         made[name] = given
     return made
 
 
-def invalid_rows(boxes: Any) -> NDArray[np.int64]:
+def invalid_rows(boxes: Any, *, columns: Columns | None = None) -> NDArray[np.int64]:
     """The rows of invalid boxes, ascending: those with a NaN or a minimum greater than its maximum.
 
     These are what `pairs` raises InvalidBoxError about, and leaves out with ``quarantine=True``. Absent boxes are valid.
     """
-    return _core.invalid_rows(boxes)
+    return _core.invalid_rows(_convert.given(boxes, "boxes", columns))

@@ -7,83 +7,76 @@ GeoParquet says in its metadata which columns hold the geometries and, perhaps, 
 from __future__ import annotations
 
 import json
+import os
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _convert, _core
+from broadside import _columns, _convert, _core
 from broadside._errors import FileError
 
 Rows = NDArray[Any]
 
+Content = bytes | bytearray | memoryview
+
 _MAGIC = b"PAR1"
 _EXTENSIONS = (b".parquet", b".geoparquet", b".pq")
 
-# As in the columns of CSV (docs/formats.md), whose first way this is: words for a bound, before an axis or behind it, and
-# words that name the axis as well.
-_MINIMUM = ("min", "minimum", "lower", "low", "lo")
-_MAXIMUM = ("max", "maximum", "upper", "high", "hi")
-_AXES = (("x", "lon", "long", "lng", "longitude"), ("y", "lat", "latitude"), ("z",))
-_WHOLE = {"left": (0, 0), "west": (0, 0), "bottom": (0, 1), "south": (0, 1)}
-_WHOLE |= {"right": (1, 0), "east": (1, 0), "top": (1, 1), "north": (1, 1)}
-_MEANINGS = _WHOLE | {
-    name: (bound, axis)
-    for bound, words in enumerate((_MINIMUM, _MAXIMUM))
-    for word in words
-    for axis, letters in enumerate(_AXES)
-    for letter in letters
-    for name in (word + letter, letter + word)
-}
-
-
-def recognises(path: bytes, format: str) -> bool:
+def recognises(path: bytes, content: Content | None, format: str) -> bool:
     """Whether a file is to be read as Parquet: by the format that the caller names, else by its content and name."""
     if format:
         return format == "parquet"
-    with open(path, "rb") as file:
-        beginning = file.read(len(_MAGIC))
+    if content is not None:
+        beginning = bytes(content[: len(_MAGIC)])
+    else:
+        with open(path, "rb") as file:
+            beginning = file.read(len(_MAGIC))
     return beginning == _MAGIC or path.lower().endswith(_EXTENSIONS)
 
 
-def read(path: bytes, shown: str, dimension: int, quarantine: bool) -> tuple[Rows, str]:
+def read(
+    path: bytes, content: Content | None, columns: str | list[str] | None, dimension: int, quarantine: bool
+) -> tuple[Rows, str]:
     """The boxes of a file, and what was wrong with it and left out; `dimension` is 0 where the file decides."""
+    shown = os.fsdecode(path)
     try:
         pyarrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
     except ImportError as error:
         raise ImportError(f"{shown}: is Parquet, which pyarrow reads; expected it installed: pip install pyarrow") from error
     try:
-        with open(path, "rb") as stream, parquet.ParquetFile(stream) as file:
-            return _read(file, shown, dimension, quarantine)
+        with open(path, "rb") if content is None else pyarrow.BufferReader(content) as stream:
+            with parquet.ParquetFile(stream) as file:
+                return _read(file, shown, columns, dimension, quarantine)
     except (pyarrow.ArrowException, OSError) as error:
         raise FileError(f"{shown}: cannot be read as Parquet: {error}") from error
 
 
-def _read(file: Any, shown: str, dimension: int, quarantine: bool) -> tuple[Rows, str]:
-    geometry = _geometry(file.schema_arrow.metadata or {}, shown)
+def _read(
+    file: Any, shown: str, columns: str | list[str] | None, dimension: int, quarantine: bool
+) -> tuple[Rows, str]:
+    geometry = _geometry(file.schema_arrow.metadata or {}, shown) if columns is None else None
     if geometry is None:
-        bounds = _bounds_by_name(file, shown, dimension)
-        array, invalid = _of_columns(file, bounds, shown, empty_is_absent=False)
-        source = f"the columns {', '.join('.'.join(path) for path in bounds)}"
+        array, source = _by_name(file, shown, columns, dimension)
     elif (covering := geometry.get("covering", {}).get("bbox")) is not None:
-        bounds = _bounds_of_covering(covering, shown, dimension)
-        # What has no extent, a geometry that is empty or null, has bounds that are null or NaN.
-        array, invalid = _of_columns(file, bounds, shown, empty_is_absent=True)
-        source = f"the covering {covering['xmin'][0]}"
+        array, source = _of_covering(file, covering, shown, dimension), f"the covering {covering['xmin'][0]}"
     else:
-        array, invalid = _of_geometries(file, geometry, shown, dimension), np.empty(0, np.int64)
-        source = f"the geometries {geometry['name']}"
-    invalid = np.union1d(invalid, _core.invalid_rows(array)).astype(np.int64)
+        array, source = _of_geometries(file, geometry, shown, dimension), f"the geometries {geometry['name']}"
+    invalid = _core.invalid_rows(array)
     if not invalid.size:
         return array, ""
     row = int(invalid[0])
     fault = f"{shown}: row {row} of {source} is {array[row].tolist()}; expected min <= max on every axis, no NaN and no null"
     if not quarantine:
         raise FileError(fault)
-    half = array.shape[1] // 2
-    array[invalid, :half], array[invalid, half:] = np.inf, -np.inf
+    _make_absent(array, invalid)
     return array, f"{shown}: left out {invalid.size} invalid boxes\n{fault}"
+
+
+def _make_absent(array: Rows, rows: Rows) -> None:
+    half = array.shape[1] // 2
+    array[rows, :half], array[rows, half:] = np.inf, -np.inf
 
 
 def _geometry(metadata: dict[bytes, bytes], shown: str) -> dict[str, Any] | None:
@@ -106,7 +99,8 @@ def _geometry(metadata: dict[bytes, bytes], shown: str) -> dict[str, Any] | None
     return column | {"name": name}
 
 
-def _bounds_of_covering(covering: dict[str, list[str]], shown: str, dimension: int) -> list[list[str]]:
+def _of_covering(file: Any, covering: dict[str, list[str]], shown: str, dimension: int) -> Rows:
+    """The bounds that the metadata name. What has no extent, an empty geometry or none, has bounds of null or NaN."""
     axes = "xyz" if "zmin" in covering and dimension != 2 else "xy"
     if dimension == 3 and axes == "xy":
         raise FileError(f"{shown}: has a covering in 2D; expected boxes in 3D")
@@ -114,83 +108,52 @@ def _bounds_of_covering(covering: dict[str, list[str]], shown: str, dimension: i
     missing = [name for name in names if name not in covering]
     if missing:
         raise FileError(f"{shown}: has a covering without {', '.join(missing)}; expected {', '.join(names)}")
-    return [covering[name] for name in names]
+    there = _paths_of(file)
+    for name in names:
+        if covering[name] not in there:
+            raise FileError(
+                f"{shown}: has no column {'.'.join(covering[name])}; expected it, as the file's metadata name it"
+            )
+    array = _rows_of(file, shown, [covering[name] for name in names], [".".join(covering[name]) for name in names])
+    _make_absent(array, np.flatnonzero(np.isnan(array).all(axis=1)))
+    return array
 
 
-def _bounds_by_name(file: Any, shown: str, dimension: int) -> list[list[str]]:
-    """The columns that are the bounds, minima first."""
-    found: dict[tuple[int, int], list[str]] = {}
-    columns = [path for field in file.schema_arrow for path in _paths(field)]
-    for path in columns:
-        plain = "".join(path).translate(str.maketrans("", "", "_-. ")).lower()
-        for prefix in ("bbox", "bb", ""):
-            meaning = _MEANINGS.get(plain.removeprefix(prefix))
-            if meaning is None:
-                continue
-            if meaning in found:
-                raise FileError(
-                    f"{shown}: has the columns {'.'.join(found[meaning])} and {'.'.join(path)} for one bound; expected one"
-                )
-            found[meaning] = path
-            break
-    has_z = (0, 2) in found and (1, 2) in found and dimension != 2
-    wanted = [(bound, axis) for bound in (0, 1) for axis in range(3 if has_z or dimension == 3 else 2)]
-    if any(meaning not in found for meaning in wanted):
-        raise FileError(
-            f"{shown}: has the columns {', '.join('.'.join(path) for path in columns) or 'none'}; expected GeoParquet, or "
-            "bounds: min_x, min_y, max_x, max_y, in 3D min_z and max_z as well"
-        )
-    return [found[meaning] for meaning in wanted]
+def _by_name(file: Any, shown: str, columns: str | list[str] | None, dimension: int) -> tuple[Rows, str]:
+    """The bounds by the columns' names, and these."""
+    paths = _paths_of(file)
+    try:
+        choice = _columns.choose([".".join(path) for path in paths], shown, columns)
+    except ValueError as error:
+        raise FileError(str(error)) from None
+    chosen = [paths[place] for place in choice.places]
+    array = _rows_of(file, shown, chosen, columns)
+    source = f"the columns {', '.join('.'.join(path) for path in chosen)}"
+    if dimension == 2 and array.shape[1] == 6:
+        array = np.ascontiguousarray(array[:, [0, 1, 3, 4]])
+    if dimension == 3 and array.shape[1] == 4:
+        raise FileError(f"{shown}: has {source}; expected boxes in 3D, with min_z and max_z as well")
+    return array, source
+
+
+def _paths_of(file: Any) -> list[list[str]]:
+    """The path of each column and, of structs, of each field."""
+    return [path for field in file.schema_arrow for path in _paths(field)]
 
 
 def _paths(field: Any) -> list[list[str]]:
-    """A column's path, or those of a struct's fields."""
     if field.type.num_fields and str(field.type).startswith("struct"):
         return [[field.name, *rest] for inner in field.type for rest in _paths(inner)]
     return [[field.name]]
 
 
-def _of_columns(file: Any, bounds: list[list[str]], shown: str, empty_is_absent: bool) -> tuple[Rows, Rows]:
-    """The boxes of columns of numbers, and the rows whose boxes are there in part. One without any number is absent."""
-    table = file.read(columns=sorted({path[0] for path in bounds}), use_threads=True)
-    numbers, gaps = [], []
-    for path in bounds:
-        column = _column(table, path, shown)
-        values = column.to_numpy()
-        if values.dtype.kind not in "iuf":
-            raise FileError(f"{shown}: has {'.'.join(path)} of type {column.type}; expected numbers")
-        nulls = column.is_null().to_numpy().astype(bool)
-        if values.dtype.kind in "iu":
-            try:
-                values = _convert._exact_floats(values, f"{shown}: {'.'.join(path)}")
-            except ValueError as error:
-                raise FileError(str(error)) from None
-        numbers.append(values)
-        gaps.append(nulls | np.isnan(values) if empty_is_absent else nulls)
-    # Of half precision there is no search.
-    dtype = np.result_type(np.float32, *numbers)
-    array = np.column_stack(numbers).astype(dtype, copy=False)
-    missing = np.column_stack(gaps)
-    half = array.shape[1] // 2
-    absent = missing.all(axis=1)
-    array[absent, :half], array[absent, half:] = np.inf, -np.inf
-    return np.ascontiguousarray(array), np.flatnonzero(missing.any(axis=1) & ~absent)
-
-
-def _column(table: Any, path: list[str], shown: str) -> Any:
-    """A column, or a struct's field, as one array; of integers with nulls the nulls come as NaN."""
-    pyarrow, compute = import_module("pyarrow"), import_module("pyarrow.compute")
-    name = ".".join(path)
-    if path[0] not in table.column_names:
-        raise FileError(f"{shown}: has no column {name}; expected it, as the file's metadata name it")
-    column = table.column(path[0])
-    for part in path[1:]:
-        if not pyarrow.types.is_struct(column.type) or column.type.get_field_index(part) < 0:
-            raise FileError(f"{shown}: has no column {name}; expected it, as the file's metadata name it")
-        column = compute.struct_field(column, part)
-    if pyarrow.types.is_integer(column.type) and column.null_count:
-        column = column.cast(pyarrow.float64())
-    return column
+def _rows_of(file: Any, shown: str, paths: list[list[str]], columns: str | list[str] | None) -> Rows:
+    """The boxes of these columns, the only ones that are read."""
+    table = file.read(columns=sorted({path[0] for path in paths}), use_threads=True)
+    try:
+        return _convert.boxes(table, shown, columns)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{shown}: {error}") from None
 
 
 def _of_geometries(file: Any, geometry: dict[str, Any], shown: str, dimension: int) -> Rows:

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from broadside import _arguments, _core
+from broadside import _arguments, _convert, _core, _pickling
+from broadside._columns import Columns
 
 
 class Assignment(NamedTuple):
@@ -33,6 +34,7 @@ class Partition:
         parts: How many parts of about equal cost to cut space into. There are fewer where no cut tells boxes apart, as
             with all boxes at one place.
         boxes: How many boxes the sample stands for. Then their pairs count among the costs; 0: boxes alone.
+        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
     Raises:
         InvalidBoxError: A box of the sample has a NaN or a minimum greater than its maximum.
@@ -42,10 +44,11 @@ class Partition:
     several threads at once, and can be pickled: as its cuts, some 20 bytes each.
     """
 
-    __slots__ = ("_partition",)
+    __slots__ = ("__weakref__", "_partition")
 
-    def __init__(self, sample: Any, parts: int, *, boxes: int = 0) -> None:
+    def __init__(self, sample: Any, parts: int, *, boxes: int = 0, columns: Columns | None = None) -> None:
         parts = _arguments.integer(parts, "parts", 1, 2**31 - 2)
+        sample = _convert.given(sample, "sample", columns)
         self._partition = _core.make_partition(sample, parts, _arguments.integer(boxes, "boxes", 0, 2**63 - 1))
 
     @property
@@ -70,20 +73,21 @@ class Partition:
     def __repr__(self) -> str:
         return f"<broadside.Partition: {len(self)} parts in {self.dimension}D, {self.dtype}>"
 
-    def assign(self, boxes: Any, *, quarantine: bool = False) -> Assignment:
+    def assign(self, boxes: Any, *, quarantine: bool = False, columns: Columns | None = None) -> Assignment:
         """Which of these boxes touch which part; absent boxes touch none.
 
         Args:
             boxes: n boxes, whatever `pairs` takes, of the partition's dimension. Boxes of float64 are refused by a
                 partition of float32 unless they are exact in it.
             quarantine: Leave invalid boxes out instead of raising.
+            columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
         Raises:
-            InvalidBoxError, TypeError, ValueError: As `pairs` does.
+            InvalidBoxError, TypeError, ValueError: As `pairs` does, and if another thread changes the boxes meanwhile.
 
         Cost: O(n log parts). The GIL is released.
         """
-        return Assignment(*self._partition.assign(boxes, quarantine))
+        return Assignment(*self._partition.assign(_convert.given(boxes, "boxes", columns), quarantine))
 
     def pairs(
         self,
@@ -117,10 +121,17 @@ class Partition:
 
     def __reduce__(self) -> tuple[Any, ...]:
         links, places = self._partition.cuts()
-        return _of_cuts, (self.dimension, self.dtype, links, places)
+        made_of = (self.dimension, self.dtype, links, places, type(self))
+        return _of_cuts, made_of, _pickling.state_of(self, Partition)
 
 
-def _of_cuts(dimension: int, dtype: DTypeLike, links: NDArray[np.uint32], places: NDArray[Any]) -> Partition:
-    made = Partition.__new__(Partition)
+def _of_cuts(
+    dimension: int,
+    dtype: DTypeLike,
+    links: NDArray[np.uint32],
+    places: NDArray[Any],
+    kind: type[Partition] = Partition,
+) -> Partition:
+    made = kind.__new__(kind)
     made._partition = _core.partition_of_cuts(dimension, dtype == np.float64, links.reshape(-1), places)
     return made

@@ -6,9 +6,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from broadside import _arguments, _convert, _core
+from broadside import _arguments, _convert, _core, _pickling
+from broadside._columns import Columns
 
 
 class Found(NamedTuple):
@@ -41,7 +42,7 @@ class FirstHits(NamedTuple):
 
 
 class Neighbours(NamedTuple):
-    """The nearest boxes of each point, shape (m, k). Where there are fewer, the rest is the greatest number, ``inf``."""
+    """The nearest boxes of each point, shape (m, k). Where fewer are found, the rest is the greatest number, ``inf``."""
 
     box: NDArray[Any]
     """By distance, then by row: rows (uint32), of a world handles (uint64)."""
@@ -54,6 +55,8 @@ class Index:
 
     Args:
         boxes: n boxes, whatever `pairs` takes. They are copied.
+        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
+        filters: A filter for each box, made by `broadside.filters`, for queries with filters.
         dtype: float32 or float64, to widen the boxes. Queries are of the same dtype: those of float64 to an index of
             float32 are refused unless they are exact in float32, so that answers are exact.
 
@@ -64,18 +67,34 @@ class Index:
     Cost: about that of finding all pairs; 100 to 200 bytes a box. A query takes some hundred nanoseconds, and what it
     finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once. Making an index releases
     the GIL and is not interrupted. An index can be pickled.
+
+    Each query takes `filters` and `exclude`, of each query one or one for all: a filter made by `broadside.filters`, which
+    the filter of a box that is found accepts; and a box that is not found, such as the one that a point is of. A box
+    that is not there leaves out nothing.
     """
 
-    __slots__ = ("_boxes", "_index")
+    __slots__ = ("__weakref__", "_boxes", "_crs", "_filters", "_index")
 
-    def __init__(self, boxes: Any, *, dtype: DTypeLike | None = None) -> None:
-        array = _convert.boxes(boxes, "boxes")
+    def __init__(
+        self,
+        boxes: Any,
+        *,
+        dtype: DTypeLike | None = None,
+        columns: Columns | None = None,
+        filters: NDArray[np.void] | None = None,
+    ) -> None:
+        array = _convert.boxes(boxes, "boxes", columns)
         if dtype is not None:
             has_doubles = _has_doubles(dtype)
             array = _convert.rows_of(array, "boxes", array.shape[1], has_doubles)
-        self._index = _core.make_index(array)
-        self._boxes = array.copy()
-        self._boxes.flags.writeable = False
+        self._take(array, _convert.crs_of(boxes), filters)
+
+    def _take(self, array: NDArray[Any], crs: Any, filters: NDArray[np.void] | None) -> None:
+        # Bytes cannot be changed, nor can any array that shows them be made to.
+        self._boxes: NDArray[Any] = np.ndarray(array.shape, array.dtype, array.tobytes())
+        self._crs = crs
+        self._filters = None if filters is None else np.array(filters)
+        self._index = _core.make_index(self._boxes, self._filters)
 
     def __len__(self) -> int:
         """The number of boxes."""
@@ -83,8 +102,8 @@ class Index:
 
     @property
     def boxes(self) -> NDArray[Any]:
-        """The boxes, shape (n, 4) or (n, 6); not to be written to."""
-        return self._boxes
+        """The boxes, shape (n, 4) or (n, 6); read-only."""
+        return self._boxes.view()
 
     @property
     def dimension(self) -> int:
@@ -101,42 +120,87 @@ class Index:
         """The bytes that the index holds beside its boxes."""
         return self._index.bytes()
 
-    def overlapping(self, queries: Any) -> Found:
+    def overlapping(
+        self, queries: Any, *, filters: NDArray[np.void] | None = None, exclude: ArrayLike | None = None
+    ) -> Found:
         """The boxes that overlap each of `queries`, m boxes. An absent one overlaps nothing."""
-        return Found(*self._index.overlapping(queries))
+        _convert.common_crs(self._crs, "the index", queries, "queries")
+        return Found(*self._index.overlapping(queries, filters, exclude))
 
-    def containing(self, points: Any) -> Found:
+    def containing(
+        self, points: Any, *, filters: NDArray[np.void] | None = None, exclude: ArrayLike | None = None
+    ) -> Found:
         """The boxes that contain each of `points`, shape (m, dimension)."""
-        return Found(*self._index.containing(points))
+        return Found(*self._index.containing(points, filters, exclude))
 
-    def hits(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> Hits:
+    def hits(
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        t_max: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> Hits:
         """All boxes that each ray meets: the points origin + t * direction, 0 <= t <= t_max.
 
         `origins` and `directions` have shape (m, dimension) and are finite. Raises InvalidQueryError otherwise.
         """
-        return Hits(*self._index.hits(origins, directions, _arguments.number(t_max, "t_max")))
+        return Hits(*self._index.hits(origins, directions, _arguments.number(t_max, "t_max"), filters, exclude))
 
-    def first_hit(self, origins: Any, directions: Any, *, t_max: float = math.inf) -> FirstHits:
+    def first_hit(
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        t_max: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> FirstHits:
         """The box that each ray, as in `hits`, meets first."""
-        return FirstHits(*self._index.first_hit(origins, directions, _arguments.number(t_max, "t_max")))
+        limit = _arguments.number(t_max, "t_max")
+        return FirstHits(*self._index.first_hit(origins, directions, limit, filters, exclude))
 
-    def nearest(self, points: Any, k: int = 1) -> Neighbours:
-        """The k boxes nearest to each of `points`, shape (m, dimension).
+    def nearest(
+        self,
+        points: Any,
+        k: int = 1,
+        *,
+        max_distance: float = math.inf,
+        filters: NDArray[np.void] | None = None,
+        exclude: ArrayLike | None = None,
+    ) -> Neighbours:
+        """The k boxes nearest to each of `points`, shape (m, dimension), of those at most `max_distance` away.
 
         `k` is from 1 to 65,536, or to the number of boxes where these are more. Raises InvalidQueryError for a NaN; an
         infinite point is infinitely far from every finite box.
         """
-        return Neighbours(*self._index.nearest(points, _checked_k(k, len(self))))
+        limit = _checked_distance(max_distance)
+        return Neighbours(*self._index.nearest(points, _checked_k(k, len(self)), limit, filters, exclude))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Index, (self._boxes,)
+        made_of = (type(self), self._boxes, self._crs, self._filters)
+        return _unpickled_index, made_of, _pickling.state_of(self, Index)
 
     def __repr__(self) -> str:
         return f"broadside.Index({len(self)} boxes, {self.dimension}D, {self.dtype})"
 
 
+def _unpickled_index(kind: type[Index], boxes: NDArray[Any], crs: Any, filters: NDArray[np.void] | None) -> Index:
+    index = kind.__new__(kind)
+    index._take(boxes, crs, filters)
+    return index
+
+
 def _checked_k(k: int, boxes: int) -> int:
     return _arguments.integer(k, "k", 1, max(boxes, 65_536))
+
+
+def _checked_distance(found: float) -> float:
+    distance = _arguments.number(found, "max_distance")
+    if not distance >= 0:
+        raise ValueError(f"max_distance is {found}; expected 0 or more")
+    return distance
 
 
 def _has_doubles(dtype: DTypeLike) -> bool:

@@ -6,13 +6,13 @@ Import it by name, ``import broadside.dask``; it needs Dask (``pip install "broa
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Literal
 
 import numpy as np
 
-from broadside import _arguments
+from broadside import _arguments, _convert
+from broadside._columns import Columns
 from broadside._errors import InvalidBoxError
 from broadside._pairs import count
 from broadside._partition import Partition
@@ -41,8 +41,8 @@ def pairs(
     boxes: Any,
     other: Any = None,
     *,
-    columns: Sequence[str] | None = None,
-    other_columns: Sequence[str] | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
     ids: Literal["row", "index"] = "row",
     parts: int | None = None,
     sort: bool = False,
@@ -63,7 +63,7 @@ def pairs(
             bounds of its geometries. A list of chunks: delayed objects, DataFrames, GeoDataFrames, GeoSeries and arrays.
             Whatever else ``broadside.pairs`` takes is cut into chunks and travels with the tasks.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are found.
-        columns: Of frames: the names of the columns of bounds, minima first, where they are others.
+        columns: Which columns of frames are the bounds, or what the numbers of a row are: see ``broadside.pairs``.
         other_columns: Likewise of `other`.
         ids: What a box is called: ``"row"``, its row number counted over all chunks; or ``"index"``, its label in the
             index of its frame. Labels need not be unique.
@@ -99,6 +99,7 @@ def pairs(
     """
     sets = [chunked_set(boxes, "boxes", columns, ids)]
     if other is not None:
+        _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
         sets.append(chunked_set(other, "other", other_columns, ids))
     elif other_columns is not None:
         raise ValueError("other_columns are given without other boxes; expected both or neither")

@@ -1,6 +1,7 @@
 // World: slots, their boxes, and the handles that name them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -124,11 +125,18 @@ std::uint32_t World<D, Real>::State::readable_slot(Handle handle) const {
 template <int D, typename Real>
 void World<D, Real>::State::refuse(Handle handle, const char* action) const {
   // A slot that is free has not yet issued a handle of its own generation.
-  const bool is_issued = handle.slot < slots.size() ? handle.generation < generations[handle.slot] ||
-                                                          (handle.generation == generations[handle.slot] &&
-                                                           slots[handle.slot].state != SlotState::free)
-                                                    : handle.generation < first_generation;
-  const char* const why = is_issued ? " names a box that was removed" : " was never issued by this world";
+  const bool is_up_to_now = handle.slot < slots.size() ? handle.generation < generations[handle.slot] ||
+                                                             (handle.generation == generations[handle.slot] &&
+                                                              slots[handle.slot].state != SlotState::free)
+                                                       : handle.generation < first_generation;
+  // What was restored from another world's snapshot may be older than what this one began with.
+  const std::uint32_t begin = options.first_generation;
+  const bool is_before =
+      handle.generation < begin &&
+      std::ranges::none_of(generations, [begin](std::uint32_t one) { return one < begin; });
+  const char* const why = is_up_to_now && !is_before
+                              ? " names a box that was removed"
+                              : " was never issued by this world: it is another world's or made up";
   throw InvalidHandle(core::message({"cannot ", action, " a box: handle (slot ", handle.slot, ", generation ",
                                      handle.generation, ")", why, "; expected a box in the world"}));
 }

@@ -113,18 +113,16 @@ def test_refuses_what_was_taken_already(name):
 
 def test_takes_floats_and_integers():
     whole = np.round(BOXES * 100)
-    for type in (pa.int8(), pa.uint16(), pa.int32(), pa.int64(), pa.float32()):
+    for type in (pa.int8(), pa.uint16(), pa.int32(), pa.int64(), pa.float16(), pa.float32()):
         assert as_set(broadside.pairs(table_of(whole, type))) == brute_force(whole)
 
 
 def test_refuses_nulls_and_other_types():
-    lists = pa.FixedSizeListArray.from_arrays(pa.array([0.0, 0, 1, 1, 0, 0, 1, None]), 4)
     for found, error, message in [
-        (table_of(BOXES).set_column(2, "xmax", pa.array([1.0] * 199 + [None])), ValueError, "'xmax' is null in row 199"),
-        (lists, ValueError, "null in row 7"),
-        (pa.array([[0.0, 0, 1, 1], None], pa.list_(pa.float64(), 4)), ValueError, "null in row 1"),
-        (table_of(BOXES).set_column(0, "xmin", pa.array(["a"] * 200)), TypeError, "'xmin' of type 'u'"),
-        (table_of(BOXES).set_column(0, "xmin", pa.array([True] * 200)), TypeError, "of type 'b'"),
+        (table_of(BOXES).set_column(2, "xmax", pa.array([1.0] * 199 + [None])), broadside.InvalidBoxError, "box 199"),
+        (table_of(BOXES).set_column(0, "xmin", pa.array(["a"] * 200)), TypeError, "'xmin' is of type text; expected floats"),
+        (table_of(BOXES).set_column(0, "xmin", pa.array([True] * 200)), TypeError, "of type bool"),
+        (table_of(BOXES).set_column(0, "xmin", pa.array([1] * 200).dictionary_encode()), TypeError, "of type dictionary"),
         (pa.array([1.0, 2.0]), (TypeError, ValueError), "expected"),
         (pa.table({"a": [1.0], "b": [2.0]}), ValueError, "has the columns a, b"),
         (pa.array([0.0] * 8).dictionary_encode(), (TypeError, ValueError), "expected"),

@@ -123,6 +123,19 @@ def test_is_described_and_pickled():
     assert index.boxes.any() and not index.boxes.flags.writeable
 
 
+def test_its_boxes_cannot_be_changed():
+    index = broadside.Index(scattered(10))
+    before = index.boxes.copy()
+    for array in (index.boxes, index.boxes[2:], index.boxes.reshape(-1), index.boxes.view(np.uint32)):
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.flags.writeable = True
+    index.boxes.shape = (40,)
+    index.boxes.dtype = np.uint32
+    np.testing.assert_array_equal(index.boxes, before)
+    empty = broadside.Index(np.empty((0, 6), np.float32))
+    assert empty.boxes.shape == (0, 6) and empty.dtype == np.float32
+
+
 def test_asks_in_the_dtype_of_the_boxes():
     boxes = scattered(50)
     index = broadside.Index(boxes)
@@ -172,3 +185,101 @@ def test_a_hit_is_at_most_at_t_max():
 def test_takes_infinite_points():
     index = broadside.Index(scattered(3))
     assert np.isinf(index.nearest([[np.inf, 0]], 3).distance_squared).all()
+
+
+KINDS = broadside.filters(6, category=[1, 1, 2, 2, 4, 4], mask=[1, 2, 4, 7, 1, 7])
+
+
+def accepts(a, b):
+    return bool(a["category"] & b["mask"]) and bool(b["category"] & a["mask"])
+
+
+def outside(boxes, place):
+    half = boxes.shape[1] // 2
+    return np.maximum(np.maximum(boxes[:, :half] - place, place - boxes[:, half:]), 0)
+
+
+@given(data=st.data(), k=st.integers(1, 20), max_distance=st.sampled_from([0.0, 0.5, 1.0, 2.0, np.inf]))
+def test_queries_take_filters_and_leave_out_a_box(data, k, max_distance):
+    boxes = present(data.draw(box_arrays()))
+    boxes = boxes[np.isfinite(boxes).all(axis=1)]
+    dimension, dtype = boxes.shape[1] // 2, boxes.dtype
+    places = data.draw(points(dimension, dtype))
+    m = len(places)
+    kinds = KINDS[np.arange(len(boxes)) % 6]
+    asked = data.draw(st.sampled_from([None, KINDS[:1], KINDS[3], KINDS[np.arange(m) % 6]]))
+    left_out = data.draw(st.sampled_from([None, [0], 2, (np.arange(m) % max(len(boxes), 1)).tolist()]))
+    none = 2**32 - 1
+    index, world = broadside.Index(boxes, filters=kinds), broadside.World(dimension, dtype=dtype)
+    handles = world.add(boxes, filters=kinds)
+
+    def allowed(query, box):
+        filter = None if asked is None else np.broadcast_to(asked, (m,))[query]
+        wanted = none if left_out is None else np.broadcast_to(left_out, (m,))[query]
+        return box != wanted and (filter is None or accepts(filter, kinds[box]))
+
+    def handle_of(row):
+        return 2**64 - 1 if row >= len(boxes) else int(handles[row])
+
+    options = {"filters": asked, "exclude": left_out}
+    of_world = options | {"exclude": None if left_out is None else [handle_of(row) for row in np.atleast_1d(left_out)]}
+    queries = np.hstack([places, places + 1])
+    directions = np.ones_like(places)
+    for name, arguments, pairs in [
+        ("overlapping", (queries,), brute_force(queries, boxes)),
+        ("containing", (places,), brute_force(np.hstack([places, places]), boxes)),
+    ]:
+        expected = {(query, box) for query, box in pairs if allowed(query, box)}
+        assert found(getattr(index, name)(*arguments, **options)) == expected
+        assert found(getattr(world, name)(*arguments, **of_world)) == {(q, int(handles[b])) for q, b in expected}
+    hits = index.hits(places, directions, **options)
+    every = index.hits(places, directions)
+    expected = {(q, b): t for q, b, t in zip(every.query.tolist(), every.box.tolist(), every.t.tolist()) if allowed(q, b)}
+    assert dict(zip(zip(hits.query.tolist(), hits.box.tolist()), hits.t.tolist())) == expected
+    assert found(world.hits(places, directions, **of_world)) == {(q, int(handles[b])) for q, b in expected}
+    first, first_of_world = index.first_hit(places, directions, **options), world.first_hit(places, directions, **of_world)
+    near = index.nearest(places, k, max_distance=max_distance, **options)
+    near_of_world = world.nearest(places, k, max_distance=max_distance, **of_world)
+    for query, place in enumerate(places):
+        met = sorted((t, box) for (q, box), t in expected.items() if q == query)
+        assert first.box[query] == (met[0][1] if met else none)
+        assert first_of_world.box[query] == (handles[met[0][1]] if met else 2**64 - 1)
+        squares = (outside(boxes, place) ** 2).sum(axis=1, dtype=dtype)
+        order = [box for box in np.lexsort((np.arange(len(boxes)), squares)) if allowed(query, box)]
+        order = [box for box in order if squares[box] <= dtype.type(max_distance) ** 2][:k]
+        assert near.box[query].tolist() == order + [none] * (k - len(order))
+        assert near_of_world.box[query].tolist() == [int(handles[box]) for box in order] + [2**64 - 1] * (k - len(order))
+    again = pickle.loads(pickle.dumps(index))
+    np.testing.assert_array_equal(again.nearest(places, k, **options).box, index.nearest(places, k, **options).box)
+
+
+def test_finds_the_nearest_other_boxes():
+    boxes = scattered(200, dtype=np.float64)
+    index, centres = broadside.Index(boxes), (boxes[:, :2] + boxes[:, 2:]) / 2
+    own = np.arange(200)
+    assert (index.nearest(centres, 1, max_distance=0).distance_squared == 0).all()
+    others = index.nearest(centres, 3, exclude=own)
+    assert not (others.box == own[:, None]).any() and np.isfinite(others.distance_squared).all()
+    world = broadside.World(2)
+    handles = world.add(boxes)
+    np.testing.assert_array_equal(world.nearest(centres, 3, exclude=handles).box, handles[others.box])
+
+
+def test_refuses_options_of_queries_that_do_not_fit():
+    for index in both(scattered(20, dtype=np.float64))[:2]:
+        two = [[0, 0], [1, 1]]
+        for options, error, message in [
+            ({"max_distance": -1}, ValueError, "max_distance is -1; expected 0 or more"),
+            ({"max_distance": np.nan}, ValueError, "max_distance is nan; expected 0 or more"),
+            ({"max_distance": "1"}, TypeError, "max_distance is of str; expected a number"),
+            ({"exclude": [1, 2, 3]}, ValueError, "2 queries and 3 boxes in exclude; expected one for each query, or one"),
+            ({"exclude": []}, ValueError, "2 queries and 0 boxes in exclude"),
+            ({"exclude": [-1, 2]}, ValueError, "exclude has -1"),
+            ({"exclude": [0.5, 2]}, TypeError, "exclude has dtype float64"),
+            ({"filters": broadside.filters(3)}, ValueError, r"filters has shape \(3,\); expected \(2,\)"),
+            ({"filters": [1, 2]}, TypeError, "expected what broadside.filters"),
+        ]:
+            with pytest.raises(error, match=message):
+                index.nearest(two, **options)
+    with pytest.raises(ValueError, match=r"filters has shape \(3,\); expected \(20,\), a filter for each box"):
+        broadside.Index(scattered(20), filters=broadside.filters(3))

@@ -1,8 +1,14 @@
 """algorithms(), advise(), read() and draw()."""
 
 import gzip
+import io
 import json
 import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -69,9 +75,103 @@ def test_reads_files_of_any_name(tmp_path):
         assert broadside.read(path, quarantine=True).tolist() == [[0, 0, 1, 1], [np.inf, np.inf, -np.inf, -np.inf]]
 
 
+TEXT = "min_x,min_y,max_x,max_y\n0,0,1,1\n1,1,2,2\n"
+
+
+def test_reads_what_is_open(tmp_path):
+    expected = [[0, 0, 1, 1], [1, 1, 2, 2]]
+    path = tmp_path / "boxes.csv"
+    path.write_text(TEXT)
+    packed = gzip.compress(TEXT.encode())
+    beside = io.BytesIO(b"before" + TEXT.encode())
+    beside.seek(len(b"before"))
+    with open(path, "rb") as binary, open(path) as text, open(path, "rb", buffering=0) as raw:
+        for file in (binary, text, raw, io.BytesIO(TEXT.encode()), io.StringIO(TEXT), io.BytesIO(packed), beside):
+            assert broadside.read(file).tolist() == expected
+            assert not file.read()
+    with gzip.open(io.BytesIO(packed)) as file:
+        assert broadside.read(file, format="csv").tolist() == expected
+    array = io.BytesIO()
+    np.save(array, scattered(5, 3))
+    array.seek(0)
+    np.testing.assert_array_equal(broadside.read(array), scattered(5, 3))
+    with pytest.raises(broadside.FileError, match="the file object:2: .*one"):
+        broadside.read(io.BytesIO(b"min_x,min_y,max_x,max_y\n0,0,one,1\n"))
+    with open(path, "w") as file:
+        file.write(TEXT + "0,0,one,1\n")
+    with open(path, "rb") as file, pytest.raises(broadside.FileError, match="boxes.csv:4: .*one"):
+        broadside.read(file)
+
+    class Numbers:
+        def read(self, size):
+            return 7
+
+    with pytest.raises(TypeError, match="of Numbers gave int; expected bytes or a str"):
+        broadside.read(Numbers())
+
+
+def test_reads_parquet_that_is_open():
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    file = io.BytesIO()
+    parquet.write_table(pyarrow.table({"min_x": [0.0], "min_y": [0.0], "max_x": [1.0], "max_y": [1.0]}), file)
+    file.seek(0)
+    assert broadside.read(file).tolist() == [[0, 0, 1, 1]]
+    with pytest.raises(broadside.FileError, match="the file object: cannot be read as Parquet"):
+        broadside.read(io.BytesIO(file.getvalue()[:-20]))
+
+
+class Endless(io.RawIOBase):
+    def readable(self):
+        return True
+
+    def readinto(self, buffer):
+        return len(buffer)
+
+
+def test_holds_no_more_than_memory_can(monkeypatch):
+    monkeypatch.setattr("broadside._lab._most_bytes", lambda: 10_000_000)
+    with pytest.raises(broadside.FileError, match="goes on after 1[01][0-9]{6} bytes"):
+        broadside.read(Endless())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="without named pipes")
+@pytest.mark.parametrize("content", [TEXT.encode(), gzip.compress(TEXT.encode())], ids=["plain", "gzip"])
+def test_reads_a_pipe_until_it_is_closed(tmp_path, content):
+    path = tmp_path / "pipe.csv"
+    os.mkfifo(path)
+    writer = threading.Thread(target=path.write_bytes, args=(content,))
+    writer.start()
+    assert broadside.read(path).tolist() == [[0, 0, 1, 1], [1, 1, 2, 2]]
+    writer.join()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="without named pipes")
+def test_waits_for_a_pipe_until_ctrl_c(tmp_path):
+    path = tmp_path / "pipe.csv"
+    os.mkfifo(path)
+    code = f"""
+        import signal, broadside
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        print("waits", flush=True)
+        try:
+            broadside.read({str(path)!r})
+        except KeyboardInterrupt:
+            print("ended")
+    """
+    with subprocess.Popen([sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "waits\n"
+        with open(path, "wb") as writer:  # waits until it is opened for reading
+            writer.write(b"min_x")
+            writer.flush()
+            process.send_signal(signal.SIGINT)
+            assert process.communicate(timeout=60)[0] == "ended\n"
+
+
 def test_says_what_is_wrong_with_a_file(tmp_path):
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileNotFoundError) as caught:
         broadside.read(tmp_path / "none.csv")
+    assert caught.value.filename == str(tmp_path / "none.csv")
     path = tmp_path / "boxes.csv"
     path.write_text("min_x,min_y,max_x,max_y\n0,0,1,1\n0,0,one,1\n")
     with pytest.raises(broadside.FileError, match="boxes.csv.*3.*one"):

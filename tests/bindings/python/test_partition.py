@@ -1,6 +1,9 @@
 """Partition: parts whose pairs are disjoint and together all pairs."""
 
 import pickle
+import subprocess
+import sys
+import textwrap
 
 import numpy as np
 import pytest
@@ -74,7 +77,7 @@ def test_can_be_pickled():
 
 
 def test_refuses_cuts_that_are_none():
-    constructor, (dimension, dtype, links, places) = broadside.Partition(scattered(100), 3).__reduce__()
+    constructor, (dimension, dtype, links, places, _), _ = broadside.Partition(scattered(100), 3).__reduce__()
     for wrong in (links[:-1], links[::-1], links + 1):
         with pytest.raises(ValueError, match="Partition"):
             constructor(dimension, dtype, wrong, places)
@@ -121,3 +124,40 @@ def test_refuses_what_does_not_fit():
     ):
         with pytest.raises(ValueError, match=message):
             refused()
+
+
+def test_survives_boxes_that_another_thread_changes():
+    # What is counted in one pass is filled in another one; boxes that grow between them must not lead beyond.
+    code = """
+        import threading
+        import numpy as np
+        import broadside
+
+        corners = np.random.default_rng(1).random((50_000, 2))
+        small = np.hstack([corners, corners])
+        large = np.hstack([corners - 1, corners + 1])
+        boxes, partition = small.copy(), broadside.Partition(small, 64)
+        whole = {len(partition.assign(same).row) for same in (small, large)}
+        ended = threading.Event()
+
+        def write():
+            while not ended.is_set():
+                boxes[:] = large
+                boxes[:] = small
+
+        writer = threading.Thread(target=write)
+        writer.start()
+        refused = 0
+        for _ in range(60):
+            try:
+                start, row = partition.assign(boxes)
+                assert min(whole) <= len(row) <= max(whole) and row.max() < len(boxes)
+            except ValueError as error:
+                assert "changed by another thread" in str(error)
+                refused += 1
+        ended.set()
+        writer.join()
+        print("survived")
+    """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "survived\n"), done.stderr

@@ -271,3 +271,16 @@ def test_a_tracker_looks_at_what_is_listed():
         tracker.update(moved)
     with pytest.raises(ValueError, match=r"expected \(n, 4\)"):
         tracker.update(np.zeros((3, 6)))
+
+
+def test_names_the_handle_of_another_world():
+    worlds = [broadside.World(2) for _ in range(8)]
+    handles = [world.add(scattered(5)) for world in worlds]
+    for i, world in enumerate(worlds):
+        for j in range(8):
+            if i != j:
+                with pytest.raises(broadside.InvalidHandleError, match="never issued by this world: it is another world's"):
+                    world.remove(handles[j])
+        world.remove(handles[i][2:])
+        with pytest.raises(broadside.InvalidHandleError, match="names a box that was removed"):
+            world.remove(handles[i][3:4])

@@ -193,6 +193,25 @@ TEST_F(WorldTest, TellsAHandleThatWasRemovedFromOneThatNeverWas) {
   EXPECT_NE(refusal(a).find(removed), std::string::npos);
 }
 
+TEST_F(WorldTest, TellsAnotherWorldsHandleFromOneThatWasRemoved) {
+  World<2> first({.first_generation = 1000});
+  World<2> second({.first_generation = 2000});
+  const Handle a = first.add(at(0));
+  const Handle b = second.add(at(0));
+  const std::string unknown = "was never issued by this world: it is another world's or made up";
+  const auto refusal = [&](const World<2>& world, Handle handle) {
+    return message_of<InvalidHandle>([&] { world.box(handle); });
+  };
+  EXPECT_NE(refusal(first, b).find(unknown), std::string::npos);
+  EXPECT_NE(refusal(second, a).find(unknown), std::string::npos);
+  second.restore(first.snapshot());
+  second.remove(a);
+  second.update();
+  second.update();
+  EXPECT_NE(refusal(second, a).find("names a box that was removed"), std::string::npos)
+      << "its handles are those of the first one now";
+}
+
 TEST_F(WorldTest, RefusesWrongBoxesAndStaysAsItIs) {
   const Handle a = world_.add(at(0));
   for (const Box2& wrong : {Box2{{nan, 0}, {1, 1}}, Box2{{0, 2}, {1, 1}}, absent_box<2>()}) {
