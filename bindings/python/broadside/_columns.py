@@ -71,7 +71,7 @@ def checked(columns: Columns | None, name: str) -> str | list[str] | None:
     if isinstance(columns, str):
         if columns in _CONVENTIONS:
             return columns
-        if "," in columns:
+        if "," in columns or "=" in columns:
             return [part.strip() for part in columns.split(",")]
         raise ValueError(
             f"the columns of {name} are {columns!r}; expected one of {', '.join(_CONVENTIONS)}, or a list of names"

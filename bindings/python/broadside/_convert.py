@@ -142,7 +142,8 @@ def _as_array(found: Any, name: str, shape: _Shape) -> Rows:
     elif hasattr(found, "__arrow_c_stream__"):
         return _of_arrow(name, shape, lambda choose: _core.arrow_stream(found.__arrow_c_stream__(), choose))
     elif hasattr(found, "__arrow_c_array__"):
-        return _of_arrow(name, shape, lambda choose: _core.arrow_array(*found.__arrow_c_array__(), choose))
+        schema, values = found.__arrow_c_array__()
+        return _of_arrow(name, shape, lambda choose: _core.arrow_array(schema, values, choose))
     elif hasattr(found, "__array__"):
         array = np.asarray(found)
     elif hasattr(found, "__dlpack__"):

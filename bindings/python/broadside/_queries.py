@@ -103,7 +103,7 @@ class Index:
     @property
     def boxes(self) -> NDArray[Any]:
         """The boxes, shape (n, 4) or (n, 6); read-only."""
-        return self._boxes.view()
+        return np.ndarray(self._boxes.shape, self._boxes.dtype, self._boxes.base)
 
     @property
     def dimension(self) -> int:

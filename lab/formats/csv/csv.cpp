@@ -2,6 +2,7 @@
 #include "lab/formats/csv/csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -51,17 +52,65 @@ bool resolve_comment(std::string_view comment, std::size_t count, BoxColumns& co
   return names.size() == count && resolve(names, columns).empty();
 }
 
-/// The order of the numbers in a field of bounds, by the names that torchvision made common.
+/// What the numbers of a box are, by the names that torchvision made common.
+struct Convention {
+  std::string_view name;
+  BoundsForm form;
+  std::string_view columns;
+};
+constexpr auto conventions = std::to_array<Convention>({
+    {"xyxy", BoundsForm::min_max, "min_x,min_y,max_x,max_y"},
+    {"xywh", BoundsForm::min_size, "x,y,w,h"},
+    {"cxcywh", BoundsForm::centre_size, "cx,cy,w,h"},
+    {"xyzxyz", BoundsForm::min_max, "min_x,min_y,min_z,max_x,max_y,max_z"},
+    {"xyzwhd", BoundsForm::min_size, "x,y,z,w,h,d"},
+    {"cxcyczwhd", BoundsForm::centre_size, "cx,cy,cz,w,h,d"},
+});
+
+const Convention* find_convention(std::string_view name) {
+  const auto* const found = std::ranges::find(conventions, name, &Convention::name);
+  return found == conventions.end() ? nullptr : found;
+}
+
+/// The order of the numbers in a field of bounds.
 std::optional<BoundsForm> form_named(std::string_view name) {
-  if (name == "xyxy") return BoundsForm::min_max;
-  if (name == "xywh") return BoundsForm::min_size;
-  if (name == "cxcywh") return BoundsForm::centre_size;
-  return std::nullopt;
+  const Convention* const convention = find_convention(name);
+  return convention == nullptr ? std::nullopt : std::optional(convention->form);
+}
+
+/// The columns of a file with names that make boxes as a convention says.
+BoxColumns columns_of_convention(const Convention& convention, const Fields& fields, const CsvLines& lines) {
+  Fields names = fields;
+  if (convention.form == BoundsForm::centre_size) {
+    for (std::string_view& name : names) {
+      if (plain(name) == "x") name = "cx";
+      if (plain(name) == "y") name = "cy";
+      if (plain(name) == "z") name = "cz";
+    }
+  }
+  BoxColumns columns;
+  std::string problem = resolve(names, columns, true);
+  columns.geometry_form = convention.form;
+  const auto is_such = [&](BoundsForm form) {
+    return form == convention.form ||
+           (form == BoundsForm::bottom_top && convention.form == BoundsForm::min_max);
+  };
+  if (problem.empty() && !columns.has_geometry &&
+      !std::all_of(columns.forms.begin(), columns.forms.begin() + columns.dimension, is_such))
+    problem = "other columns of bounds";
+  if (!problem.empty())
+    lines.refuse(fmt::format("--columns is '{}': {}", convention.name, problem),
+                 fmt::format("columns such as {}", convention.columns));
+  return columns;
 }
 
 /// The columns that the user names, from left to right; or, as "bbox=xywh", how the file's column of that
-/// name holds bounds.
-BoxColumns columns_of_user(const std::string& list, const Fields& fields, const CsvLines& lines) {
+/// name holds bounds; or, as "xywh", what its columns of bounds are.
+BoxColumns columns_of_user(std::string_view list, const Fields& fields, const CsvLines& lines) {
+  if (const Convention* const convention = find_convention(list)) {
+    if (!is_table_row(fields)) return columns_of_convention(*convention, fields, lines);
+    list = convention->columns;
+  }
   const std::size_t count = fields.size();
   Fields names = fields_of(list, Separator::comma);
   BoundsForm form = BoundsForm::min_max;

@@ -75,6 +75,20 @@ def test_reads_files_of_any_name(tmp_path):
         assert broadside.read(path, quarantine=True).tolist() == [[0, 0, 1, 1], [np.inf, np.inf, -np.inf, -np.inf]]
 
 
+def test_reads_the_columns_that_a_caller_names(tmp_path):
+    named, plain, bbox = (tmp_path / name for name in ("named.csv", "plain.csv", "bbox.csv"))
+    named.write_text("id,h,w,y,x\n7,6,4,2,1\n")
+    plain.write_text("1,2,4,6\n")
+    bbox.write_text('id,bbox\n7,"[1, 2, 4, 6]"\n')
+    for path in (named, plain, bbox):
+        assert broadside.read(path, columns="xywh").tolist() == [[1, 2, 5, 8]]
+    assert broadside.read(plain, columns=["x", "y", "w", "h"]).tolist() == [[1, 2, 5, 8]]
+    assert broadside.read(plain, columns="x,y,w,h").tolist() == [[1, 2, 5, 8]]
+    assert broadside.read(bbox, columns="bbox=xywh").tolist() == [[1, 2, 5, 8]]
+    with pytest.raises(ValueError, match="the columns of the file are 'wh'; expected one of xyxy"):
+        broadside.read(plain, columns="wh")
+
+
 TEXT = "min_x,min_y,max_x,max_y\n0,0,1,1\n1,1,2,2\n"
 
 

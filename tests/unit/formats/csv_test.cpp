@@ -260,6 +260,21 @@ TEST_F(CsvTable, CallsACornerXAndYWhereTheUserNamesThem) {
                     HasSubstr("as -,x,y,width,height or -,cx,cy,width,height")));
 }
 
+TEST_F(CsvTable, TakesColumnsAsAConvention) {
+  ReadOptions options;
+  options.columns = "xywh";
+  EXPECT_EQ(boxes_of("1,2,4,6\n-1,-2,1,10000000002\n", options), both_boxes);
+  EXPECT_EQ(boxes_of("id,h,w,y,x\n1,6,4,2,1\n2,10000000002,1,-2,-1\n", options), both_boxes)
+      << "a file's names say which is which";
+  EXPECT_EQ(boxes_of("id;bbox\n1;[1,2,4,6]\n2;[-1,-2,1,10000000002]\n", options), both_boxes);
+  options.columns = "cxcywh";
+  EXPECT_EQ(boxes_of("id,x,y,w,h\n1,3,5,4,6\n2,-0.5,4999999999,1,10000000002\n", options), both_boxes);
+  options.columns = "xyzwhd";
+  EXPECT_EQ(solid_boxes_of("1,2,3,4,5,6\n", options), (std::vector<DoubleBox3>{{{1, 2, 3}, {5, 7, 9}}}));
+  EXPECT_THAT(refusal_of("min_x,min_y,max_x,max_y\n0,0,1,1\n", "xywh"),
+              AllOf(HasSubstr("--columns is 'xywh'"), HasSubstr("expected columns such as x,y,w,h")));
+}
+
 TEST_F(CsvTable, ReadsKittisLabels) {
   EXPECT_EQ(boxes_of("Car 0.00 0 -1.5 1.0 2.0 5.0 8.0 1.6 1.7 3.7 -16.5 2.4 58.5 -1.3\n"
                      "Pedestrian 0.00 0 -0.2 -1 -2 0 1e10 1.9 0.5 1.2 1.8 1.5 8.4 0.0\n"),
