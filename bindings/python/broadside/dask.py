@@ -21,8 +21,8 @@ try:
     dask = import_module("dask")
     dask_frame = import_module("dask.dataframe")
     dask_delayed = import_module("dask.delayed")
-except ImportError as error:
-    raise ImportError(f'broadside.dask: {error}; expected Dask: pip install "broadside[dask]"') from error
+except ImportError as _error:
+    raise ImportError(f'broadside.dask: {_error}; expected Dask: pip install "broadside[dask]"') from _error
 
 from broadside import _dask_tasks as work
 from broadside._dask_chunks import ChunkedSet, Key, Tasks, chunked_set
