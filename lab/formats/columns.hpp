@@ -144,4 +144,10 @@ bool is_geometry_name(std::string_view name);
 /// BoxColumns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
 std::string positional(std::size_t count, BoxColumns& columns);
 
+/// What else columns may mean, as lists for --columns: those of a table, those of rows of so many numbers,
+/// and those of names of which x,y may be a corner or a centre.
+std::vector<std::string> other_meanings(const BoxColumns& columns);
+std::vector<std::string> unnamed_meanings(std::size_t count);
+std::vector<std::string> corner_or_centre(std::span<const std::string_view> names);
+
 }  // namespace broadside::lab::readers
