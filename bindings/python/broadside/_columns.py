@@ -29,6 +29,9 @@ _CONVENTIONS = {
     "xyzwhd": ("xmin", "ymin", "zmin", "width", "height", "depth"),
     "cxcyczwhd": ("cx", "cy", "cz", "width", "height", "depth"),
 }
+# What rows without names may be, beside minima and maxima.
+SIZED_CONVENTIONS = [name for name, names in _CONVENTIONS.items() if "width" in names]
+
 # The names that an array's columns have in pandas and polars. They say nothing, so they must be all there are.
 _NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (4, 6)]
 
@@ -186,12 +189,13 @@ def _bounds_on(axis: tuple[str, int, int], numbers: list[Rows]) -> tuple[Rows, R
     if form == "bottom_top":
         # On a screen y grows downwards.
         return (b, a) if (b < a).any() else (a, b)
-    # As of files: in double.
+    # As of files: in double. What is infinite or no number makes an invalid box.
     a, b = a.astype(np.float64, copy=False), b.astype(np.float64, copy=False)
-    if form == "min_size":
-        return a, a + b
-    half = b / 2 if form == "centre_size" else b
-    return a - half, a + half
+    with np.errstate(invalid="ignore", over="ignore"):
+        if form == "min_size":
+            return a, a + b
+        half = b / 2 if form == "centre_size" else b
+        return a - half, a + half
 
 
 def exact(array: Rows, what: str, missing: NDArray[np.bool_] | None = None) -> Rows:

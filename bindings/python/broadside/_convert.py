@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from broadside import _columns, _core
 from broadside._columns import Choice, Column, Columns
+from broadside._errors import InvalidBoxError
 
 Rows = NDArray[Any]
 
@@ -31,6 +32,22 @@ def boxes(found: Any, name: str, columns: Columns | None = None) -> Rows:
             f"{name} has shape {array.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
         )
     return array
+
+
+def with_other_conventions(error: InvalidBoxError, found: Any, name: str, columns: Columns | None) -> InvalidBoxError:
+    """An error about an invalid box, which names the convention by which all rows without names are valid."""
+    if columns is not None or error.argument != name:
+        return error
+    ways = [f"columns={way!r}" for way in _columns.SIZED_CONVENTIONS if _are_valid(found, name, way)]
+    text = f"{error}; all rows are valid with {' or '.join(ways)}" if ways else str(error)
+    return InvalidBoxError(text, error.row, error.argument)
+
+
+def _are_valid(found: Any, name: str, columns: str) -> bool:
+    try:
+        return not _core.invalid_rows(boxes(found, name, columns)).size
+    except (TypeError, ValueError):  # not of so many columns, or by names that say something else
+        return False
 
 
 def given(found: Any, name: str, columns: Columns | None) -> Any:
@@ -221,6 +238,8 @@ def _of_frame(found: Any, name: str, shape: _Shape) -> Rows | None:
             bounds = _bounds_of_geometries(np.asarray(geometry, dtype=object), str(geometry.dtype) == "geometry")
             if bounds is not None:
                 return bounds
+    if isinstance(shape, _Points) and str(getattr(getattr(found, "geometry", None), "dtype", "")) == "geometry":
+        return _of_points(np.asarray(found.geometry, dtype=object), shape)
     if not is_frame:
         return None
     fields = [(place, key) for place in range(found.shape[1]) for key in _keys_of(found.iloc[:, place])]
@@ -248,6 +267,17 @@ def _of_series(frame: Any, label: str, place: int, key: Any) -> Column:
     values = np.zeros(len(series), there.dtype)
     values[~missing] = there
     return Column(label, values, missing)
+
+
+def _of_points(array: Rows, shape: _Points) -> Rows:
+    """The coordinates of shapely's points."""
+    shapely = sys.modules["shapely"]
+    others = np.flatnonzero(shapely.is_missing(array) | shapely.is_empty(array) | (shapely.get_type_id(array) != 0))
+    if others.size:
+        kind = getattr(array[others[0]], "geom_type", "nothing")
+        raise TypeError(f"{shape.name} has a {kind} in row {others[0]}; expected a point that is not empty")
+    coordinates: Rows = shapely.get_coordinates(array, include_z=shape.dimension == 3)
+    return coordinates
 
 
 def _bounds_of_geometries(array: Rows, are_known: bool = False) -> Rows | None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from broadside import _arguments, _convert, _core
 from broadside._columns import Columns
 from broadside._core import PairTable as PairTable
+from broadside._errors import InvalidBoxError
 
 _find = _core.find
 _ARRAY = _core.ARRAY
@@ -124,13 +125,18 @@ def pairs(
     share); it looks for signals every 50 milliseconds at most. A search by one of the paper's listings ends with its
     next pairs; sorting pairs is not interrupted. Any number of threads may call it at once.
     """
-    boxes, other = _sets(boxes, other, columns, other_columns)
-    if output == "numpy":
-        return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
-    if output == "arrow":
-        return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
-    if output == "sparse":
-        return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine)
+    if other is not None or columns is not None or other_columns is not None:
+        boxes, other = _sets(boxes, other, columns, other_columns)
+    try:
+        if output == "numpy":
+            return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+        if output == "arrow":
+            return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+        if output == "sparse":
+            return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine)
+    except InvalidBoxError as error:
+        error = _convert.with_other_conventions(error, boxes, "boxes", columns)
+        raise _convert.with_other_conventions(error, other, "other", other_columns) from None
     raise ValueError(f"output is {output!r}; expected 'numpy', 'arrow' or 'sparse'")
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from broadside import _arguments, _convert, _core, _pickling
 from broadside._columns import Columns
+from broadside._errors import InvalidBoxError
 
 
 class Found(NamedTuple):
@@ -87,7 +88,10 @@ class Index:
         if dtype is not None:
             has_doubles = _has_doubles(dtype)
             array = _convert.rows_of(array, "boxes", array.shape[1], has_doubles)
-        self._take(array, _convert.crs_of(boxes), filters)
+        try:
+            self._take(array, _convert.crs_of(boxes), filters)
+        except InvalidBoxError as error:
+            raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
 
     def _take(self, array: NDArray[Any], crs: Any, filters: NDArray[np.void] | None) -> None:
         # Bytes cannot be changed, nor can any array that shows them be made to.

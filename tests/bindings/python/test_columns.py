@@ -102,6 +102,23 @@ def test_rows_without_names_are_what_a_caller_says(made):
         broadside.pairs(made(WHOLE), columns="xyzwhd")
 
 
+def test_names_the_convention_by_which_all_rows_are_valid():
+    rows = np.array([[0, 0, 10, 10], [12, 12, 6, 4.0]])
+    for call in (broadside.pairs, broadside.Index, lambda found: broadside.pairs(WHOLE, found)):
+        with pytest.raises(broadside.InvalidBoxError, match="all rows are valid with columns='xywh' or columns='cxcywh'") as caught:
+            call(rows)
+        assert caught.value.row == 1
+        with pytest.raises(broadside.InvalidBoxError, match="all rows are valid with columns='xywh'"):
+            call(pandas.DataFrame({"image": [1, 1], "bbox": rows.tolist()}))
+        with pytest.raises(broadside.InvalidBoxError) as caught:
+            call(pandas.DataFrame(rows, columns=NAMES))
+        assert "columns=" not in str(caught.value)
+    rows[0, 2] = -1
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        broadside.pairs(rows)
+    assert "columns=" not in str(caught.value)
+
+
 def test_each_function_of_boxes_takes_columns():
     rows, kinds = sizes_of(WHOLE), {"columns": "xywh"}
     expected = brute_force(WHOLE)
@@ -275,6 +292,11 @@ def test_takes_points_by_their_names():
     expected = index.containing(points)
     for found in (pandas.DataFrame(points[:, ::-1], columns=["y", "x"]), pandas.DataFrame(points), pa.table({"b": points[:, 0], "a": points[:, 1]})):
         np.testing.assert_array_equal(index.containing(found).box, expected.box)
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    for found in (geopandas.GeoSeries(shapely.points(points)), geopandas.GeoDataFrame(geometry=shapely.points(points))):
+        np.testing.assert_array_equal(index.containing(found).box, expected.box)
+    with pytest.raises(TypeError, match="points has a Polygon in row 1; expected a point"):
+        index.containing(geopandas.GeoSeries([shapely.Point(0, 0), shapely.box(0, 0, 1, 1)]))
     with pytest.raises(ValueError, match="points has the columns a, b, c; expected x, y"):
         index.containing(pandas.DataFrame(np.zeros((2, 3)), columns=["a", "b", "c"]))
 

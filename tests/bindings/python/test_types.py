@@ -50,6 +50,13 @@ def test_a_user_s_types_are_checked(tmp_path):
     assert "Found 3 errors" in said, said
 
 
+def test_the_types_of_the_package_are_those_at_run_time(tmp_path):
+    # But of the extension, whose functions are of a type of nanobind's: the next test is for these.
+    (tmp_path / "allowed").write_text(r"broadside\._core\..*" + "\n")
+    said = mypy("mypy.stubtest", "broadside", "--allowlist", "allowed", "--ignore-unused-allowlist", cwd=tmp_path)
+    assert "Success" in said, said
+
+
 def test_the_stub_has_what_the_extension_has():
     # By name: what nanobind's functions take is not told by a signature that stubtest could compare.
     stub = ast.parse((Path(broadside.__file__).parent / "_core.pyi").read_text())
