@@ -188,10 +188,7 @@ double ranks_per_query(const std::vector<Box<D>>& boxes, const Partition<D>& par
   std::vector<Box<D>> bounds(partition.size(), absent_box<D>());
   for (const Box<D>& box : boxes) {
     Box<D>& bound = bounds[partition.owner(box.min)];
-    for (std::size_t axis = 0; axis < D; ++axis) {
-      bound.min[axis] = std::min(bound.min[axis], box.min[axis]);
-      bound.max[axis] = std::max(bound.max[axis], box.max[axis]);
-    }
+    bound = merged(bound, box);
   }
   const std::size_t queries = std::min(boxes.size(), max_queries);
   double met = 0;

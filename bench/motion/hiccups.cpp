@@ -100,12 +100,7 @@ std::array<Population<D>, 2> populations(const std::string& scene, std::size_t r
                                          std::size_t movers, std::uint64_t seed) {
   const std::vector<Box<D>> still = boxes_of<D>(scene, resting, seed);
   Box<D> bounds = still.front();
-  for (const Box<D>& box : still) {
-    for (int axis = 0; axis < D; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
-    }
-  }
+  for (const Box<D>& box : still) bounds = merged(bounds, box);
   // Of an even scene the middle holds as many boxes as its share of the whole.
   const double share = std::pow(static_cast<double>(around) / static_cast<double>(resting), 1.0 / D);
   Box<D> middle;

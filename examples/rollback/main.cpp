@@ -30,10 +30,7 @@ struct Game {
   }
 
   void move(broadside::Handle player, int way) {
-    broadside::Box2 box = world.box(player);
-    box.min[0] += 0.25F * static_cast<float>(way);
-    box.max[0] += 0.25F * static_cast<float>(way);
-    world.move(player, box);
+    world.move(player, translated(world.box(player), {0.25F * static_cast<float>(way), 0}));
   }
 
   /// One frame; returns how many pairs began.

@@ -65,10 +65,7 @@ class Game {
   }
 
   void shift(const Entity& entity, float x, float y) {
-    Box2 box = world_.box(entity.handle);
-    box.min = {box.min[0] + x, box.min[1] + y};
-    box.max = {box.max[0] + x, box.max[1] + y};
-    world_.move(entity.handle, box);
+    world_.move(entity.handle, translated(world_.box(entity.handle), {x, y}));
   }
 
   /// Also of a box that was removed, while its last pairs end.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -16,6 +17,19 @@ namespace broadside {
 template <int D, typename Real = float>
 using Point = std::array<Real, static_cast<std::size_t>(D)>;
 
+namespace detail {
+template <int D, typename Real>
+inline constexpr bool is_supported = (D == 2 || D == 3) &&
+                                     (std::is_same_v<Real, float> || std::is_same_v<Real, double>);
+
+/// Instantiated by each class that works on boxes, so that a box of another kind is refused in one sentence.
+template <int D, typename Real>
+struct SupportedBox {
+  static_assert(is_supported<D, Real>, "Broadside works on boxes in 2 or 3 dimensions, of float or double");
+  static constexpr bool value = true;
+};
+}  // namespace detail
+
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
 /// Boxes are closed: two that only touch overlap, and a degenerate box (min = max) is a point and counts.
@@ -29,6 +43,22 @@ template <int D, typename Real = float>
 struct Box {
   Point<D, Real> min;
   Point<D, Real> max;
+
+  /// The box that reaches `half_extents` beyond `centre` on both sides of each axis, or the same distance on
+  /// every axis. Bounds are rounded to Real.
+  static constexpr Box around(const Point<D, Real>& centre, const Point<D, Real>& half_extents) noexcept {
+    Box box{};
+    for (std::size_t axis = 0; axis < centre.size(); ++axis) {
+      box.min[axis] = centre[axis] - half_extents[axis];
+      box.max[axis] = centre[axis] + half_extents[axis];
+    }
+    return box;
+  }
+  static constexpr Box around(const Point<D, Real>& centre, Real half_extent) noexcept {
+    Point<D, Real> half_extents{};
+    half_extents.fill(half_extent);
+    return around(centre, half_extents);
+  }
 
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
@@ -71,6 +101,74 @@ constexpr bool overlap(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
     touching &= b.min[axis] <= a.max[axis];
   }
   return touching;
+}
+
+/// Whether the box contains the point, bounds included. An absent box contains none.
+template <int D, typename Real>
+constexpr bool contains(const Box<D, Real>& box, const std::type_identity_t<Point<D, Real>>& point) noexcept {
+  bool inside = true;
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis)
+    inside &= box.min[axis] <= point[axis] && point[axis] <= box.max[axis];
+  return inside;
+}
+
+/// Whether no point of `inner` is outside of `outer`: an absent one has none.
+template <int D, typename Real, std::same_as<Box<D, Real>> Inner>
+constexpr bool contains(const Box<D, Real>& outer, const Inner& inner) noexcept {
+  bool inside = true;
+  for (std::size_t axis = 0; axis < outer.min.size(); ++axis)
+    inside &= outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis];
+  return inside;
+}
+
+/// The smallest box that contains both; exact. One that is absent adds nothing.
+template <int D, typename Real>
+constexpr Box<D, Real> merged(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
+  Box<D, Real> box = a;
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
+    if (b.min[axis] < box.min[axis]) box.min[axis] = b.min[axis];
+    if (b.max[axis] > box.max[axis]) box.max[axis] = b.max[axis];
+  }
+  return box;
+}
+
+/// The box with each side `margin` further out, or further in where that is negative; bounds are rounded to
+/// Real, infinite ones and an absent box stay. `margin` is finite; min may exceed max where it is negative.
+template <int D, typename Real>
+constexpr Box<D, Real> enlarged(Box<D, Real> box, std::type_identity_t<Real> margin) noexcept {
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+/// The box moved by `offset`, which is finite; bounds are rounded to Real, infinite ones and an absent box
+/// stay.
+template <int D, typename Real>
+constexpr Box<D, Real> translated(Box<D, Real> box,
+                                  const std::type_identity_t<Point<D, Real>>& offset) noexcept {
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
+    box.min[axis] += offset[axis];
+    box.max[axis] += offset[axis];
+  }
+  return box;
+}
+
+/// The middle of a present box, rounded to Real: NaN on an axis that is infinite both ways.
+template <int D, typename Real>
+constexpr Point<D, Real> centre(const Box<D, Real>& box) noexcept {
+  Point<D, Real> point{};
+  for (std::size_t axis = 0; axis < point.size(); ++axis) point[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+  return point;
+}
+
+/// The lengths of a present box's sides, rounded to Real.
+template <int D, typename Real>
+constexpr Point<D, Real> extent(const Box<D, Real>& box) noexcept {
+  Point<D, Real> lengths{};
+  for (std::size_t axis = 0; axis < lengths.size(); ++axis) lengths[axis] = box.max[axis] - box.min[axis];
+  return lengths;
 }
 
 /// Boxes where they are: in an array of boxes, or in structs of the caller's own, one every `stride` bytes.

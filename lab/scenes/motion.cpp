@@ -91,10 +91,7 @@ std::vector<MovingBox<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes,
   std::vector<BoxId> finite;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!is_finite(boxes[i])) continue;
-    for (int axis = 0; axis < D; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], boxes[i].min[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], boxes[i].max[axis]);
-    }
+    bounds = merged(bounds, boxes[i]);
     mean += mean_extent(boxes[i]);
     finite.push_back(BoxId(i));
   }

@@ -30,7 +30,7 @@ constexpr std::size_t most_told = 20;
 /// The box enlarged by the margin, in the precision of the file and rounded outward: the rounding of an
 /// engine that enlarges boxes makes no pair stale.
 template <int D, typename Real>
-Box<D, Real> enlarged(const Box<D, Real>& box, double margin) {
+Box<D, Real> enlarged_outward(const Box<D, Real>& box, double margin) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
   Box<D, Real> result;
   for (std::size_t axis = 0; axis < D; ++axis) {
@@ -135,7 +135,7 @@ class RecordedCheck {
         continue;
       }
       if (!std::ranges::binary_search(expected, pair) &&
-          !overlap(enlarged(box(pair.first), margin_), enlarged(box(pair.second), margin_)))
+          !overlap(enlarged_outward(box(pair.first), margin_), enlarged_outward(box(pair.second), margin_)))
         add(Kind::stale, pair, playback);
     }
   }

@@ -1,7 +1,6 @@
 // What experiments measure with: algorithms in turns on a scene, every result checked.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -106,12 +105,7 @@ History<D> history_of(std::string_view scene, const SceneRequest& request) {
 template <int D>
 Box<D> bounds_of(std::span<const Box<D>> boxes) {
   Box<D> bounds = absent_box<D>();
-  for (const Box<D>& box : boxes) {
-    for (int axis = 0; axis < D; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
-    }
-  }
+  for (const Box<D>& box : boxes) bounds = merged(bounds, box);
   return bounds;
 }
 

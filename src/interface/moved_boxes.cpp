@@ -1,8 +1,6 @@
 // The changed boxes of an update as a list of MovedBox.
 #include "interface/moved_boxes.hpp"
 
-#include <algorithm>
-
 #include "core/nan_box.hpp"
 
 namespace broadside::core {
@@ -20,15 +18,9 @@ void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vect
     const bool was = is_present(before);
     const bool is = is_present(now);
     if (!was && !is) continue;
-    // The absent box is a neutral element of a union: +inf for the minimum, -inf for the maximum.
-    Box<D> bounds;
-    for (int axis = 0; axis < D; ++axis) {
-      bounds.min[axis] = std::min(before.min[axis], now.min[axis]);
-      bounds.max[axis] = std::max(before.max[axis], now.max[axis]);
-    }
     moved.push_back({.before = was ? before : nan_box<D>(),
                      .now = is ? now : nan_box<D>(),
-                     .bounds = bounds,
+                     .bounds = merged(before, now),
                      .id = id,
                      .was_present = was,
                      .is_present = is,

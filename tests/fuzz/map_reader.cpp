@@ -1,6 +1,5 @@
 // Fuzzes the reader of maps: whatever the bytes, it reads or refuses them, and what the boxes are of does not
 // change where the map is.
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -41,10 +40,7 @@ DoubleBox2 bounds_of(const Boxes& boxes) {
   for (const DoubleBox2& box : boxes) {
     if (is_absent(box)) continue;
     expect(is_present(box));
-    for (int axis = 0; axis < 2; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
-    }
+    bounds = merged(bounds, box);
   }
   return bounds;
 }

@@ -141,14 +141,6 @@ class WorldModel {
   }
 
  private:
-  static bool contains(const Box<D, Real>& outer, const Box<D, Real>& inner) {
-    if (!is_present(inner)) return true;
-    for (int axis = 0; axis < D; ++axis) {
-      if (outer.min[axis] > inner.min[axis] || outer.max[axis] < inner.max[axis]) return false;
-    }
-    return true;
-  }
-
   bool holds(const Member& a, const Member& b) const {
     return is_present(a.box) && is_present(b.box) && accepts(a.filter, b.filter) &&
            !ignored_.contains({a.handle.slot, b.handle.slot}) &&

@@ -25,17 +25,6 @@ Box<D> box_in(Rng& rng, float world, float size) {
   return box;
 }
 
-/// A box about a point, with the same extent on every axis.
-template <int D>
-Box<D> box_about(const std::array<float, D>& centre, float half_extent) {
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = centre[axis] - half_extent;
-    box.max[axis] = centre[axis] + half_extent;
-  }
-  return box;
-}
-
 template <int D>
 WholeFrame<D> frame_of(const Boxes<D>& boxes) {
   WholeFrame<D> frame;
@@ -98,10 +87,10 @@ class Histories {
       for (std::size_t i = 0; i < count_; i += frame % 3 == 0 ? 1 : 100) move(boxes[i], frame % D, 0.3F);
     });
     add("a large box wanders among small ones", uniform_, 40, [&](int frame, Boxes<D>& boxes) {
-      boxes[0] = box_about<D>(centre(boxes[static_cast<std::size_t>(frame)]), world_ / 3);
+      boxes[0] = Box<D>::around(centre(boxes[static_cast<std::size_t>(frame)]), world_ / 3);
     });
     add("a large box is made small and large again", uniform_, 20, [&](int frame, Boxes<D>& boxes) {
-      boxes[3] = box_about<D>(centre(uniform_[3]), frame % 2 == 0 ? world_ : 0.1F);
+      boxes[3] = Box<D>::around(centre(uniform_[3]), frame % 2 == 0 ? world_ : 0.1F);
     });
     add("all gather at a point and part", uniform_, 24, [&](int frame, Boxes<D>& boxes) {
       const float nearness =
@@ -134,7 +123,8 @@ class Histories {
     });
     add("extents of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += frame % 4 == 0 ? 1 : 10)
-        boxes[i] = box_about<D>(centre(any(rng)), std::pow(10.0F, rng.between(-30, rng.one_in(8) ? 30 : 1)));
+        boxes[i] =
+            Box<D>::around(centre(any(rng)), std::pow(10.0F, rng.between(-30, rng.one_in(8) ? 30 : 1)));
     });
     add("coordinates of every magnitude", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       const float power = frame < 15 ? static_cast<float>(2 * frame) : static_cast<float>(60 - 4 * frame);
@@ -155,10 +145,10 @@ class Histories {
               boxes[i].min[axis] + (uniform_[i].max[axis] - uniform_[i].min[axis]) * (frame == 20 ? 0 : size);
       }
     });
-    add("all at one point, coming and going", Boxes<D>(count_ / 3, box_about<D>({}, 0)), 20,
+    add("all at one point, coming and going", Boxes<D>(count_ / 3, Box<D>::around({}, 0)), 20,
         [&](int frame, Boxes<D>& boxes) {
           for (std::size_t i = 0; i < boxes.size(); i += 1 + rng.below(9))
-            boxes[i] = frame % 5 == 0 ? absent_box<D>() : box_about<D>({}, rng.one_in(9) ? 1.0F : 0.0F);
+            boxes[i] = frame % 5 == 0 ? absent_box<D>() : Box<D>::around({}, rng.one_in(9) ? 1.0F : 0.0F);
         });
     add("infinite boxes come, move and go", uniform_, 30, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += 40) {
@@ -177,7 +167,7 @@ class Histories {
     add("one outlier goes farther and farther", uniform_, 40, [&](int frame, Boxes<D>& boxes) {
       std::array<float, D> place{};
       place.fill(std::pow(8.0F, static_cast<float>(frame)));
-      boxes[5] = box_about<D>(place, 1);
+      boxes[5] = Box<D>::around(place, 1);
     });
   }
 
@@ -186,12 +176,6 @@ class Histories {
  private:
   /// One or two neighbours each, and some large ones.
   Box<D> any(Rng& rng) const { return box_in<D>(rng, world_, rng.one_in(30) ? world_ / 4 : 1.2F); }
-
-  static std::array<float, D> centre(const Box<D>& box) {
-    std::array<float, D> centre;
-    for (int axis = 0; axis < D; ++axis) centre[axis] = box.min[axis] / 2 + box.max[axis] / 2;
-    return centre;
-  }
 
   /// Unit boxes on whole coordinates, which touch their neighbours.
   Boxes<D> lattice() const {

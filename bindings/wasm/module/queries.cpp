@@ -26,14 +26,8 @@ Point<dimension> point_at(std::size_t first) {
 
 /// The box that moves: origin, direction, t_max and half its extent are the question.
 BoxCast<dimension> cast_at() {
-  const Point<dimension> origin = point_at(0);
-  const Point<dimension> half = point_at(2 * dimension + 1);
-  BoxCast<dimension> cast{{origin, origin}, point_at(dimension), question[2 * dimension]};
-  for (int axis = 0; axis < dimension; ++axis) {
-    cast.box.min[axis] -= half[axis];
-    cast.box.max[axis] += half[axis];
-  }
-  return cast;
+  return {Box<dimension>::around(point_at(0), point_at(2 * dimension + 1)), point_at(dimension),
+          question[2 * dimension]};
 }
 
 class KeptIndex {

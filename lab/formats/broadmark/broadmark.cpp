@@ -188,10 +188,7 @@ class BroadmarkWriter final : public FrameWriter<D, float> {
     if (!is_present(box))
       throw FileError(fmt::format(
           "frame {}, box {} is absent; expected every box of an .aabbs file to be there", frame_, index(id)));
-    for (int axis = 0; axis < D; ++axis) {
-      world_.min[axis] = std::min(world_.min[axis], box.min[axis]);
-      world_.max[axis] = std::max(world_.max[axis], box.max[axis]);
-    }
+    world_ = merged(world_, box);
   }
 
   void write_frame() {

@@ -56,13 +56,7 @@ SweptElements SweptMesh::swept(MeshPart part) const {
   SweptElements swept{MeshElements(before_, part), {}};
   swept.boxes = swept.elements.boxes(before_, name_before_);
   const std::vector<DoubleBox3> after = swept.elements.boxes(after_, name_after_);
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    DoubleBox3& box = swept.boxes[i];
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = std::min(box.min[axis], after[i].min[axis]);
-      box.max[axis] = std::max(box.max[axis], after[i].max[axis]);
-    }
-  }
+  for (std::size_t i = 0; i < after.size(); ++i) swept.boxes[i] = merged(swept.boxes[i], after[i]);
   return swept;
 }
 

@@ -9,8 +9,6 @@
 #include <array>
 #include <utility>
 
-#include "interface/encloses.hpp"
-
 namespace broadside::algorithm {
 
 using kernels::fan_out;
@@ -26,16 +24,6 @@ bool touches_border(const Box<D>& bounds, const Box<D>& box) {
   for (int axis = 0; axis < D; ++axis)
     touches |= bounds.min[axis] == box.min[axis] || bounds.max[axis] == box.max[axis];
   return touches;
-}
-
-template <int D>
-Box<D> united(const Box<D>& a, const Box<D>& b) {
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = std::min(a.min[axis], b.min[axis]);
-    box.max[axis] = std::max(a.max[axis], b.max[axis]);
-  }
-  return box;
 }
 
 }  // namespace
@@ -116,7 +104,7 @@ void DynamicBvh<D>::set(BoxId id, const Box<D>& box) {
     const std::uint32_t parent = info_[node].parent;
     if (parent == no_slot) return write(at, box);
     const Box<D> bounds = box_at(parent);
-    if (core::encloses(bounds, box)) {
+    if (contains(bounds, box)) {
       const bool may_shrink = touches_border(bounds, box_at(at));
       write(at, box);
       if (may_shrink) refit_above(node);
@@ -137,7 +125,7 @@ void DynamicBvh<D>::insert(BoxId id, const Box<D>& box) {
   while ((number & leaf_bit) == 0) {
     const std::size_t best = kernels::best_child(nodes_[number], info_[number].count, box);
     const auto into = static_cast<std::uint32_t>(number * fan_out + best);
-    write(into, united(box_at(into), box));
+    write(into, merged(box_at(into), box));
     number = nodes_[number].id[best];
   }
   add_child(number & ~leaf_bit, {box, index(id)});

@@ -12,7 +12,6 @@
 #include "broadside/world.hpp"
 
 #include "core/former_names.hpp"
-#include "interface/encloses.hpp"
 #include "world/snapshot_check.hpp"
 #include "world/snapshot_format.hpp"
 #include "world/snapshot_parts.hpp"
@@ -184,7 +183,7 @@ void World<D, Real>::State::get_slots(ByteReader& in) {
     for (std::uint32_t slot = 0; slot < count; ++slot) {
       const bool is_there = is_present(boxes[slot]);
       expect(is_there == is_present(enlarged[slot]) &&
-                 (!is_there || core::encloses(enlarged[slot], boxes[slot])),
+                 (!is_there || broadside::contains(enlarged[slot], boxes[slot])),
              "a box is not within its enlarged one");
     }
   }

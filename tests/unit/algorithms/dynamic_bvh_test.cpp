@@ -11,7 +11,6 @@
 #include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
-#include "interface/encloses.hpp"
 #include "kernels/bvh_follow.hpp"
 #include "kernels/bvh_query.hpp"
 #include "tests/support/model.hpp"
@@ -35,7 +34,7 @@ std::size_t boxes_below(const DynamicBvh<D>& tree, const std::vector<Box<D>>& bo
     EXPECT_EQ(is_present(box), lane < tree.child_count(number)) << "lane " << lane;
     if (!is_present(box)) continue;
     if (bounds != nullptr) {
-      EXPECT_TRUE(core::encloses(*bounds, box));
+      EXPECT_TRUE(contains(*bounds, box));
     }
     if ((number & kernels::leaf_bit) == 0) {
       count += boxes_below(tree, boxes, node.id[lane], &box);
@@ -161,7 +160,7 @@ TEST(DynamicBvh, TellsWhetherAMoveLeftItsLeafAndMayHaveLeftABorder) {
       const kernels::WritableBvh<D> writable = tree.writable();
       const std::uint32_t parent = writable.info[moved.slot / kernels::fan_out].parent;
       const Box<D> leaf = writable.nodes[parent / kernels::fan_out].box(parent % kernels::fan_out);
-      std::uint8_t expected = core::encloses(leaf, moved.now) ? 0 : kernels::left_leaf;
+      std::uint8_t expected = contains(leaf, moved.now) ? 0 : kernels::left_leaf;
       for (int axis = 0; axis < D; ++axis) {
         if (moved.before.min[axis] == leaf.min[axis] || moved.before.max[axis] == leaf.max[axis])
           expected |= kernels::may_shrink;

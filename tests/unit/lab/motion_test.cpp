@@ -37,12 +37,7 @@ void for_each_frame(const History<D>& history, Check check) {
 template <int D>
 Box<D> bounds_of(const std::vector<Box<D>>& boxes) {
   Box<D> bounds = absent_box<D>();
-  for (const Box<D>& box : boxes) {
-    for (int axis = 0; axis < D; ++axis) {
-      bounds.min[axis] = std::min(bounds.min[axis], box.min[axis]);
-      bounds.max[axis] = std::max(bounds.max[axis], box.max[axis]);
-    }
-  }
+  for (const Box<D>& box : boxes) bounds = merged(bounds, box);
   return bounds;
 }
 
