@@ -7,7 +7,7 @@
 int main() {
   std::vector<broadside::Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{5, 5}, {6, 6}}};
   for (const auto [a, b] : broadside::find_pairs(boxes)) {  // once: boxes 0 and 1 overlap
-    std::printf("%u and %u\n", index(a), index(b));
+    std::printf("%u and %u\n", a, b);
   }
 
   broadside::World2 world;  // or frame after frame, under stable handles

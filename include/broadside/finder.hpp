@@ -49,6 +49,8 @@ class Outlined;
 /// one thread at a time; it may itself use several, which shows in nothing but the time.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC PairFinder {
+  static_assert(detail::SupportedBox<D, Real>::value);
+
  public:
   PairFinder() = default;
   PairFinder(const PairFinder&) = delete;
@@ -73,6 +75,17 @@ class BROADSIDE_PUBLIC PairFinder {
   /// The same for two sets that lie one behind the other: the first `left_count` <= boxes.size() boxes are
   /// the left set. Where none is absent this saves copying them.
   void find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
+
+  /// The same with a function of a Pair, or of a std::span<const Pair>.
+  template <PairCallback Function>
+  void find(BoxView<D, Real> boxes, Function&& function, const PairFilters& filters = {}) {
+    detail::with_sink(function, [&](PairSink& pairs) { find(boxes, pairs, filters); });
+  }
+  template <PairCallback Function>
+  void find_between(BoxView<D, Real> left, BoxView<D, Real> right, Function&& function,
+                    const PairFilters& filters = {}) {
+    detail::with_sink(function, [&](PairSink& pairs) { find_between(left, right, pairs, filters); });
+  }
 
   /// What find() and find_between() do about invalid boxes: they throw, unless set_bad_input() says
   /// otherwise.
@@ -184,6 +197,7 @@ template <typename T>
 struct BoxTraits {};
 
 template <int Dimension, typename Coordinate>
+requires is_supported<Dimension, Coordinate>
 struct BoxTraits<Box<Dimension, Coordinate>> {
   using View = BoxView<Dimension, Coordinate>;
 };
@@ -244,60 +258,150 @@ concept BoxArray = requires {
 template <typename T>
 concept FindOption = std::same_as<T, FindOptions> || std::convertible_to<const T&, std::string_view>;
 
+namespace detail {
+
+template <typename Things, typename Projection>
+using ProjectedBox =
+    std::remove_cvref_t<std::invoke_result_t<Projection&, std::ranges::range_reference_t<const Things>>>;
+
+}  // namespace detail
+
+/// Things that are no boxes themselves.
+template <typename T>
+concept ThingRange = !BoxArray<T> && std::ranges::forward_range<const T>;
+
+/// What gives the box of one of `Things`: a function of a thing, or a pointer to a member.
+template <typename Projection, typename Things>
+concept BoxProjection = std::ranges::forward_range<const Things> && requires {
+  typename detail::BoxTraits<detail::ProjectedBox<Things, Projection>>::View;
+};
+
+namespace detail {
+
+/// The boxes of things.
+template <typename Things, typename Projection>
+std::vector<ProjectedBox<Things, Projection>> boxes_of(const Things& things, Projection& box_of) {
+  std::vector<ProjectedBox<Things, Projection>> boxes;
+  if constexpr (std::ranges::sized_range<const Things>) boxes.reserve(std::ranges::size(things));
+  for (const auto& thing : things) boxes.push_back(std::invoke(box_of, thing));
+  return boxes;
+}
+
+/// The pairs that search(sink) writes.
+template <typename Search>
+std::vector<Pair> collected(const Search& search) {
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs);
+  search(collector);
+  return pairs;
+}
+
+template <typename Right, typename Left>
+concept SameBoxes = std::is_same_v < typename ViewTraits<Left>::View,
+typename ViewTraits<Right>::View > ;
+
+/// What the last overloads of find_pairs() refuse.
+template <typename T, typename... Rest>
+concept NoBoxes = ThingRange<T> && !(BoxProjection<Rest, T> || ...);
+template <typename Right, typename Left>
+concept OtherBoxes = BoxArray<Right> && !SameBoxes<Right, Left>;
+template <typename T>
+concept NoTarget = !BoxArray<T> && !PairTarget<T> && !FindOption<T>;
+
+template <typename>
+inline constexpr bool never = false;
+
+}  // namespace detail
+
 /// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
-/// spec and the boxes.
+/// spec and the boxes. `pairs` is a PairSink, or a function of a Pair or of a std::span<const Pair>; what it
+/// throws ends the search.
 ///
 /// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
 /// first box with a NaN or with min > max, InvalidFrame where there are filters and not one for each box, and
 /// InvalidSpec. Thread-safe. A finder kept from make_finder() saves the memory's allocation when calls are
 /// many.
-template <BoxArray Boxes, FindOption Options = FindOptions>
-void find_pairs(const Boxes& boxes, PairSink& pairs, const Options& options = {}) {
+template <BoxArray Boxes, PairTarget Target, FindOption Options = FindOptions>
+void find_pairs(const Boxes& boxes, Target&& pairs, const Options& options = {}) {
   using View = typename detail::ViewTraits<Boxes>::View;
-  detail::find_pairs(View(boxes), pairs, detail::options_of(options));
+  detail::with_sink(
+      pairs, [&](PairSink& sink) { detail::find_pairs(View(boxes), sink, detail::options_of(options)); });
 }
 
 /// The same pairs in a vector.
 template <BoxArray Boxes, FindOption Options = FindOptions>
 std::vector<Pair> find_pairs(const Boxes& boxes, const Options& options = {}) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  find_pairs(boxes, collector, options);
-  return pairs;
+  return detail::collected([&](PairSink& pairs) { find_pairs(boxes, pairs, options); });
 }
 
 /// Writes every pair of a box of `left` and an overlapping one of `right`, once, and flushes: a pair's first
 /// is a place in `left` and its second one in `right`. The rest as for one array.
-template <BoxArray Left, BoxArray Right, FindOption Options = FindOptions>
-requires std::same_as < typename detail::ViewTraits<Left>::View,
-typename detail::ViewTraits<Right>::View >
-    void find_pairs(const Left& left, const Right& right, PairSink& pairs, const Options& options = {}) {
+template <BoxArray Left, detail::SameBoxes<Left> Right, PairTarget Target, FindOption Options = FindOptions>
+void find_pairs(const Left& left, const Right& right, Target&& pairs, const Options& options = {}) {
   using View = typename detail::ViewTraits<Left>::View;
-  detail::find_pairs(View(left), View(right), pairs, detail::options_of(options));
+  detail::with_sink(pairs, [&](PairSink& sink) {
+    detail::find_pairs(View(left), View(right), sink, detail::options_of(options));
+  });
 }
 
 /// The same pairs in a vector.
-template <BoxArray Left, BoxArray Right, FindOption Options = FindOptions>
-requires std::same_as < typename detail::ViewTraits<Left>::View,
-typename detail::ViewTraits<Right>::View >
-    std::vector<Pair> find_pairs(const Left& left, const Right& right, const Options& options = {}) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  find_pairs(left, right, collector, options);
-  return pairs;
+template <BoxArray Left, detail::SameBoxes<Left> Right, FindOption Options = FindOptions>
+std::vector<Pair> find_pairs(const Left& left, const Right& right, const Options& options = {}) {
+  return detail::collected([&](PairSink& pairs) { find_pairs(left, right, pairs, options); });
 }
 
-/// The pairs of things that have boxes: `box_of(thing)` or `thing.*box_of` is a thing's box. One pass gathers
-/// the boxes.
-template <std::ranges::forward_range Things, typename Projection, FindOption Options = FindOptions>
-requires(!BoxArray<Things>) std::vector<Pair> find_pairs(const Things& things, const Options& options,
-                                                         Projection box_of) {
-  using Box =
-      std::remove_cvref_t<std::invoke_result_t<Projection&, std::ranges::range_reference_t<const Things>>>;
-  std::vector<Box> boxes;
-  if constexpr (std::ranges::sized_range<const Things>) boxes.reserve(std::ranges::size(things));
-  for (const auto& thing : things) boxes.push_back(std::invoke(box_of, thing));
-  return find_pairs(boxes, options);
+/// The pairs of things that have boxes: `box_of(thing)` or `thing.*box_of` is a thing's box, as in
+/// find_pairs(things, &Thing::box). One pass gathers the boxes. The rest as for an array of boxes.
+template <ThingRange Things, BoxProjection<Things> Projection, PairTarget Target,
+          FindOption Options = FindOptions>
+void find_pairs(const Things& things, Projection box_of, Target&& pairs, const Options& options = {}) {
+  find_pairs(detail::boxes_of(things, box_of), pairs, options);
+}
+template <ThingRange Things, BoxProjection<Things> Projection, FindOption Options = FindOptions>
+std::vector<Pair> find_pairs(const Things& things, Projection box_of, const Options& options = {}) {
+  return find_pairs(detail::boxes_of(things, box_of), options);
+}
+
+/// The form of version 0.2, with the options first.
+template <ThingRange Things, BoxProjection<Things> Projection, FindOption Options = FindOptions>
+std::vector<Pair> find_pairs(const Things& things, const Options& options, Projection box_of) {
+  return find_pairs(detail::boxes_of(things, box_of), options);
+}
+
+/// The pairs between two sets of things, or of things and boxes, whose projection is std::identity.
+template <typename Left, typename Right, BoxProjection<Right> RightProjection,
+          BoxProjection<Left> LeftProjection, PairTarget Target, FindOption Options = FindOptions>
+void find_pairs(const Left& left, const Right& right, LeftProjection left_box_of,
+                RightProjection right_box_of, Target&& pairs, const Options& options = {}) {
+  find_pairs(detail::boxes_of(left, left_box_of), detail::boxes_of(right, right_box_of), pairs, options);
+}
+template <typename Left, typename Right, BoxProjection<Right> RightProjection,
+          BoxProjection<Left> LeftProjection, FindOption Options = FindOptions>
+std::vector<Pair> find_pairs(const Left& left, const Right& right, LeftProjection left_box_of,
+                             RightProjection right_box_of, const Options& options = {}) {
+  return find_pairs(detail::boxes_of(left, left_box_of), detail::boxes_of(right, right_box_of), options);
+}
+
+/// Calls that fit none of these, refused in one sentence.
+template <typename... Rest, detail::NoBoxes<Rest...> Things>
+std::vector<Pair> find_pairs(const Things& /*things*/, const Rest&... /*rest*/) {
+  static_assert(detail::never<Things>,
+                "find_pairs() takes an array of boxes (a std::vector, std::span ... of Box<2>, Box<3>, "
+                "DoubleBox2 or DoubleBox3), or things and their boxes: find_pairs(things, &Thing::box)");
+  return {};
+}
+template <BoxArray Left, detail::OtherBoxes<Left> Right, typename... Rest>
+std::vector<Pair> find_pairs(const Left& /*left*/, const Right& /*right*/, const Rest&... /*rest*/) {
+  static_assert(detail::never<Left>,
+                "find_pairs(left, right) takes boxes of one dimension and one type of coordinate");
+  return {};
+}
+template <BoxArray Boxes, detail::NoTarget Target, FindOption... Options>
+std::vector<Pair> find_pairs(const Boxes& /*boxes*/, const Target& /*pairs*/, const Options&... /*options*/) {
+  static_assert(detail::never<Target>,
+                "find_pairs(boxes, pairs) takes as pairs a PairSink, or a function of a Pair or of a "
+                "std::span<const Pair>");
+  return {};
 }
 
 }  // namespace broadside

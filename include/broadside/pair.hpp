@@ -18,10 +18,11 @@ namespace core {
 class FilterSink;
 }  // namespace core
 
-/// A box's place in the array that was handed in, counted from 0.
-enum class BoxId : std::uint32_t {};
+/// A box's place in the array that was handed in, counted from 0. It converts to a number by itself, so that
+/// boxes[id] is that box; a number becomes an id only where that is written: BoxId(number).
+enum BoxId : std::uint32_t {};
 
-/// The array index that `id` stands for.
+/// The number, where a conversion is to be seen or to stop at 32 bits.
 constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
 
 /// Two different boxes; first < second. Where two sets are joined, a box of the left one and a box of the

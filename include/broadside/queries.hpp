@@ -146,6 +146,8 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// the visitor throws.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC BoxIndex {
+  static_assert(detail::SupportedBox<D, Real>::value);
+
  public:
   using Point = broadside::Point<D, Real>;
   using QueryOptions = broadside::QueryOptions<BoxId>;

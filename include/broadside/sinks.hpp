@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -57,17 +59,48 @@ class BROADSIDE_PUBLIC PairCounter final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-/// Calls a function with each chunk of pairs, in the thread that called find().
-class BROADSIDE_PUBLIC PairFunction final : public PairSink {
+/// A function that takes pairs: one Pair, or a std::span<const Pair>, at each call. What it returns is
+/// ignored.
+template <typename Function>
+concept PairCallback = std::invocable<Function&, Pair> || std::invocable<Function&, std::span<const Pair>>;
+
+/// Where pairs go: into a PairSink, or to a function.
+template <typename Target>
+concept PairTarget = std::is_convertible_v < std::remove_reference_t<Target>
+*, PairSink* > || PairCallback<Target>;
+
+/// Calls a function with each pair, or with each chunk of pairs, in the thread that called find(). A sink of
+/// a reference to a function, PairFunction<Function&>, calls the caller's own. Where the function throws, the
+/// search ends and throws the same.
+template <PairCallback Function>
+class PairFunction final : public PairSink {
  public:
-  explicit PairFunction(std::function<void(std::span<const Pair>)> function)
-      : function_(std::move(function)) {}
+  explicit PairFunction(Function function) : function_(std::forward<Function>(function)) {}
 
  private:
-  void consume(std::span<const Pair> pairs) override { function_(pairs); }
+  void consume(std::span<const Pair> pairs) override {
+    if constexpr (std::invocable<Function&, Pair>) {
+      for (const Pair pair : pairs) static_cast<void>(std::invoke(function_, pair));
+    } else {
+      static_cast<void>(std::invoke(function_, pairs));
+    }
+  }
 
-  std::function<void(std::span<const Pair>)> function_;
+  Function function_;
 };
+
+namespace detail {
+/// Calls body(sink) with a sink that the pairs of `target` go to.
+template <PairTarget Target, typename Body>
+void with_sink(Target& target, const Body& body) {
+  if constexpr (std::is_convertible_v<Target*, PairSink*>) {
+    body(static_cast<PairSink&>(target));
+  } else {
+    PairFunction<Target&> sink(target);
+    body(static_cast<PairSink&>(sink));
+  }
+}
+}  // namespace detail
 
 /// One pair's contribution to the hash of a set: the finaliser of MurmurHash3 over its key.
 constexpr std::uint64_t hash(Pair pair) noexcept {

@@ -17,6 +17,7 @@
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
 
 namespace broadside {
 
@@ -98,6 +99,8 @@ class CandidateTracker;
 /// around the algorithm's: O(changed), whatever the number of boxes.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC PairTracker {
+  static_assert(detail::SupportedBox<D, Real>::value);
+
  public:
   PairTracker();
   PairTracker(const PairTracker&) = delete;
@@ -113,6 +116,14 @@ class BROADSIDE_PUBLIC PairTracker {
   /// as not taken: the next update rebuilds, takes every box for changed and delivers the events since the
   /// last whole update.
   void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+
+  /// The same with a function each of a Pair, or of a std::span<const Pair>.
+  template <PairCallback Begun, PairCallback Ended>
+  void update(const Frame<D, Real>& frame, Begun&& begun, Ended&& ended) {
+    PairFunction<Begun&> begun_sink(begun);
+    PairFunction<Ended&> ended_sink(ended);
+    update(frame, begun_sink, ended_sink);
+  }
 
   /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
   /// otherwise.

@@ -207,6 +207,8 @@ struct HandleNeighbour {
 /// moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC World {
+  static_assert(detail::SupportedBox<D, Real>::value);
+
  public:
   /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
   /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite.

@@ -1,6 +1,11 @@
 // find_pairs: one call from boxes to pairs.
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -95,6 +100,97 @@ TEST(FindPairs, TakesBoxesInStructsOfTheCallers) {
   EXPECT_EQ(find_pairs(view, view, "grid").size(), 5U);
   EXPECT_EQ(find_pairs(bodies, "grid", &Body::box), first_two);
   EXPECT_EQ(find_pairs(bodies, FindOptions{}, [](const Body& body) { return body.box; }), first_two);
+}
+
+struct Wall {
+  int name;
+  Box2 box;
+
+  DoubleBox2 wide() const { return {{box.min[0], box.min[1]}, {box.max[0], box.max[1]}}; }
+};
+
+const std::vector<Wall> walls = {{7, {{0, 0}, {2, 2}}}, {8, {{1, 1}, {3, 3}}}, {9, {{9, 9}, {9, 9}}}};
+
+TEST(FindPairs, TakesThingsAndWhatGivesTheirBoxes) {
+  EXPECT_EQ(find_pairs(walls, &Wall::box), first_two);
+  EXPECT_EQ(find_pairs(walls, &Wall::wide), first_two);
+  EXPECT_EQ(find_pairs(walls, &Wall::box, "grid"), first_two);
+  EXPECT_EQ(find_pairs(walls, [](const Wall& wall) { return enlarged(wall.box, 10); }).size(), 3U);
+  std::vector<BoxId> quarantined;
+  EXPECT_EQ(find_pairs(walls, &Wall::box, {.algorithm = "grid", .quarantined = &quarantined}), first_two);
+  PairCounter counter;
+  find_pairs(walls, &Wall::box, counter);
+  EXPECT_EQ(counter.count(), 1U);
+}
+
+TEST(FindPairs, TakesTwoSetsOfThings) {
+  const std::vector<Box2> boxes = {{{9, 9}, {10, 10}}};
+  const std::vector<Pair> last = {{BoxId{2}, BoxId{0}}};
+  EXPECT_EQ(find_pairs(walls, boxes, &Wall::box, std::identity{}), last);
+  EXPECT_EQ(find_pairs(
+                walls, walls, &Wall::box, [](const Wall& wall) { return wall.box; }, "grid")
+                .size(),
+            5U);
+  std::vector<Pair> pairs;
+  find_pairs(walls, boxes, &Wall::box, std::identity{}, [&pairs](Pair pair) { pairs.push_back(pair); });
+  EXPECT_EQ(pairs, last);
+}
+
+TEST(FindPairs, CallsAFunctionOfAPairOrOfAChunk) {
+  const std::vector<Box2> boxes(100, Box2{{0, 0}, {1, 1}});
+  std::vector<Pair> singly;
+  find_pairs(boxes, [&singly](Pair pair) { singly.push_back(pair); });
+  EXPECT_EQ(singly, find_pairs(boxes));
+  std::vector<Pair> in_chunks;
+  const auto add = [&in_chunks](std::span<const Pair> chunk) {
+    in_chunks.insert(in_chunks.end(), chunk.begin(), chunk.end());
+  };
+  find_pairs(boxes, add, {.algorithm = "grid"});
+  EXPECT_EQ(in_chunks, find_pairs(boxes, "grid"));
+  in_chunks.clear();
+  find_pairs(boxes, boxes, add);
+  EXPECT_EQ(in_chunks, find_pairs(boxes, boxes));
+  std::size_t sum = 0;
+  find_pairs(boxes, [&sum](auto pair) { sum += pair.second - pair.first; });
+  EXPECT_EQ(sum, 166'650U);
+}
+
+TEST(FindPairs, CallsTheCallersFunctionAndNoCopy) {
+  struct Count {
+    std::size_t pairs = 0;
+    void operator()(Pair) { ++pairs; }
+  } count;
+  find_pairs(walls, &Wall::box, count);
+  EXPECT_EQ(count.pairs, 1U);
+}
+
+TEST(FindPairs, EndsWhereAFunctionThrows) {
+  const std::vector<Box2> boxes(100, Box2{{0, 0}, {1, 1}});
+  std::size_t calls = 0;
+  const auto third_time = [&calls](Pair) {
+    if (++calls == 3) throw std::runtime_error("enough");
+  };
+  for (const char* const algorithm : {"brute_force", "grid", "bvh:threads=2"}) {
+    calls = 0;
+    EXPECT_THROW(find_pairs(boxes, third_time, algorithm), std::runtime_error) << algorithm;
+    EXPECT_EQ(calls, 3U) << algorithm;
+  }
+  const auto finder = make_finder<2>("grid");
+  EXPECT_THROW(finder->find(boxes, [](Pair) { throw std::runtime_error("enough"); }), std::runtime_error);
+  PairCounter counter;
+  finder->find(boxes, counter);
+  EXPECT_EQ(counter.count(), 4950U) << "a finder that goes on";
+  std::size_t found = 0;
+  finder->find_between(boxes, boxes, [&found](std::span<const Pair> chunk) { found += chunk.size(); });
+  EXPECT_EQ(found, 10'000U);
+}
+
+TEST(BoxId, IsAnIndex) {
+  for (const auto [a, b] : find_pairs(walls, &Wall::box)) {
+    EXPECT_EQ(walls[a].name, 7);
+    EXPECT_EQ(walls[b].name, 8);
+  }
+  static_assert(!std::is_convertible_v<std::uint32_t, BoxId>, "a number is no id");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -258,6 +259,24 @@ TEST(DiffTracker, PassesOnTheCountsOfItsFinder) {
 TEST(DiffTracker, RefusesANullFinder) {
   EXPECT_EQ(message_of<std::invalid_argument>([] { DiffTracker<2>(nullptr); }),
             "DiffTracker was given a null finder; expected a finder");
+}
+
+TEST(PairTracker, TellsFunctionsWhatBeganAndEnded) {
+  const auto tracker = make_tracker<2>("grid");
+  std::vector<Box2> boxes(3, Box2{{0, 0}, {1, 1}});
+  std::vector<Pair> begun;
+  std::size_t ended = 0;
+  const auto add = [&begun](Pair pair) { begun.push_back(pair); };
+  const auto count = [&ended](std::span<const Pair> chunk) { ended += chunk.size(); };
+  tracker->update({.boxes = boxes}, add, count);
+  EXPECT_EQ(begun, find_pairs(boxes, "brute_force"));
+  boxes[2] = absent_box<2>();
+  const std::vector<BoxId> changed = {BoxId(2)};
+  const auto fail = [](Pair) { throw std::runtime_error("full"); };
+  EXPECT_THROW(tracker->update({.boxes = boxes, .changed = changed}, add, fail), std::runtime_error);
+  EXPECT_EQ(ended, 0U);
+  tracker->update({.boxes = boxes}, add, count);
+  EXPECT_EQ(ended, 2U) << "the events since the last whole update";
 }
 
 }  // namespace
