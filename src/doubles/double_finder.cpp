@@ -113,8 +113,8 @@ Outline<D, double> DoubleFinder<D>::lay_out(std::span<const Box<D, double>> boxe
   finder_->set_workers(this->workers());
   const Outline<D> laid_out = outline(*finder_, floats);
   Outline<D, double> outline{laid_out.kind, laid_out.caption, laid_out.swept_axis, {}};
-  for (const std::vector<Box<D>>& level : laid_out.levels) {
-    std::vector<Box<D, double>>& parts = outline.levels.emplace_back(level.size());
+  for (const auto& level : laid_out.levels) {
+    auto& parts = outline.levels.emplace_back(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
       for (int axis = 0; axis < D; ++axis) {
         parts[i].min[axis] = fit[axis].back(level[i].min[axis]);

@@ -134,7 +134,7 @@ class Bvh final : public PairFinder<D>,
     Outline<D> outline;
     outline.kind = "nodes";
     for (std::size_t level = tree.level_count; level-- > 1;) {
-      std::vector<Box<D>>& bounds = outline.levels.emplace_back();
+      auto& bounds = outline.levels.emplace_back();
       for (std::size_t place = 0; place < tree.levels[level].size; ++place) {
         Box<D> node;
         for (int axis = 0; axis < D; ++axis) {
