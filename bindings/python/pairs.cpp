@@ -19,7 +19,7 @@ std::vector<Pair> found(const Search& search, bool sorts) {
     std::vector<Pair> pairs;
     Collector collector(pairs, released);
     search.run(collector, released);
-    if (sorts) std::ranges::sort(pairs);
+    if (sorts) sort_for(released, pairs);
     return pairs;
   });
 }

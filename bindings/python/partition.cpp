@@ -165,7 +165,7 @@ class PartitionOf final : public AnyPartition {
     PartPairs part_pairs(left, search.other ? right : left, collector);
     search.run(part_pairs, released);
     collector.flush();
-    if (sorts) std::ranges::sort(pairs);
+    if (sorts) sort_for(released, pairs);
     return pairs;
   }
 

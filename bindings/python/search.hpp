@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,13 @@ class Collector final : public PairSink {
   WithoutGil& released_;
   unsigned chunks_ = 0;
 };
+
+/// Sorts pairs, and asks for signals now and then.
+inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
+  const std::function<void()> ask = [&released] { released.check_signals(); };
+  Checkpoint checkpoint(ask);
+  sort_pairs(pairs, checkpoint);
+}
 
 /// What is searched, and how.
 struct Search {

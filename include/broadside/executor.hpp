@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -60,12 +61,34 @@ struct Workers {
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 
-  /// Called now and then in a search, by the thread that called find() or update(): before each piece of the
-  /// search that this thread takes. Pieces are of about a thousand boxes, those of `quadtree` of up to
-  /// 16,384; sorting and building have none, nor have algorithms without the tunable `threads`, and an
-  /// executor that leaves the calling thread out leaves it none. What it throws ends the search and is thrown
-  /// by that function. If it is empty, a search of one thread runs through.
+  /// Called now and then in a search, by the thread that called find() or update(): after every few million
+  /// pairs of boxes compared (see Checkpoint), and while it waits for other threads. Sorting and building
+  /// have none, and an executor that leaves the calling thread out leaves it none. What it throws ends the
+  /// search and is thrown by that function. If it is empty, a search of one thread runs through.
   std::function<void()> checkpoint{};
+};
+
+/// Calls a checkpoint in time, for algorithms: once for each few million pairs of boxes compared, wherever
+/// these stand. For one thread.
+class BROADSIDE_PUBLIC Checkpoint {
+ public:
+  /// The most pairs that are compared between two calls, beside those of a few boxes with all others.
+  static constexpr std::uint64_t max_tests = std::uint64_t{1} << 22;
+
+  /// `call`, which may be empty, must outlive it.
+  explicit Checkpoint(const std::function<void()>& call) noexcept : call_(&call) {}
+
+  /// Says that so many more pairs were compared. Throws what the checkpoint throws.
+  void count(std::uint64_t tests) {
+    tests_ += tests;
+    if (tests_ >= max_tests) pass();
+  }
+
+ private:
+  void pass();
+
+  const std::function<void()>* call_;
+  std::uint64_t tests_ = 0;
 };
 
 /// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or

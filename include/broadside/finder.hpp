@@ -142,7 +142,8 @@ class BROADSIDE_PUBLIC PairFinder {
   friend class PairFinder;
 
   /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
-  /// places in `boxes`. No need to flush.
+  /// places in `boxes`. No need to flush. Where `boxes` are the caller's own array, another thread may write
+  /// to it, against the rules: what is read twice may differ, and must not lead out of memory.
   virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
 
   /// find_between() for boxes that are all present.

@@ -14,6 +14,8 @@
 #include "broadside/export.hpp"
 
 namespace broadside {
+class Checkpoint;
+
 namespace core {
 class FilterSink;
 }  // namespace core
@@ -54,6 +56,10 @@ inline void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   if (pairs.size() > detail::max_compared_pairs) scratch.resize(pairs.size());
   if (detail::sort_pairs(pairs, scratch)) pairs.swap(scratch);
 }
+
+/// The same in place, by comparison, so that very many can be sorted that a caller may want to leave: tells
+/// `checkpoint` (executor.hpp) of the comparisons. Throws what it throws; the order is then unspecified.
+BROADSIDE_PUBLIC void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint);
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
 ///

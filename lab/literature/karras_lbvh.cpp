@@ -116,7 +116,9 @@ class KarrasLbvh final : public PairFinder<D> {
       if (leaves > 0) search_from_left(curve, boxes.first(left), pairs);
       return;
     }
-    for (std::size_t i = 0; i + 1 < leaves; ++i) search(leaf_boxes_[i], ids_[i], i + 1, pairs);
+    Checkpoint checkpoint(this->workers().checkpoint);
+    for (std::size_t i = 0; i + 1 < leaves; ++i)
+      checkpoint.count(search(leaf_boxes_[i], ids_[i], i + 1, pairs));
   }
 
   /// The leaves: `boxes` from `begin` to `end` in the order of their codes.
@@ -206,14 +208,17 @@ class KarrasLbvh final : public PairFinder<D> {
     }
   }
 
-  /// Writes the pairs of `box` with the leaves from the place `first` on.
-  void search(const Box<D>& box, BoxId id, std::size_t first, PairSink& pairs) const {
+  /// Writes the pairs of `box` with the leaves from the place `first` on. Returns how many bounds it was
+  /// compared with.
+  std::uint64_t search(const Box<D>& box, BoxId id, std::size_t first, PairSink& pairs) const {
     std::array<std::uint32_t, most_levels + 1> stack;
+    std::uint64_t compared = 0;
     std::size_t depth = 0;
     std::uint32_t place = 0;
     for (;;) {
       const Node& node = nodes_[place];
       std::uint32_t next = leaf_bit;
+      compared += 2;
       for (std::size_t side = 0; side < 2; ++side) {
         if (node.last[side] < first || !overlap(box, node.bounds[side])) continue;
         const std::uint32_t child = node.children[side];
@@ -230,7 +235,7 @@ class KarrasLbvh final : public PairFinder<D> {
       else if (depth > 0)
         place = stack[--depth];
       else
-        return;
+        return compared;
     }
   }
 
@@ -238,10 +243,11 @@ class KarrasLbvh final : public PairFinder<D> {
     const auto entries = left_sorter_.entries(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       entries[i] = {static_cast<Key>(curve.code(boxes[i])), static_cast<std::uint32_t>(i)};
+    Checkpoint checkpoint(this->workers().checkpoint);
     for (const auto& entry : left_sorter_.sort()) {
       const Box<D>& box = boxes[entry.place];
       if (codes_.size() > 1)
-        search(box, BoxId{entry.place}, 0, pairs);
+        checkpoint.count(search(box, BoxId{entry.place}, 0, pairs));
       else if (overlap(box, leaf_boxes_[0]))
         pairs.add(BoxId{entry.place}, ids_[0]);
     }

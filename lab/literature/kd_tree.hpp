@@ -80,8 +80,8 @@ class KdTree {
 
   /// Writes the pairs of which at least one box has a flag. With `across`, those of which exactly one has.
   void search(std::span<const Box<D>> boxes, std::span<const std::uint8_t> flags, bool across,
-              PairSink& pairs) {
-    search_ = {boxes, flags, across, &pairs};
+              Checkpoint& checkpoint, PairSink& pairs) {
+    search_ = {boxes, flags, across, &checkpoint, &pairs};
     count_flagged(root);
     for (std::vector<std::uint32_t>& list : above_) list.clear();
     search_below(root);
@@ -118,6 +118,7 @@ class KdTree {
     std::span<const Box<D>> boxes;
     std::span<const std::uint8_t> flags;
     bool across = false;
+    Checkpoint* checkpoint = nullptr;
     PairSink* pairs = nullptr;
   };
 
@@ -305,14 +306,16 @@ class KdTree {
       sort(here_[flag], axis, sorted_here_[flag]);
       sort(above_[flag], axis, sorted_above_[flag]);
     }
+    Checkpoint& checkpoint = *search_.checkpoint;
+    checkpoint.count(above_[0].size() + above_[1].size());
     PairSink& pairs = *search_.pairs;
     if (!search_.across) {
-      sweep(sorted_here_[1], pairs);
-      sweep(sorted_here_[1], sorted_above_[1], pairs);
+      sweep(sorted_here_[1], checkpoint, pairs);
+      sweep(sorted_here_[1], sorted_above_[1], checkpoint, pairs);
     }
-    sweep(sorted_here_[1], sorted_here_[0], pairs);
-    sweep(sorted_here_[1], sorted_above_[0], pairs);
-    sweep(sorted_here_[0], sorted_above_[1], pairs);
+    sweep(sorted_here_[1], sorted_here_[0], checkpoint, pairs);
+    sweep(sorted_here_[1], sorted_above_[0], checkpoint, pairs);
+    sweep(sorted_here_[0], sorted_above_[1], checkpoint, pairs);
   }
 
   void sort(std::span<const std::uint32_t> ids, int axis, SortedBoxes<D>& sorted) {

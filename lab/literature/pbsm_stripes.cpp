@@ -82,14 +82,16 @@ class PbsmStripes final : public PairFinder<D> {
     const auto most = static_cast<double>(boxes.size());
     stripes_ = extent.cut(finite ? static_cast<std::size_t>(std::min(stripes, most)) : 1);
 
+    Checkpoint checkpoint(this->workers().checkpoint);
     if (left == 0) {
       partition(boxes, 0, boxes.size(), left_);
-      for (std::size_t stripe = 0; stripe < stripes_.cells; ++stripe) join(left_.run(stripe), pairs);
+      for (std::size_t stripe = 0; stripe < stripes_.cells; ++stripe)
+        join(left_.run(stripe), checkpoint, pairs);
     } else {
       partition(boxes, 0, left, left_);
       partition(boxes, left, boxes.size(), right_);
       for (std::size_t stripe = 0; stripe < stripes_.cells; ++stripe)
-        join(left_.run(stripe), right_.run(stripe), pairs);
+        join(left_.run(stripe), right_.run(stripe), checkpoint, pairs);
     }
   }
 
@@ -194,28 +196,34 @@ class PbsmStripes final : public PairFinder<D> {
     return touching;
   }
 
-  static void join(Run run, PairSink& pairs) {
+  static void join(Run run, Checkpoint& checkpoint, PairSink& pairs) {
     for (auto a = run.begin(); a != run.end(); ++a) {
-      for (auto b = a + 1; b != run.end() && b->begin <= a->end; ++b) {
+      auto b = a + 1;
+      for (; b != run.end() && b->begin <= a->end; ++b) {
         if (meets(*a, *b)) pairs.add(BoxId{a->id}, BoxId{b->id});
       }
+      checkpoint.count(static_cast<std::uint64_t>(b - a));
     }
   }
 
   /// The forward scan: whichever set's next box begins first is held against the other set's from there on.
-  static void join(Run left, Run right, PairSink& pairs) {
+  static void join(Run left, Run right, Checkpoint& checkpoint, PairSink& pairs) {
     auto a = left.begin();
     auto b = right.begin();
     while (a != left.end() && b != right.end()) {
       if (a->begin <= b->begin) {
-        for (auto other = b; other != right.end() && other->begin <= a->end; ++other) {
+        auto other = b;
+        for (; other != right.end() && other->begin <= a->end; ++other) {
           if (meets(*a, *other)) pairs.add(BoxId{a->id}, BoxId{other->id});
         }
+        checkpoint.count(static_cast<std::uint64_t>(other - b) + 1);
         ++a;
       } else {
-        for (auto other = a; other != left.end() && other->begin <= b->end; ++other) {
+        auto other = a;
+        for (; other != left.end() && other->begin <= b->end; ++other) {
           if (meets(*other, *b)) pairs.add(BoxId{other->id}, BoxId{b->id});
         }
+        checkpoint.count(static_cast<std::uint64_t>(other - a) + 1);
         ++b;
       }
     }

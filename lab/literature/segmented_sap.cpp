@@ -45,9 +45,10 @@ class SegmentedSap final : public PairFinder<D> {
     const Regions<D> regions(boxes, static_cast<double>(boxes.size()) / boxes_a_region_);
     file(boxes, regions);
     const std::size_t left = this->left_count();
+    Checkpoint checkpoint(this->workers().checkpoint);
     for (std::size_t region = 0; region + 1 < begins_.size(); ++region)
       sweep(std::span<const Member>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
-            left, pairs);
+            left, checkpoint, pairs);
   }
 
   /// The members of each region, in the order of their minima on the first axis.
@@ -73,13 +74,16 @@ class SegmentedSap final : public PairFinder<D> {
     begins_.pop_back();
   }
 
-  static void sweep(std::span<const Member> members, std::size_t left, PairSink& pairs) {
+  static void sweep(std::span<const Member> members, std::size_t left, Checkpoint& checkpoint,
+                    PairSink& pairs) {
     for (auto a = members.begin(); a != members.end(); ++a) {
-      for (auto b = a + 1; b != members.end() && b->box.min[0] <= a->box.max[0]; ++b) {
+      auto b = a + 1;
+      for (; b != members.end() && b->box.min[0] <= a->box.max[0]; ++b) {
         if ((a->begins_before & b->begins_before) == 0 && overlap(a->box, b->box) &&
             (left == 0 || (a->id < left) != (b->id < left)))
           pairs.add(BoxId{a->id}, BoxId{b->id});
       }
+      checkpoint.count(static_cast<std::uint64_t>(b - a));
     }
   }
 
@@ -115,7 +119,9 @@ class SegmentedSapTracker final : public PairTracker<D> {
   void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || needs_new_regions(change)) build(change);
     load_ = load_after(change);
+    Checkpoint checkpoint(this->workers().checkpoint);
     const auto look_at = [&](std::uint32_t a, std::uint32_t b) {
+      checkpoint.count(1);
       change.report(BoxId{a}, BoxId{b}, begun, ended);
     };
     in_batch_.resize(change.now.size());

@@ -43,7 +43,8 @@ class SerpaKdTree final : public PairFinder<D> {
     // A flag for the boxes of the left set.
     is_left_.assign(this->left_count(), 1);
     if (!is_left_.empty()) is_left_.resize(boxes.size());
-    tree_.search(boxes, is_left_, !is_left_.empty(), pairs);
+    Checkpoint checkpoint(this->workers().checkpoint);
+    tree_.search(boxes, is_left_, !is_left_.empty(), checkpoint, pairs);
   }
 
   KdTree<D> tree_;
@@ -75,7 +76,8 @@ class SerpaKdTracker final : public peers::PeerTracker<D> {
   }
 
   void collide(const Change<D>& change, PairSink& pairs) override {
-    tree_.search(change.now, change.flags, false, pairs);
+    Checkpoint checkpoint(this->workers().checkpoint);
+    tree_.search(change.now, change.flags, false, checkpoint, pairs);
   }
 
   KdTree<D> tree_;

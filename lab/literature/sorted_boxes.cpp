@@ -22,7 +22,7 @@ static_assert(hn::MaxLanes(Floats()) <= SortedBoxes<2>::read_ahead);
 /// Writes the pairs of `box` at `place` with those of `others` that begin from `first` on and before it ends.
 template <int D>
 HWY_INLINE void scan(const SortedBoxes<D>& boxes, std::size_t place, const SortedBoxes<D>& others,
-                     std::size_t first, PairSink& pairs) {
+                     std::size_t first, Checkpoint& checkpoint, PairSink& pairs) {
   const std::int32_t end = boxes.end()[place];
   if (others.begin()[first] > end) return;
   constexpr Floats floats;
@@ -46,39 +46,47 @@ HWY_INLINE void scan(const SortedBoxes<D>& boxes, std::size_t place, const Sorte
     hn::StoreMaskBits(floats, hit, bits.data());
     for (unsigned set = bits[0]; set != 0; set &= set - 1)
       pairs.add(id, others.ids()[at + static_cast<std::size_t>(std::countr_zero(set))]);
-    if (others.begin()[at + hn::Lanes(floats)] > end) return;
+    if (others.begin()[at + hn::Lanes(floats)] > end) return checkpoint.count(at + hn::Lanes(floats) - first);
   }
 }
 
 template <int D>
-HWY_INLINE void sweep_one(const SortedBoxes<D>& boxes, PairSink& pairs) {
-  for (std::size_t i = 0; i + 1 < boxes.size(); ++i) scan(boxes, i, boxes, i + 1, pairs);
+HWY_INLINE void sweep_one(const SortedBoxes<D>& boxes, Checkpoint& checkpoint, PairSink& pairs) {
+  for (std::size_t i = 0; i + 1 < boxes.size(); ++i) scan(boxes, i, boxes, i + 1, checkpoint, pairs);
 }
 
 /// The pairs in which the box of `others` begins with or after that of `boxes`, or only after it.
 template <int D, bool OnlyAfter>
-HWY_INLINE void sweep_across(const SortedBoxes<D>& boxes, const SortedBoxes<D>& others, PairSink& pairs) {
+HWY_INLINE void sweep_across(const SortedBoxes<D>& boxes, const SortedBoxes<D>& others,
+                             Checkpoint& checkpoint, PairSink& pairs) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < boxes.size() && first < others.size(); ++i) {
     const std::int32_t begin = boxes.begin()[i];
     while (OnlyAfter ? others.begin()[first] <= begin : others.begin()[first] < begin) ++first;
-    scan(boxes, i, others, first, pairs);
+    scan(boxes, i, others, first, checkpoint, pairs);
   }
 }
 
 template <int D>
-HWY_INLINE void sweep_two(const SortedBoxes<D>& left, const SortedBoxes<D>& right, PairSink& pairs) {
-  sweep_across<D, false>(left, right, pairs);
-  sweep_across<D, true>(right, left, pairs);
+HWY_INLINE void sweep_two(const SortedBoxes<D>& left, const SortedBoxes<D>& right, Checkpoint& checkpoint,
+                          PairSink& pairs) {
+  sweep_across<D, false>(left, right, checkpoint, pairs);
+  sweep_across<D, true>(right, left, checkpoint, pairs);
 }
 
-void sweep_one_2(const SortedBoxes<2>& boxes, PairSink& pairs) { sweep_one(boxes, pairs); }
-void sweep_one_3(const SortedBoxes<3>& boxes, PairSink& pairs) { sweep_one(boxes, pairs); }
-void sweep_two_2(const SortedBoxes<2>& left, const SortedBoxes<2>& right, PairSink& pairs) {
-  sweep_two(left, right, pairs);
+void sweep_one_2(const SortedBoxes<2>& boxes, Checkpoint& checkpoint, PairSink& pairs) {
+  sweep_one(boxes, checkpoint, pairs);
 }
-void sweep_two_3(const SortedBoxes<3>& left, const SortedBoxes<3>& right, PairSink& pairs) {
-  sweep_two(left, right, pairs);
+void sweep_one_3(const SortedBoxes<3>& boxes, Checkpoint& checkpoint, PairSink& pairs) {
+  sweep_one(boxes, checkpoint, pairs);
+}
+void sweep_two_2(const SortedBoxes<2>& left, const SortedBoxes<2>& right, Checkpoint& checkpoint,
+                 PairSink& pairs) {
+  sweep_two(left, right, checkpoint, pairs);
+}
+void sweep_two_3(const SortedBoxes<3>& left, const SortedBoxes<3>& right, Checkpoint& checkpoint,
+                 PairSink& pairs) {
+  sweep_two(left, right, checkpoint, pairs);
 }
 
 }  // namespace
@@ -94,23 +102,23 @@ HWY_EXPORT(sweep_two_2);
 HWY_EXPORT(sweep_two_3);
 
 template <>
-void sweep(const SortedBoxes<2>& boxes, PairSink& pairs) {
-  HWY_DYNAMIC_DISPATCH(sweep_one_2)(boxes, pairs);
+void sweep(const SortedBoxes<2>& boxes, Checkpoint& checkpoint, PairSink& pairs) {
+  HWY_DYNAMIC_DISPATCH(sweep_one_2)(boxes, checkpoint, pairs);
 }
 
 template <>
-void sweep(const SortedBoxes<3>& boxes, PairSink& pairs) {
-  HWY_DYNAMIC_DISPATCH(sweep_one_3)(boxes, pairs);
+void sweep(const SortedBoxes<3>& boxes, Checkpoint& checkpoint, PairSink& pairs) {
+  HWY_DYNAMIC_DISPATCH(sweep_one_3)(boxes, checkpoint, pairs);
 }
 
 template <>
-void sweep(const SortedBoxes<2>& left, const SortedBoxes<2>& right, PairSink& pairs) {
-  HWY_DYNAMIC_DISPATCH(sweep_two_2)(left, right, pairs);
+void sweep(const SortedBoxes<2>& left, const SortedBoxes<2>& right, Checkpoint& checkpoint, PairSink& pairs) {
+  HWY_DYNAMIC_DISPATCH(sweep_two_2)(left, right, checkpoint, pairs);
 }
 
 template <>
-void sweep(const SortedBoxes<3>& left, const SortedBoxes<3>& right, PairSink& pairs) {
-  HWY_DYNAMIC_DISPATCH(sweep_two_3)(left, right, pairs);
+void sweep(const SortedBoxes<3>& left, const SortedBoxes<3>& right, Checkpoint& checkpoint, PairSink& pairs) {
+  HWY_DYNAMIC_DISPATCH(sweep_two_3)(left, right, checkpoint, pairs);
 }
 
 }  // namespace broadside::lab::literature

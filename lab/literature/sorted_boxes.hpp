@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 
 #include "lab/literature/radix_sort.hpp"
@@ -67,13 +68,13 @@ class SortedBoxes {
   std::vector<BoxId> ids_;
 };
 
-/// Writes each overlapping pair of `boxes` once.
+/// Writes each overlapping pair of `boxes` once, and tells the checkpoint.
 template <int D>
-void sweep(const SortedBoxes<D>& boxes, PairSink& pairs);
+void sweep(const SortedBoxes<D>& boxes, Checkpoint& checkpoint, PairSink& pairs);
 
 /// Writes each pair of a box of `left` and an overlapping one of `right` once. Both must have the same sweep
 /// axis.
 template <int D>
-void sweep(const SortedBoxes<D>& left, const SortedBoxes<D>& right, PairSink& pairs);
+void sweep(const SortedBoxes<D>& left, const SortedBoxes<D>& right, Checkpoint& checkpoint, PairSink& pairs);
 
 }  // namespace broadside::lab::literature

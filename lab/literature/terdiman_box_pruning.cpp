@@ -115,18 +115,21 @@ class TerdimanBoxPruning final : public PairFinder<D> {
   void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
     const int axis = axis_ >= 0 ? axis_ : widest_axis(boxes);
     const std::size_t left_count = this->left_count();
+    Checkpoint checkpoint(this->workers().checkpoint);
     left_.fill(boxes, 0, left_count == 0 ? boxes.size() : left_count, axis);
     if (left_count > 0) {
       right_.fill(boxes, left_count, boxes.size(), axis);
       for (std::size_t i = 0; i < bucket_count<D>; ++i) {
         for (std::size_t j = 0; j < bucket_count<D>; ++j) {
-          if (overlap(left_.bounds[i], right_.bounds[j])) sweep(left_.sorted[i], right_.sorted[j], pairs);
+          if (overlap(left_.bounds[i], right_.bounds[j]))
+            sweep(left_.sorted[i], right_.sorted[j], checkpoint, pairs);
         }
       }
       return;
     }
-    for (const SortedBoxes<D>& bucket : left_.sorted) sweep(bucket, pairs);
-    for (std::size_t i = 0; i < crossing<D>; ++i) sweep(left_.sorted[i], left_.sorted[crossing<D>], pairs);
+    for (const SortedBoxes<D>& bucket : left_.sorted) sweep(bucket, checkpoint, pairs);
+    for (std::size_t i = 0; i < crossing<D>; ++i)
+      sweep(left_.sorted[i], left_.sorted[crossing<D>], checkpoint, pairs);
   }
 
   static int widest_axis(std::span<const Box<D>> boxes) {

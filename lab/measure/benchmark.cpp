@@ -18,8 +18,12 @@
 namespace broadside::lab {
 
 void Watch::at(std::string_view what) const {
-  if (stop && stop()) throw Stopped();
+  ask();
   if (progress) progress(what);
+}
+
+void Watch::ask() const {
+  if (stop && stop()) throw Stopped();
 }
 
 Measurement measurement_of(const Entry& entry) {

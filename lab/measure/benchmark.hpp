@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "broadside/executor.hpp"
+
 #include "lab/catalogue.hpp"
 #include "lab/measure/measurement.hpp"
 #include "lab/measure/memory.hpp"
@@ -25,14 +27,31 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "the comparison was stopped"; }
 };
 
-/// Watches a comparison while it runs. Both are called between samples, in the caller's thread.
+/// Watches a comparison while it runs. Both are called between samples, and `stop` also within searches that
+/// are not timed or are long, in the caller's thread.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
   std::function<void(std::string_view what)> progress{};  ///< called with the current step; empty: not called
 
   /// Reports and asks. Throws Stopped.
   void at(std::string_view what) const;
+
+  /// Has a finder or a tracker ask on its way through a search, which then throws Stopped; or, if `asks` is
+  /// false, run undisturbed. This must outlive its searches.
+  template <typename Searching>
+  void ask_within(Searching& searching, bool asks = true) const {
+    Workers workers = searching.workers();
+    workers.checkpoint = nullptr;
+    if (asks && stop) workers.checkpoint = [this] { ask(); };
+    searching.set_workers(workers);
+  }
+
+  /// Throws Stopped if it should.
+  void ask() const;
 };
+
+/// A timed call that takes no longer does not ask whether to stop: it runs as it would by itself.
+inline constexpr double least_asking_ms = 500;
 
 /// Everything a case is measured with except its boxes.
 struct Benchmark {

@@ -87,10 +87,14 @@ double tests_by_definition(const History<D, Real>& history) {
 }
 
 template <int D, typename Real>
-ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history) {
+ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history,
+                               const std::function<void()>& asks) {
   if (reference.is_definition()) return events_by_definition(history);
   ExpectedEvents expected;
   DiffTracker<D, Real> tracker(reference.finder<D, Real>());
+  Workers workers = tracker.workers();
+  workers.checkpoint = asks;
+  tracker.set_workers(workers);
   std::vector<Pair> pairs;
   replay(history, [&](const Frame<D, Real>& frame) {
     Events events;
@@ -140,10 +144,12 @@ template double tests_by_definition(const History<2>&);
 template double tests_by_definition(const History<3>&);
 template double tests_by_definition(const History<2, double>&);
 template double tests_by_definition(const History<3, double>&);
-template ExpectedEvents expected_events(const Reference&, const History<2>&);
-template ExpectedEvents expected_events(const Reference&, const History<3>&);
-template ExpectedEvents expected_events(const Reference&, const History<2, double>&);
-template ExpectedEvents expected_events(const Reference&, const History<3, double>&);
+template ExpectedEvents expected_events(const Reference&, const History<2>&, const std::function<void()>&);
+template ExpectedEvents expected_events(const Reference&, const History<3>&, const std::function<void()>&);
+template ExpectedEvents expected_events(const Reference&, const History<2, double>&,
+                                        const std::function<void()>&);
+template ExpectedEvents expected_events(const Reference&, const History<3, double>&,
+                                        const std::function<void()>&);
 template std::string difference<2, float>(const Events&, const Events&, std::string_view, std::size_t,
                                           BoxSpan<2, float>);
 template std::string difference<3, float>(const Events&, const Events&, std::string_view, std::size_t,

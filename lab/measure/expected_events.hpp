@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,7 +35,8 @@ double tests_by_definition(const History<D, Real>& history);
 /// to the next, or those of a DiffTracker over the reference's finder, whose pairs are sampled in every
 /// frame, each time those of other boxes.
 template <int D, typename Real>
-ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history);
+ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history,
+                               const std::function<void()>& asks = {});
 
 /// Hashes the events of frame after frame: the same for any order within a frame, different for another
 /// frame, and for a pair that ends instead of beginning.

@@ -94,6 +94,7 @@ class FindCase {
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
       const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
+      benchmark_.watch.ask_within(*finder);
       const double first = call(*finder, some);
       // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
       // call takes memory.
@@ -127,7 +128,9 @@ class FindCase {
     attempt(measurement, [&] {
       const AllocationMeter meter;
       participant.finder = make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
-      call(*participant.finder, boxes_of(0));
+      benchmark_.watch.ask_within(*participant.finder);
+      const double first = call(*participant.finder, boxes_of(0));
+      benchmark_.watch.ask_within(*participant.finder, first >= least_asking_ms);
       count_memory(measurement, *participant.entry->algorithm, meter.read());
       measurement.pairs = pairs_.size();
       measurement.pair_hash = hash_of(pairs_);
@@ -221,7 +224,7 @@ class FindCase {
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
-    std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input));
+    std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input), [this] { benchmark_.watch.ask(); });
     ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
     if (!reference.is_definition()) {
       if (auto divergence = check_sample<D, Real>(boxes_of(input), pairs))

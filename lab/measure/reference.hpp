@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -36,9 +37,10 @@ class Reference {
   /// The algorithm that they come from; null if it is the definition.
   const Algorithm* algorithm() const noexcept { return algorithm_; }
 
-  /// The expected pairs, sorted. Nothing but the definition can be relied on before check_sample().
+  /// The expected pairs, sorted. Nothing but the definition can be relied on before check_sample(). Searching
+  /// and sorting pass the checkpoint.
   template <int D, typename Real = float>
-  std::vector<Pair> pairs(BoxSpan<D, Real> boxes) const;
+  std::vector<Pair> pairs(BoxSpan<D, Real> boxes, const std::function<void()>& checkpoint = {}) const;
 
   /// A finder of the expected pairs; null if they come from the definition.
   template <int D, typename Real = float>

@@ -40,7 +40,8 @@ struct TrackParticipant {
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
   std::size_t most_rounds = no_limit;
-  bool plays = false;  // in the pass that is going on
+  bool plays = false;    // in the pass that is going on
+  bool is_long = false;  // some of its frames are
 };
 
 template <int D, typename Real>
@@ -107,6 +108,7 @@ class TrackCase {
     for (int attempt = 0; attempt < 3; ++attempt) {
       if (attempt > 0 && least > is_short) break;
       const auto tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
+      benchmark_.watch.ask_within(*tracker);
       std::vector<Box<D, Real>> boxes = history.boxes;
       const double first = update(*tracker, {boxes, {}});
       double others = 0;
@@ -205,11 +207,14 @@ class TrackCase {
     if (!expected.fault.empty()) return expected.fault;
     touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
     const auto make_and_update = [&] {
-      if (!participant.tracker)
+      if (!participant.tracker) {
         participant.tracker = make_tracker<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+        benchmark_.watch.ask_within(*participant.tracker, counts_memory || participant.is_long);
+      }
       return update(*participant.tracker, now);
     };
     const double milliseconds = counts_memory ? counted(participant, make_and_update) : make_and_update();
+    participant.is_long |= milliseconds >= least_asking_ms;
     (frame > 0 ? participant.frames_ms : participant.builds_ms).push_back(milliseconds);
     if (counts_memory) note(participant, frame);
     return difference<D, Real>(events_, expected.frames[frame], participant.measurement->algorithm, frame,
@@ -259,7 +264,7 @@ class TrackCase {
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
-    ExpectedEvents events = expected_events(reference, inputs_[input]);
+    ExpectedEvents events = expected_events(reference, inputs_[input], [this] { benchmark_.watch.ask(); });
     for (const auto& known : expectations_) {
       if (known->input == input && events.fault.empty())
         events.fault = disagreement(reference, events, *known);

@@ -9,18 +9,19 @@
 #include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "paper/listings/listing_finder.hpp"
 
 namespace broadside::paper {
 namespace {
 
 template <int D>
-class BruteForce final : public PairFinder<D> {
+class BruteForce final : public ListingFinder<D> {
  private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  void find_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     e_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
     Statistics statistics{.references = e_.size()};
-    algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) {
+    algorithm_1_brute_force(e_, checkpoint, [&](BoxId a, BoxId b) {
       ++statistics.tests;
       if constexpr (kernels::is_observing) kernels::observe_test(a, b);
       if (overlap(boxes[index(a)], boxes[index(b)])) pairs.add(a, b);

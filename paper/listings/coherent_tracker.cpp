@@ -73,6 +73,7 @@ void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, 
     collector.flush();
     return statistics;
   };
+  checkpoint_.emplace(this->workers().checkpoint);
   parts_ = {};
   if (change.rebuild) {  // the events start from the frame before, and nothing of it was kept
     build_anew(change.before);

@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
@@ -57,6 +59,9 @@ class CoherentTracker : public PairTracker<D> {
   /// Where mending is counted.
   UpdateParts& work() noexcept { return parts_; }
 
+  /// To be told of tests, and of the entries that mending looks at or moves.
+  Checkpoint& checkpoint() noexcept { return *checkpoint_; }
+
  private:
   /// Makes the structure of boxes() as the listing does.
   virtual void build() = 0;
@@ -84,6 +89,7 @@ class CoherentTracker : public PairTracker<D> {
   std::size_t present_ = 0;
   std::size_t built_for_ = 0;  // boxes present when the structure was built
   UpdateParts parts_;
+  std::optional<Checkpoint> checkpoint_;  // of this update
 };
 
 }  // namespace broadside::paper

@@ -15,6 +15,7 @@
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
 #include "paper/listings/grid_listing.hpp"
+#include "paper/listings/listing_finder.hpp"
 #include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
 
@@ -24,7 +25,7 @@ namespace {
 /// Beyond this many cells, an outline has only the cells that hold a box.
 constexpr std::size_t most_drawn = 1 << 16;
 
-class Grid final : public PairFinder<2>, public Outlined<2> {
+class Grid final : public ListingFinder<2>, public Outlined<2> {
  public:
   Outlined<2>* outlined() noexcept override { return this; }
 
@@ -32,12 +33,12 @@ class Grid final : public PairFinder<2>, public Outlined<2> {
       : grid_(WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")) {}
 
  private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+  void find_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     Statistics statistics;
     if (!boxes.empty()) {
       grid_.initialize(boxes);
       grid_.algorithm_3_spanning_add_element(boxes);
-      grid_.algorithm_4_spi(boxes, pairs, statistics);
+      grid_.algorithm_4_spi(boxes, pairs, checkpoint, statistics);
     }
     this->count(statistics);
   }

@@ -71,11 +71,12 @@ void GridListing::algorithm_3_spanning_add_element(std::span<const Box2> boxes) 
   }
 }
 
-void GridListing::algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, Statistics& statistics) {
+void GridListing::algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint,
+                                  Statistics& statistics) {
   for (std::size_t i = 0; i < columns(); ++i) {  // Errata 4a and 4c
     for (std::size_t j = 0; j < rows(); ++j) {   // Errata 4a and 4c
       statistics.references += g(i, j).size();
-      algorithm_1_brute_force(g(i, j), [&](BoxId a, BoxId b) {
+      algorithm_1_brute_force(g(i, j), checkpoint, [&](BoxId a, BoxId b) {
         ++statistics.tests;
         if constexpr (kernels::is_observing) kernels::observe_test(a, b);
         const Box2& first = boxes[index(a)];

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "broadside/executor.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
@@ -33,8 +34,9 @@ class GridListing {
   /// Algorithm 3, "Spanning Add Element", for all boxes that are present.
   void algorithm_3_spanning_add_element(std::span<const Box2> boxes);
 
-  /// Algorithm 4, "SPI". Adds its tests to `statistics`.
-  void algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, Statistics& statistics);
+  /// Algorithm 4, "SPI". Adds its tests to `statistics`, and tells the checkpoint.
+  void algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint,
+                       Statistics& statistics);
 
   /// The cells that a present box is in.
   CellRange cells_of(const Box2& box) const {

@@ -79,7 +79,7 @@ class GridTracker final : public CoherentTracker<2> {
 
   Statistics search(PairSink& pairs) override {
     Statistics statistics;
-    grid_.algorithm_4_spi(boxes(), pairs, statistics);
+    grid_.algorithm_4_spi(boxes(), pairs, checkpoint(), statistics);
     return statistics;
   }
 
@@ -155,7 +155,9 @@ class GridTracker final : public CoherentTracker<2> {
   void erase(BoxId id, std::size_t column, std::size_t row) {
     std::vector<BoxId>& cell = grid_.g(column, row);
     const auto place = std::ranges::find(cell, id);
-    work().visited += static_cast<std::uint64_t>(place - cell.begin()) + 1;
+    const auto looked_at = static_cast<std::uint64_t>(place - cell.begin()) + 1;
+    work().visited += looked_at;
+    checkpoint().count(looked_at);
     *place = cell.back();
     cell.pop_back();
     ++work().moved;

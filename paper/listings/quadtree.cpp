@@ -10,6 +10,7 @@
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "paper/listings/listing_finder.hpp"
 #include "paper/listings/quadtree_listing.hpp"
 #include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
@@ -17,7 +18,7 @@
 namespace broadside::paper {
 namespace {
 
-class Quadtree final : public PairFinder<2>, public Outlined<2> {
+class Quadtree final : public ListingFinder<2>, public Outlined<2> {
  public:
   Outlined<2>* outlined() noexcept override { return this; }
 
@@ -27,9 +28,12 @@ class Quadtree final : public PairFinder<2>, public Outlined<2> {
  private:
   /// Calls use(tree, root) with the tree over the boxes.
   template <typename Use>
-  void fill(std::span<const Box2> boxes, Use use) const {
+  void fill(std::span<const Box2> boxes, Checkpoint& checkpoint, Use use) const {
     const World world = world_settings_.around(boxes);
-    QuadTree tree{.boxes = boxes, .count_max = capacity_, .depth_max = choose_depth(boxes, world)};
+    QuadTree tree{.boxes = boxes,
+                  .count_max = capacity_,
+                  .depth_max = choose_depth(boxes, world),
+                  .checkpoint = &checkpoint};
     QuadTreeNode root(tree, world);
     for (std::size_t i = 0; i < boxes.size(); ++i) root.algorithm_7_add_element(BoxId(i));
     use(tree, root);
@@ -39,7 +43,9 @@ class Quadtree final : public PairFinder<2>, public Outlined<2> {
     Outline<2> outline;
     outline.kind = "nodes";
     std::size_t leaves = 0;
-    fill(boxes, [&](const QuadTree&, const QuadTreeNode& root) { leaves = root.lay_out(outline.levels); });
+    Checkpoint checkpoint(workers().checkpoint);
+    fill(boxes, checkpoint,
+         [&](const QuadTree&, const QuadTreeNode& root) { leaves = root.lay_out(outline.levels); });
     std::size_t nodes = 0;
     for (const std::vector<Box2>& level : outline.levels) nodes += level.size();
     const auto counted = [](std::size_t count, const std::string& one) {
@@ -50,8 +56,8 @@ class Quadtree final : public PairFinder<2>, public Outlined<2> {
     return outline;
   }
 
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
-    fill(boxes, [&](const QuadTree& tree, const QuadTreeNode& root) {
+  void find_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+    fill(boxes, checkpoint, [&](const QuadTree& tree, const QuadTreeNode& root) {
       this->count(search_tree(tree, root, pairs));
     });
   }

@@ -96,6 +96,7 @@ void QuadTreeNode::algorithm_9_spanning_add_element(BoxId id) {
 /// them, and no test is spared since every test finds a pair.
 bool QuadTreeNode::can_split() const {
   if (depth_ == tree_->depth_max) return false;
+  tree_->checkpoint->count(e_.size());
   Box2 common = tree_->boxes[index(e_.front())];
   for (const BoxId id : e_) {
     const Box2& e = tree_->boxes[index(id)];
@@ -121,6 +122,7 @@ void QuadTreeNode::add_where_missing(BoxId e) {
 
 void QuadTreeNode::remove(BoxId e) {
   const auto place = std::ranges::find(e_, e);
+  tree_->checkpoint->count(static_cast<std::uint64_t>(place - e_.begin()));
   *place = e_.back();
   e_.pop_back();
   --count_;

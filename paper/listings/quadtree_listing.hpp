@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "broadside/executor.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
@@ -47,8 +48,9 @@ struct QuadTree {
   std::span<const Box2> boxes;
   std::size_t count_max = 0;
   int depth_max = 0;
-  std::size_t nodes = 0;     ///< that there are
-  std::uint64_t visits = 0;  ///< of nodes, on the ways down of boxes that were added
+  Checkpoint* checkpoint = nullptr;  ///< is told of tests, and of boxes looked at on the way to them
+  std::size_t nodes = 0;             ///< that there are
+  std::uint64_t visits = 0;          ///< of nodes, on the ways down of boxes that were added
 
   /// For each box the leaves that it is in, where section VI-D needs them; else empty.
   std::vector<std::vector<QuadTreeNode*>> leaves{};
@@ -69,7 +71,7 @@ class QuadTreeNode {
     if (qii_ != nullptr) qii_->algorithm_10_traverse(test_collide);    // Erratum 10c
     if (qiii_ != nullptr) qiii_->algorithm_10_traverse(test_collide);  // Erratum 10c
     if (qiv_ != nullptr) qiv_->algorithm_10_traverse(test_collide);    // Erratum 10c
-    algorithm_1_brute_force(e_, [&](BoxId a, BoxId b) { test_collide(region_, a, b); });
+    algorithm_1_brute_force(e_, *tree_->checkpoint, [&](BoxId a, BoxId b) { test_collide(region_, a, b); });
   }
 
   /// Algorithm 9 from here, for a box that may be in some of the leaves: it is added to the others.

@@ -41,7 +41,10 @@ class QuadtreeTracker final : public CoherentTracker<2> {
  private:
   void build() override {
     world_ = world_settings_.around(boxes());
-    tree_ = {.boxes = boxes(), .count_max = capacity_, .depth_max = choose_depth(boxes(), world_)};
+    tree_ = {.boxes = boxes(),
+             .count_max = capacity_,
+             .depth_max = choose_depth(boxes(), world_),
+             .checkpoint = &checkpoint()};
     if (from_ != ReinsertFrom::rebuild) tree_.leaves.resize(boxes().size());
     root_.emplace(tree_, world_);
     most_references_ = 0;

@@ -9,6 +9,7 @@
 
 #include "paper/listings/coherent_tracker.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "paper/listings/listing_finder.hpp"
 #include "paper/listings/sweep_listing.hpp"
 #include "paper/listings/trackers.hpp"
 
@@ -16,14 +17,14 @@ namespace broadside::paper {
 namespace {
 
 template <int D>
-class SweepAndPrune final : public PairFinder<D>, public Outlined<D> {
+class SweepAndPrune final : public ListingFinder<D>, public Outlined<D> {
  public:
   Outlined<D>* outlined() noexcept override { return this; }
 
  private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  void find_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     SweepListing<D>::sort(boxes, e_);
-    this->count(listing_.algorithm_5_sweep(boxes, e_.size(), pairs,
+    this->count(listing_.algorithm_5_sweep(boxes, e_.size(), pairs, checkpoint,
                                            [next = e_.begin()]() mutable { return (next++)->id; }));
   }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "broadside/executor.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/tracker.hpp"
 
@@ -38,7 +39,8 @@ class SweepListing {
 
   /// Algorithm 5, "Sweep", over `count` boxes; next() gives them in order.
   template <typename Next>
-  Statistics algorithm_5_sweep(std::span<const Box<D>> boxes, std::size_t count, PairSink& pairs, Next next) {
+  Statistics algorithm_5_sweep(std::span<const Box<D>> boxes, std::size_t count, PairSink& pairs,
+                               Checkpoint& checkpoint, Next next) {
     Statistics statistics{.references = count};
     f_.clear();                                // Erratum 5d
     for (std::size_t i = 0; i < count; ++i) {  // Erratum 5a
@@ -49,6 +51,7 @@ class SweepListing {
         if constexpr (kernels::is_observing) kernels::observe_test(active, e);
         if (overlap(boxes[index(active)], boxes[index(e)])) pairs.add(active, e);
       }
+      checkpoint.count(2 * f_.size());  // those looked at to be pruned, too
       f_.push_back(e);
     }
     return statistics;

@@ -61,16 +61,17 @@ class SweepTracker final : public CoherentTracker<D> {
 
   Statistics search(PairSink& pairs) override {
     if (method_ != ReorderMethod::heap) {
-      return listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs,
+      return listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(),
                                         [next = e_.begin()]() mutable { return (next++)->id; });
     }
     // What has been extracted stands behind the heap. At the end that is everything in reverse, which is the
     // next frame's heap once it is turned round.
     auto end = e_.end();
-    const Statistics statistics = listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, [&] {
-      std::pop_heap(e_.begin(), end, is_later);
-      return (--end)->id;
-    });
+    const Statistics statistics =
+        listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(), [&] {
+          std::pop_heap(e_.begin(), end, is_later);
+          return (--end)->id;
+        });
     std::ranges::reverse(e_);
     return statistics;
   }
@@ -103,12 +104,14 @@ class SweepTracker final : public CoherentTracker<D> {
       for (; place > 0 && entry < e_[place - 1]; --place) e_[place] = e_[place - 1];
       e_[place] = entry;
       this->work().moved += i - place;
+      this->checkpoint().count(i - place);
     }
     this->work().visited += e_.size();
   }
 
   /// Takes the box from its place and puts it into the new one; those between the two give way (erratum T8).
   void reinsert(BoxId id, const Box<D>& now) {
+    const std::uint64_t moved_before = this->work().moved;
     Box<D>& before = this->boxes()[index(id)];
     if (is_present(before) && is_present(now)) {
       const auto from = place_of({before.min[0], id});
@@ -131,6 +134,7 @@ class SweepTracker final : public CoherentTracker<D> {
       e_.insert(to, {now.min[0], id});
     }
     before = now;
+    this->checkpoint().count(this->work().moved - moved_before);
   }
 
   /// The first entry that is not before `wanted`; counts comparisons as visits.

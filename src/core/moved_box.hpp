@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside::core {
@@ -42,6 +43,9 @@ struct ChangeSinks {
 
   /// By id: 1 for boxes that move, whether the structure has moved them already or not yet.
   const std::uint8_t* moves;
+
+  /// Is told of the pairs compared, and may end the search by an exception; or null.
+  Checkpoint* checkpoint = nullptr;
 };
 
 /// The work of a search.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -17,11 +19,28 @@
 #include "core/float_environment.hpp"
 #include "core/lean.hpp"
 
+namespace broadside {
+
+void Checkpoint::pass() {
+  tests_ = 0;
+  if (!*call_) return;
+  const core::CallersEnvironment environment;
+  (*call_)();
+}
+
+}  // namespace broadside
+
 namespace broadside::core {
 namespace {
 
 /// Thrown where there is no room for a piece's pairs.
 struct NoRoom {};
+
+/// Thrown by a worker's checkpoint where another worker has thrown.
+struct Ended {};
+
+/// The time between two checkpoints of a thread that waits.
+constexpr std::chrono::milliseconds between_checkpoints{20};
 
 /// Collects a piece's pairs.
 class BufferSink final : public PairSink {
@@ -123,6 +142,38 @@ class Parallel::Errors {
   std::atomic<bool> any_ = false;
 };
 
+/// Has the caller's thread wait for the workers of other threads, and pass its checkpoint meanwhile. Not for
+/// those of its own: an executor may nest one in the other.
+class Parallel::Waiting {
+ public:
+  void begin() {
+    const std::lock_guard lock(mutex_);
+    ++others_;
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    if (--others_ == 0) none_left_.notify_all();
+  }
+
+  void wait(const Parallel& parallel, Errors& errors) {
+    std::unique_lock lock(mutex_);
+    while (!none_left_.wait_for(lock, between_checkpoints, [this] { return others_ == 0; })) {
+      lock.unlock();
+      try {
+        if (!errors.any()) parallel.pass_checkpoint();
+      } catch (...) {
+        errors.note(std::numeric_limits<std::size_t>::max() - 1);
+      }
+      lock.lock();
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable none_left_;
+  std::size_t others_ = 0;
+};
+
 /// A search that is cut into pieces of consecutive parts, each of which one worker searches.
 class Parallel::SharedSearch {
  public:
@@ -166,13 +217,14 @@ class Parallel::SharedSearch {
     clones.push_back(std::move(first));
     while (clones.size() < parallel_.workers_) clones.push_back(target_.empty_clone());
     std::atomic<std::size_t> next = 0;
-    parallel_.run_workers([&](std::size_t worker) {
+    parallel_.run_workers(errors_, [&](std::size_t worker) {
       std::size_t piece = 0;
       try {
         FilterChain chain(filters_, *clones[worker]);
         while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
           add(worker, search_piece(piece, worker, chain));
         clones[worker]->flush();
+      } catch (const Ended&) {
       } catch (...) {
         errors_.note(piece);
       }
@@ -186,7 +238,7 @@ class Parallel::SharedSearch {
     while (!delivery.is_complete()) {
       const std::size_t delivered = delivery.delivered();
       delivery.begin_round();
-      parallel_.run_workers([&](std::size_t worker) { search_pieces(delivery, worker, false); });
+      parallel_.run_workers(errors_, [&](std::size_t worker) { search_pieces(delivery, worker, false); });
       errors_.rethrow();
       while (delivery.deliver_next()) {
       }
@@ -223,6 +275,7 @@ class Parallel::SharedSearch {
           return;
         }
       } while (!only_one && !errors_.any());
+    } catch (const Ended&) {
     } catch (...) {
       errors_.note(at);
     }
@@ -247,12 +300,19 @@ void Parallel::start(const Workers& workers, std::size_t boxes) {
   workers_ = 1;
   boxes_ = boxes;
   checkpoint_ = workers.checkpoint;
+  caller_ = std::this_thread::get_id();
+  choose_workers(workers);
+  checkpoints_.clear();
+  if (checkpoint_) checkpoints_.resize(workers_, {Checkpoint(workers_checkpoint_)});
+}
+
+void Parallel::choose_workers(const Workers& workers) {
   if (workers.threads == 1) return;
   const CallersEnvironment environment;
   executor_ = workers.executor != nullptr ? workers.executor : standard_executor();
   if (executor_ == nullptr) return;
   const std::size_t threads = workers.threads == 0 ? executor_->threads() : workers.threads;
-  const std::size_t worth = boxes / std::max<std::size_t>(workers.boxes_per_thread, 1);
+  const std::size_t worth = boxes_ / std::max<std::size_t>(workers.boxes_per_thread, 1);
   workers_ = std::clamp<std::size_t>(worth, 1, std::max<std::size_t>(threads, 1));
 }
 
@@ -263,12 +323,13 @@ Range Parallel::range(std::size_t number, std::size_t count) const noexcept {
 void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
   std::atomic<std::size_t> next = 0;
   Errors errors;
-  run_workers([&](std::size_t worker) {
+  run_workers(errors, [&](std::size_t worker) {
     while (!errors.any()) {
       const std::size_t number = next.fetch_add(1, std::memory_order_relaxed);
       if (number >= range_count()) return;
       try {
         body(number, range(number, count), worker);
+      } catch (const Ended&) {
       } catch (...) {
         errors.note(number);
       }
@@ -305,7 +366,16 @@ void Parallel::pass_checkpoint() const {
   checkpoint_();
 }
 
-void Parallel::run_workers(const std::function<void(std::size_t)>& body) {
+void Parallel::pass_workers_checkpoint() const {
+  if (std::this_thread::get_id() == caller_)
+    pass_checkpoint();
+  else if (errors_->any())
+    throw Ended();
+}
+
+void Parallel::run_workers(Errors& errors, const std::function<void(std::size_t)>& body) {
+  errors_ = &errors;
+  Waiting others;
   // An executor brings the tasks' writes to this thread by means of its own, which need not be of a kind that
   // a thread sanitizer sees. These two are.
   std::atomic<bool> begun = false;
@@ -318,7 +388,13 @@ void Parallel::run_workers(const std::function<void(std::size_t)>& body) {
     executor_->run(workers_, [&](std::size_t worker) {
       const DefaultEnvironment environment(control);
       static_cast<void>(begun.load(std::memory_order_acquire));
+      const bool is_other = checkpoint_ && std::this_thread::get_id() != caller_;
+      if (is_other) others.begin();
       body(worker);
+      if (is_other)
+        others.end();
+      else if (checkpoint_)
+        others.wait(*this, errors);
       ended.fetch_add(1, std::memory_order_release);
     });
   } catch (...) {

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <thread>
+#include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/executor.hpp"
@@ -42,6 +44,12 @@ class Parallel {
   void start(const Workers& workers, std::size_t boxes);
 
   std::size_t workers() const noexcept { return is_lean ? 1 : workers_; }
+
+  /// What a worker is to tell of the pairs it compares: in the caller's thread it calls the caller's
+  /// checkpoint, in others it ends what they do once an exception is to be thrown. Null if there is none.
+  Checkpoint* checkpoint(std::size_t worker) noexcept {
+    return is_lean || checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
+  }
 
   /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Throws what
   /// a body throws, of several the first in order.
@@ -100,6 +108,7 @@ class Parallel {
   class Errors;
   class SharedSearch;
 
+  void choose_workers(const Workers& workers);
   void share_ranges(std::size_t count, const RangeBody& body);
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
   Statistics search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search);
@@ -110,13 +119,28 @@ class Parallel {
   /// Calls the caller's checkpoint, if there is one. In the caller's thread.
   void pass_checkpoint() const;
 
-  /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw.
-  void run_workers(const std::function<void(std::size_t)>& body);
+  /// Of a worker: passes the caller's checkpoint or, in another thread, ends its work where something threw.
+  void pass_workers_checkpoint() const;
+
+  /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw, but notes in
+  /// `errors`. The caller's thread passes its checkpoint while it waits for others.
+  void run_workers(Errors& errors, const std::function<void(std::size_t)>& body);
+
+  class Waiting;
+
+  /// In a cache line of its own.
+  struct alignas(64) WorkersCheckpoint {
+    Checkpoint value;
+  };
 
   Executor* executor_ = nullptr;
   std::size_t workers_ = 1;
   std::size_t boxes_ = 0;
   std::function<void()> checkpoint_;
+  std::function<void()> workers_checkpoint_ = [this] { pass_workers_checkpoint(); };
+  std::vector<WorkersCheckpoint> checkpoints_;  // by worker, where there is one
+  std::thread::id caller_;
+  const Errors* errors_ = nullptr;  // of what the workers do
   PairBlocks blocks_;
 };
 

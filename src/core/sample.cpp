@@ -74,8 +74,8 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
     extents_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       const Box<D>& box = boxes[count == boxes.size() ? i : sampled_place(i, boxes.size())];
-      const float min = box.min[axis];
-      const float max = box.max[axis];
+      const float min = without_nan(box.min[axis]);
+      const float max = without_nan(box.max[axis]);
       sample.minima.push_back(min);
       maxima_.push_back(max);
       extents_.push_back(max > min ? std::min(max - min, largest) : 0);  // inf - inf is not a number

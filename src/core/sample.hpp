@@ -1,9 +1,11 @@
 // A sample of the boxes, axis by axis: the signals from which algorithms choose their tunables.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,6 +26,12 @@ struct AxisSample {
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
 };
+
+/// `value`, or -infinity for a NaN, by which nothing can be sorted. A box that was checked has none, but
+/// another thread may have written to the caller's array since.
+inline float without_nan(float value) noexcept {
+  return std::max(-std::numeric_limits<float>::infinity(), value);
+}
 
 /// The place of the i-th of a few boxes sampled from `boxes`: spread over the array, without a period that a
 /// regular scene could share.

@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "broadside/executor.hpp"
+
 namespace broadside {
 namespace core {
 namespace {
@@ -81,6 +83,32 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   return (first.steps() + second.steps()) % 2 != 0;
 }
 
+/// Parts pairs until they are few enough to be sorted without a checkpoint in between.
+void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
+  constexpr std::size_t sorted_at_once = std::size_t{1} << 16;
+  constexpr std::uint64_t comparisons_a_pair = 16;  // of those
+  while (pairs.size() > sorted_at_once) {
+    std::array<std::uint64_t, 15> sampled;
+    for (std::size_t i = 0; i < sampled.size(); ++i)
+      sampled[i] = key(pairs[(2 * i + 1) * pairs.size() / (2 * sampled.size())]);
+    std::ranges::sort(sampled);
+    const auto middle = std::partition(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+      checkpoint.count(1);
+      return key(pair) < sampled[sampled.size() / 2];
+    });
+    auto lower = static_cast<std::size_t>(middle - pairs.begin());
+    if (std::min(lower, pairs.size() - lower) < pairs.size() / 16) {  // a sample that says little
+      lower = pairs.size() / 2;
+      std::ranges::nth_element(pairs, pairs.begin() + static_cast<std::ptrdiff_t>(lower), {}, key);
+      checkpoint.count(4 * pairs.size());
+    }
+    sort_part(pairs.first(lower), checkpoint);
+    pairs = pairs.subspan(lower);
+  }
+  std::ranges::sort(pairs, {}, key);
+  checkpoint.count(comparisons_a_pair * pairs.size());
+}
+
 }  // namespace
 
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
@@ -89,6 +117,8 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 }
 
 }  // namespace core
+
+void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint) { core::sort_part(pairs, checkpoint); }
 
 bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
   // Counts of 2^32 or more would not fit, and never occur.

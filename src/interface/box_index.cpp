@@ -87,6 +87,9 @@ void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
     const std::size_t size = std::max(size_, frame.boxes.size());
     for (std::size_t i = std::min(size_, frame.boxes.size()); i < size; ++i) changed_.push_back(BoxId(i));
   }
+  // Another thread may have written to the list since it was checked.
+  std::erase_if(changed_,
+                [this, &frame](BoxId id) { return index(id) >= std::max(size_, frame.boxes.size()); });
   update_valid(frame.boxes, changed_, rebuild);
   size_ = frame.boxes.size();
   dirty_ = false;

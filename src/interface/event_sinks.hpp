@@ -53,14 +53,16 @@ class CandidateSink final : public PairSink {
 template <int D>
 class EventSinks {
  public:
-  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair = false)
+  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair = false,
+             Checkpoint* checkpoint = nullptr)
       : candidates_(change, begun, ended),
         sinks_{.begun = every_pair || change.filters_now.empty() ? begun : candidates_,
                .ended = every_pair                   ? begun
                         : change.filters_now.empty() ? ended
                                                      : candidates_,
                .candidates = every_pair ? begun : candidates_,
-               .moves = change.flags.data()} {}
+               .moves = change.flags.data(),
+               .checkpoint = checkpoint} {}
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;
 

@@ -259,8 +259,9 @@ void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
   core::reserve_large(present_, present_.size() + boxes.size());
   ids_.reserve(ids_.size() + boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!is_present(boxes[i])) continue;
-    present_.push_back(boxes[i]);
+    const Box<D, Real> box = boxes[i];  // the caller's may change between two looks at it
+    if (!is_present(box)) continue;
+    present_.push_back(box);
     ids_.push_back(BoxId(i));
   }
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "core/float_environment.hpp"
 #include "interface/input_check.hpp"
@@ -50,8 +49,9 @@ Outline<D, Real> outline(PairFinder<D, Real>& finder,
   core::check_count(boxes.size());
   core::check_boxes(boxes, 0, finder.bad_input());
   Outlined<D, Real>* const outlined = finder.outlined();
-  std::vector<Box<D, Real>> present;
-  std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(present), is_present<D, Real>);
+  // Copied first, since the caller's may change between two looks at them.
+  std::vector<Box<D, Real>> present(boxes.begin(), boxes.end());
+  std::erase_if(present, [](const Box<D, Real>& box) { return !is_present(box); });
   if (outlined == nullptr || present.empty()) return {};
   Outline<D, Real> outline = outlined->lay_out(present);
   const Box<D, Real> bounds = finite_bounds<D, Real>(present);

@@ -156,7 +156,11 @@ void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild
       for (std::size_t i = range.begin; i < range.end; ++i) copy(index(changed_[i]));
     });
   } else {
-    for (const BoxId id : frame.changed) take(index(id));
+    for (const BoxId id : frame.changed) {
+      // Another thread may have written to the list since it was checked.
+      const std::size_t place = index(id);
+      if (place < size) take(place);
+    }
   }
   for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
 }

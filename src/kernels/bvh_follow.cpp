@@ -14,6 +14,7 @@
 
 #include "kernels/bvh_lanes.hpp"
 #include "kernels/pair_writer.hpp"
+#include "kernels/run.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -43,6 +44,7 @@ class Follow {
       }
       tree_.nodes[box.slot / fan_out].set(box.slot % fan_out, box.now);
       calls_for[i] = enlarge(box);
+      tell(tree_.checkpoint, leaves_ * fan_out, told_);
     }
     return leaves_ * fan_out;
   }
@@ -123,6 +125,7 @@ class Follow {
   Writer begun_;
   Writer ended_;
   std::uint64_t leaves_ = 0;
+  std::uint64_t told_ = 0;
 };
 
 }  // namespace

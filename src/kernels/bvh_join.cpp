@@ -18,6 +18,7 @@
 #include "kernels/compress.hpp"
 #include "kernels/observed_tests.hpp"
 #include "kernels/pair_writer.hpp"
+#include "kernels/run.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -78,6 +79,7 @@ class Join {
       leaf(node, list, count);
       next_leaf_ = node + 1;
       bounds_ += count;
+      tell(limit_.checkpoint, work(), told_);
       return HWY_LIKELY(work() <= limit_.tests) ||
              work() - limit_.tests <= limit_.tests_per_pair * pairs_.written();
     }
@@ -113,8 +115,10 @@ class Join {
     const std::size_t begin = node * fan_out;
     if (tree_.left_size == 0) {
       within(begin);
-      ++list;  // which is led by this leaf itself
-      --count;
+      // The list is led by this leaf itself, unless another thread made its boxes invalid as they were read.
+      const std::size_t own = count > 0 && *list == node ? 1 : 0;
+      list += own;
+      count -= own;
     }
     if (count == 0) return;
     const TreeLevel<D>& leaves = tree_.levels[1];
@@ -211,6 +215,7 @@ class Join {
   std::uint64_t tests_ = 0;   // where a leaf counts as full, which is what the work is
   std::uint64_t unused_ = 0;  // of these, those with a place that holds no box
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
+  std::uint64_t told_ = 0;    // the checkpoint, of the work
   std::size_t next_leaf_;
   std::uint32_t
       queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 
 #include "kernels/bvh.hpp"
@@ -65,10 +66,11 @@ std::size_t join_scratch(const PackedBvh<D>& tree) {
 }
 
 /// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
-/// Comparing bounds counts as comparing boxes.
+/// Comparing bounds counts as comparing boxes, also for the checkpoint.
 struct JoinLimit {
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t tests_per_pair = 0;
+  Checkpoint* checkpoint = nullptr;  ///< as in a Run
 };
 
 /// The work that a join did.

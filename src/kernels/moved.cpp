@@ -130,6 +130,7 @@ class Search {
     const std::size_t listed = std::exchange(listed_, 0);
     std::size_t found = 0;
     std::uint64_t tests = 0;
+    std::uint64_t told = 0;
     std::uint64_t blocks = 0;
     for (std::size_t i = 0; i < listed; ++i) {
       const MovedBox<D>& moved = moved_[listed_tasks_[i].moved];
@@ -154,7 +155,9 @@ class Search {
         if (HWY_UNLIKELY(found == most_listed)) write(std::exchange(found, 0));
         block = next;
       } while (HWY_UNLIKELY(block != no_slot));
+      if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
     }
+    tell(sinks_.checkpoint, tests, told);
     write(found);
     work_ += {tests, blocks};
   }

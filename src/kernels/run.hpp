@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 
 #include "core/large_array.hpp"
@@ -43,6 +44,9 @@ struct Run {
   /// Where the boxes are floats of boxes of doubles: these, by id, and pairs must overlap in double. Else
   /// null.
   const Box<D, double>* doubles = nullptr;
+
+  /// Is told of the pairs compared, and may end the search by an exception; or null.
+  Checkpoint* checkpoint = nullptr;
 };
 
 /// The run from box `begin` on, with the boxes before `end` as rows. Both are multiples of read_ahead, unless
@@ -58,6 +62,13 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
   run.size -= begin;
   run.rows = end - begin;
   return run;
+}
+
+/// Tells a checkpoint, if there is one, of the pairs compared since there were `told`.
+inline void tell(Checkpoint* checkpoint, std::uint64_t tests, std::uint64_t& told) {
+  if (checkpoint == nullptr) [[likely]]
+    return;
+  checkpoint->count(tests - std::exchange(told, tests));
 }
 
 /// The bit of `dedup_mask` for a box in a search between two sets, where the first `left_count` boxes are the

@@ -149,12 +149,15 @@ std::uint64_t sweep_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
   std::uint64_t tests = 0;
   // After the last box there is nothing.
   const std::size_t rows = run.size == 0 ? 0 : std::min(run.rows, run.size - 1);
+  std::uint64_t told = 0;
   for (std::size_t begin = 0; begin < rows; begin += together) {
+    tell(run.checkpoint, tests, told);
     std::size_t distance = 1;
     if (sweep_group(run, begin, distance, tests, pairs) == 0) continue;
     for (std::size_t i = begin; i < begin + together; ++i)
       tests += sweep_from(Query<D>(run, i), run.max[0][i] + run.slack, run, i + distance + 1, pairs);
   }
+  tell(run.checkpoint, tests, told);
   return tests;
 }
 
@@ -163,9 +166,11 @@ std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, P
   // Each pair has a box that is taken first; the other one is then still to come in its run.
   Writer<LastTest> pairs(sink, last_test);
   std::uint64_t tests = 0;
+  std::uint64_t told = 0;
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size && j < b.size) {
+    tell(a.checkpoint, tests, told);
     if (a.min[0][i] <= b.min[0][j]) {
       tests += sweep_from(Query<D>(a, i), a.max[0][i] + b.slack, b, j, pairs);
       ++i;
@@ -174,6 +179,7 @@ std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, P
       ++j;
     }
   }
+  tell(a.checkpoint, tests, told);
   return tests;
 }
 
@@ -195,14 +201,20 @@ template <int D, typename LastTest>
 std::uint64_t compare_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
   Writer<LastTest> pairs(sink, last_test);
   const std::uint64_t rows = std::min(run.rows, run.size);
-  for (std::size_t i = 0; i < rows; ++i) compare_from(Query<D>(run, i), run, i + 1, pairs);
+  for (std::size_t i = 0; i < rows; ++i) {
+    compare_from(Query<D>(run, i), run, i + 1, pairs);
+    if (run.checkpoint != nullptr) run.checkpoint->count(run.size - i - 1);
+  }
   return rows * run.size - rows * (rows + 1) / 2;
 }
 
 template <int D, typename LastTest>
 std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, PairSink& sink) {
   Writer<LastTest> pairs(sink, last_test);
-  for (std::size_t i = 0; i < a.size; ++i) compare_from(Query<D>(a, i), b, 0, pairs);
+  for (std::size_t i = 0; i < a.size; ++i) {
+    compare_from(Query<D>(a, i), b, 0, pairs);
+    if (a.checkpoint != nullptr) a.checkpoint->count(b.size);
+  }
   return std::uint64_t{a.size} * b.size;
 }
 

@@ -91,7 +91,8 @@ struct BROADSIDE_HIDDEN World<D, Real>::State {
   void set_boxes(std::span<const Handle> handles, BoxView<D, Real> given) noexcept;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
   void reserve_removals(std::size_t boxes, std::size_t ignored);
-  void remove_valid(std::uint32_t slot) noexcept;
+  void list_removed(std::uint32_t slot) noexcept;
+  void clear_removed(std::uint32_t slot) noexcept;
   void mark_changed(std::uint32_t slot) noexcept;
   void mark_moved(std::uint32_t slot) noexcept;
 

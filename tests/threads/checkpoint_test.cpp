@@ -1,6 +1,9 @@
 // Workers::checkpoint: it is passed on the way through a search, and can end it.
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -71,6 +74,37 @@ TEST_P(Checkpoint, EndsASearchThatFindsNothing) {
   EXPECT_EQ(passed, 3);
   brute->find(std::span<const Box2>(boxes), counter);
   EXPECT_EQ(counter.count(), 0u);
+}
+
+/// Runs one task in a thread of its own, and the caller's task once that thread has had time to take all
+/// there is to do.
+class LateCallersExecutor final : public Executor {
+ public:
+  std::size_t threads() const noexcept override { return 2; }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    std::thread other([&] { task(0); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (std::size_t i = 1; i < count; ++i) task(i);
+    other.join();
+  }
+};
+
+TEST(CheckpointOfAWaitingThread, EndsWhatAnotherThreadSearches) {
+  // Boxes of the left set, all in one place: one cell of many tests and few pairs.
+  std::vector<Box2> boxes(60'000, Box2{{0, 0}, {1, 1}});
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].max[0] += static_cast<float>(i % 1000);
+  LateCallersExecutor executor;
+  for (const std::string_view spec : {"grid", "quadtree", "sweep_and_prune:axes=2"}) {
+    const auto finder = make_finder<2>(spec);
+    finder->set_workers({.threads = 2, .executor = &executor, .boxes_per_thread = 1, .checkpoint = [] {
+                           throw std::runtime_error("enough");
+                         }});
+    PairCounter counter;
+    EXPECT_THROW(finder->find_between(std::span<const Box2>(boxes), boxes.size() - 1, counter),
+                 std::runtime_error)
+        << spec;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Checkpoint, testing::Values(1, 2));

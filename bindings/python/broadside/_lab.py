@@ -90,7 +90,7 @@ def advise(
         budget: About how many seconds it may take.
         columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
 
-    Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C between two measurements.
+    Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C, also within a long search.
     """
     budget = _arguments.number(budget, "budget")
     if not 0 < budget <= 3600:

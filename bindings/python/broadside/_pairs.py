@@ -120,10 +120,9 @@ def pairs(
         TypeError: Something is of another type or dtype than these.
         ValueError: Something has another shape, or does not fit to the rest.
 
-    Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends with
-    the piece that it is at, of about a thousand boxes (of ``quadtree``, up to sixteen thousand or a third of a thread's
-    share); it looks for signals every 50 milliseconds at most. A search by one of the paper's listings ends with its
-    next pairs; sorting pairs is not interrupted. Any number of threads may call it at once.
+    Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends
+    within a few million tests, and sorting pairs within as many comparisons; it looks for signals every 50 milliseconds
+    at most. Any number of threads may call it at once.
     """
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)

@@ -109,7 +109,8 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     Statistics statistics = this->statistics().value_or(Statistics{});
     if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
     core::LeftSink<D> left(*search, boxes, pairs);
-    const Statistics more = segments_->join(boxes, this->left_count(), this->doubles(), left);
+    Checkpoint checkpoint(this->workers().checkpoint);
+    const Statistics more = segments_->join(boxes, this->left_count(), this->doubles(), checkpoint, left);
     left.flush();
     statistics.tests += more.tests;
     statistics.references += more.references;

@@ -37,19 +37,23 @@ constexpr std::size_t many_to_sort = 128;
 
 template <int D>
 Statistics SegmentJoin<D>::join(std::span<const Box<D>> boxes, std::size_t left_count,
-                                const Box<D, double>* doubles, PairSink& pairs) {
+                                const Box<D, double>* doubles, Checkpoint& checkpoint, PairSink& pairs) {
   core::Sample<D> sample;
   sample.take(boxes);
   std::array<int, D> order = sample.axes_by_overlap();
   sorted_boxes_ = sorted_.sort(boxes, order);
   statistics_ = {};
   doubles_ = doubles;
+  checkpoint_ = &checkpoint;
   pairs_ = &pairs;
   stack_.clear();
   const auto push_all = [&](bool left) {
     const std::size_t begin = stack_.size();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) {
-      if (left_count == 0 || (index(sorted_boxes_[i].id) < left_count) == left) stack_.push_back({i, 0});
+      const core::SortedBox<D>& sorted = sorted_boxes_[i];
+      // One that another thread has made invalid since it was checked might be in both sides of each cut.
+      if (!is_present(sorted.box)) continue;
+      if (left_count == 0 || (index(sorted.id) < left_count) == left) stack_.push_back({i, 0});
     }
     return List{begin, stack_.size()};
   };
@@ -266,10 +270,15 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
     std::swap(swept.max[0], swept.max[axis]);
     run.append(swept, sorted_boxes_[reference.place].id, reference.dedup_mask);
   };
+  const auto view = [&] {
+    kernels::Run<D> swept = run.view(doubles_);
+    swept.checkpoint = checkpoint_;
+    return swept;
+  };
   const std::span<Reference> references = std::span(stack_).subspan(list.begin, list.size());
   if (axis == 0) {
     for (const Reference& reference : references) append(reference);
-    return run.view(doubles_);
+    return view();
   }
   const std::span<core::KeyedPlace> keys = radix_.places(references.size());
   for (std::size_t i = 0; i < references.size(); ++i)
@@ -280,7 +289,7 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
     std::ranges::sort(keys, {}, [](const core::KeyedPlace& key) { return std::pair(key.key, key.place); });
     for (const core::KeyedPlace& key : keys) append(references[key.place]);
   }
-  return run.view(doubles_);
+  return view();
 }
 
 template class SegmentJoin<2>;

@@ -28,9 +28,10 @@ template <int D>
 class SegmentJoin {
  public:
   /// Reports each overlapping pair once, or with `left_count` > 0 each pair of one of the first `left_count`
-  /// boxes and one of the others. Boxes are all present; `doubles` as in a run.
+  /// boxes and one of the others. Boxes are all present; `doubles` and
+  /// `checkpoint` as in a run.
   Statistics join(std::span<const Box<D>> boxes, std::size_t left_count, const Box<D, double>* doubles,
-                  PairSink& pairs);
+                  Checkpoint& checkpoint, PairSink& pairs);
 
  private:
   /// A box in a node. Bit a of `dedup_mask` is set if the box begins before the node's region on axis a; the
@@ -97,6 +98,7 @@ class SegmentJoin {
   kernels::RunBuffer<D> run_a_;
   kernels::RunBuffer<D> run_b_;
   const Box<D, double>* doubles_ = nullptr;
+  Checkpoint* checkpoint_ = nullptr;
   PairSink* pairs_ = nullptr;
   Statistics statistics_;
 };

@@ -38,14 +38,14 @@ class BruteForce final : public PairFinder<D>, public core::LastTest<D> {
     const kernels::Run<D> left_run = left_run_.view(this->doubles());
     const std::size_t rows = left == 0 ? run.size : left;
     parallel_.start(this->workers(), rows * run.size / tests_per_box);
-    const auto compare = [&](core::Range some, std::size_t, PairSink& sink) {
+    const auto compare = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * rows_at_once;
       const std::size_t end = std::min(some.end * rows_at_once, rows);
-      if (left == 0)
-        return Statistics{.tests = kernels::compare_all(kernels::rows_of(run, begin, end), sink)};
-      kernels::Run<D> some_left = kernels::rows_of(left_run, begin, end);
-      some_left.size = end - begin;
-      return Statistics{.tests = kernels::compare_all(some_left, run, sink)};
+      kernels::Run<D> some_rows = kernels::rows_of(left == 0 ? run : left_run, begin, end);
+      some_rows.checkpoint = parallel_.checkpoint(worker);
+      if (left == 0) return Statistics{.tests = kernels::compare_all(some_rows, sink)};
+      some_rows.size = end - begin;
+      return Statistics{.tests = kernels::compare_all(some_rows, run, sink)};
     };
     Statistics statistics = parallel_.search((rows + rows_at_once - 1) / rows_at_once, pairs, compare);
     statistics.references = boxes.size();

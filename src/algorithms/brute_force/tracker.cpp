@@ -32,10 +32,12 @@ class BruteForceTracker final : public PairTracker<D> {
     moved_.clear();
     core::append_moved(change, change.changed, moved_);
     core::EventSinks<D> events(change, begun, ended);
+    Checkpoint checkpoint(this->workers().checkpoint);
     for (std::size_t begin = 0; begin < size; begin += boxes_at_once) {
       const std::size_t end = std::min(begin + boxes_at_once, size);
       for (const core::MovedBox<D>& box : moved_) {
         kernels::find_changes(run_, begin, end, box, events.sinks());
+        checkpoint.count(end - begin);
         if (begin <= index(box.id) && index(box.id) < end) set(index(box.id), box.now);
       }
     }

@@ -16,11 +16,11 @@ struct NumberedBox {
   std::uint32_t number;
 };
 
-/// Twice the middle on an axis, within what can be added up.
+/// Twice the middle on an axis, within what can be added up. Never a NaN, whatever the box.
 template <int D>
 float middle(const Box<D>& box, int axis) {
-  constexpr float most = 0x1p120f;
-  return std::clamp(box.min[axis], -most, most) + std::clamp(box.max[axis], -most, most);
+  const auto limited = [](float value) { return std::min(std::max(-0x1p120f, value), 0x1p120f); };
+  return limited(box.min[axis]) + limited(box.max[axis]);
 }
 
 /// Orders boxes by their middles along an axis, then by number, so the order is the same everywhere.

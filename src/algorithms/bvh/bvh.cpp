@@ -70,7 +70,7 @@ class Bvh final : public PairFinder<D>,
     statistics.references = boxes.size();
     this->count(statistics);
     if (!this->has_yielded()) return;
-    leaf_of_.resize(boxes.size());
+    leaf_of_.assign(boxes.size(), 0);
     for (std::size_t place = 0; place < tree_.levels[0].size; ++place) {
       const float min = tree_.levels[0].min[0][place];
       if (min == min)  // else it holds no box
@@ -89,7 +89,8 @@ class Bvh final : public PairFinder<D>,
     return parallel_.search(
         part_count(), pairs, [this](core::Range parts, std::size_t worker, PairSink& sink) {
           std::uint32_t* const scratch = scratch_[worker].data();
-          return Statistics{.tests = kernels::join(tree_, leaves_of(parts), {}, scratch, sink).tests};
+          const kernels::JoinLimit unlimited{.checkpoint = parallel_.checkpoint(worker)};
+          return Statistics{.tests = kernels::join(tree_, leaves_of(parts), unlimited, scratch, sink).tests};
         });
   }
 
@@ -99,7 +100,7 @@ class Bvh final : public PairFinder<D>,
     parts_.resize(part_count());
     const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t most_tests,
                              std::size_t worker, PairSink& sink) {
-      const kernels::JoinLimit limit = {most_tests, kernels::tests_per_pair};
+      const kernels::JoinLimit limit = {most_tests, kernels::tests_per_pair, parallel_.checkpoint(worker)};
       parts_[part] = kernels::join(tree_, leaves, limit, scratch_[worker].data(), sink);
       return parts_[part].tests;
     };

@@ -41,8 +41,9 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   packed_.clear();
   ids_.clear();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!is_present(boxes[i])) continue;
-    packed_.push_back(boxes[i]);
+    const Box<D> box = boxes[i];  // the caller's may change between two looks at it
+    if (!is_present(box)) continue;
+    packed_.push_back(box);
     ids_.push_back(static_cast<std::uint32_t>(i));
   }
   size_ = packed_.size();

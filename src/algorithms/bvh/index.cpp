@@ -50,10 +50,10 @@ void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
     tree_.build(boxes);
   } else {
     exact_.assign(boxes.begin(), boxes.end());
-    rounding_.fit(boxes);
+    rounding_.fit(exact_);
     std::vector<Box<D>> rounded;
-    rounded.reserve(boxes.size());
-    for (const Box<D, Real>& box : boxes)
+    rounded.reserve(exact_.size());
+    for (const Box<D, Real>& box : exact_)
       rounded.push_back(is_present(box) ? rounding_.box(box) : absent_box<D>());
     tree_.build(rounded);
   }

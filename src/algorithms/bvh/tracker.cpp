@@ -86,6 +86,7 @@ class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D>
     if (change.rebuild || needs_rebuild(change)) build(change);
     Toggled<D> begins(change, true, begun, ended, every_pair);
     Toggled<D> ends(change, false, begun, ended, every_pair);
+    Checkpoint checkpoint(this->workers().checkpoint);
     std::uint64_t tests = 0;
     std::size_t movers = 0;
     for (std::size_t at = 0; at < change.changed.size(); at += moves_at_once) {
@@ -96,8 +97,10 @@ class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D>
       if (moved_.empty()) continue;
       insert_arrivals();
       calls_for_.resize(std::max(calls_for_.size(), moved_.size()));
-      tests += kernels::follow(tree_.writable(), std::span<const kernels::MovedBox<D>>(moved_),
-                               calls_for_.data(), begins, ends);
+      kernels::WritableBvh<D> tree = tree_.writable();
+      tree.checkpoint = &checkpoint;
+      tests += kernels::follow(tree, std::span<const kernels::MovedBox<D>>(moved_), calls_for_.data(), begins,
+                               ends);
       movers += moved_.size();
       mend();
     }

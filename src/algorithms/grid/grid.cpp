@@ -73,7 +73,7 @@ class Grid final : public PairFinder<D>,
     const auto sweep = [&](core::Range slabs, std::size_t worker, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const BoxesByCell<D> cells{entries_, begin_, this->doubles()};
+        const BoxesByCell<D> cells{entries_, begin_, this->doubles(), parallel_.checkpoint(worker)};
         const Statistics of_slab =
             sweeps_[worker].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
         swept_to_[slab] = sweeps_[worker].swept_to();
@@ -156,39 +156,56 @@ class Grid final : public PairFinder<D>,
             std::min(swept.high + more, std::numeric_limits<float>::max())};
   }
 
-  /// Calls `visit` with each cell that a box is put into and its dedup_mask there: the cell of
-  /// its minimum, and the first row of each further slab that it reaches.
-  template <typename Visit>
-  void for_each_place(const Box<D>& box, Visit visit) const {
-    const int row_axis = layout_.axes()[D - 1];
+  /// Counts the cells that a box is put into, and returns them as a number: that of the cell of its minimum
+  /// and, in the bits above, how many further slabs it reaches. In each of these it is in the first row.
+  std::uint32_t count_places(const Box<D>& box, std::uint64_t* counts) const {
     const std::size_t row = layout_.row_of(box);
     const std::size_t column = layout_.column_of(box);
     const std::size_t length = layout_.row_length();
-    visit(row * length + column, 0U);
-    if (!(box.max[row_axis] >= layout_.slab_border(row))) [[likely]]
-      return;
+    const std::size_t cell = row * length + column;
+    ++counts[cell];
+    const float max = box.max[layout_.axes()[D - 1]];
+    if (!(max >= layout_.slab_border(row))) [[likely]]
+      return static_cast<std::uint32_t>(cell);
+    std::uint32_t further = 0;
     for (std::size_t slab = layout_.slab_of(row) + 1; slab < layout_.slabs(); ++slab) {
       const std::size_t first = layout_.slab_begin(slab);
-      visit(first * length + column, 1U << row_axis);
-      if (!(box.max[row_axis] >= layout_.slab_border(first))) break;
+      ++counts[first * length + column];
+      ++further;
+      if (!(max >= layout_.slab_border(first))) break;
     }
+    return static_cast<std::uint32_t>(cell) | further << GridLayout<D>::cell_bits;
+  }
+
+  /// Calls `visit` with each cell that count_places() has counted, and the box's dedup_mask there.
+  template <typename Visit>
+  void for_each_place(std::uint32_t places, Visit visit) const {
+    const std::size_t cell = places & ((1U << GridLayout<D>::cell_bits) - 1);
+    visit(cell, 0U);
+    std::uint32_t further = places >> GridLayout<D>::cell_bits;
+    if (further == 0) [[likely]]
+      return;
+    const std::size_t length = layout_.row_length();
+    for (std::size_t slab = layout_.slab_of(cell / length) + 1; further > 0; ++slab, --further)
+      visit(layout_.slab_begin(slab) * length + cell % length, 1U << layout_.axes()[D - 1]);
   }
 
   /// Sets begin_ to where each cell's boxes will begin, and next_ to where those of each range will.
   void count_boxes(std::span<const Box<D>> boxes) {
     const std::size_t cells = layout_.cells();
     next_.assign(parallel_.range_count() * cells, 0);
+    core::renew(places_, boxes.size());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
-      std::uint64_t* const count = next_.data() + number * cells;
-      for (std::size_t i = range.begin; i < range.end; ++i)
-        for_each_place(boxes[i], [count](std::size_t cell, std::uint32_t) { ++count[cell]; });
+      std::uint64_t* const counts = next_.data() + number * cells;
+      for (std::size_t i = range.begin; i < range.end; ++i) places_[i] = count_places(boxes[i], counts);
     });
     const std::uint64_t sum = core::prefix_sum(std::span<std::uint64_t>(next_), cells);
     begin_.assign(next_.begin(), next_.begin() + static_cast<std::ptrdiff_t>(cells));
     begin_.push_back(sum);
   }
 
-  /// Copies the boxes to their cells.
+  /// Copies the boxes to the cells that were counted, not to those where they are: the caller's array may
+  /// have changed since.
   void scatter(std::span<const Box<D>> boxes) {
     core::renew(entries_, begin_.back());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
@@ -198,7 +215,7 @@ class Grid final : public PairFinder<D>,
         const Box<D>& box = boxes[i];
         const auto id = static_cast<BoxId>(i);
         const std::uint32_t side = kernels::side_bit(id, this->left_count());
-        for_each_place(box, [&](std::size_t cell, std::uint32_t dedup_mask) {
+        for_each_place(places_[i], [&](std::size_t cell, std::uint32_t dedup_mask) {
           entries[next[cell]++] = {box, id, side | dedup_mask};
         });
       }
@@ -211,6 +228,7 @@ class Grid final : public PairFinder<D>,
   GridLayout<D> layout_;
   core::LargeArray<std::uint64_t> begin_;
   core::LargeArray<std::uint64_t> next_;
+  core::LargeArray<std::uint32_t> places_;  // by box: where it is put, as count_places() has it
   core::LargeArray<CellEntry<D>> entries_;
   core::Parallel parallel_;
   std::vector<GridSweep<D>> sweeps_;   // by worker

@@ -12,7 +12,7 @@ namespace broadside::algorithm {
 namespace {
 
 /// Up to here every cell's number is a float exactly.
-constexpr double most_cells_on_axis = 1 << 20;
+constexpr double most_cells = 1 << GridLayout<2>::cell_bits;
 
 /// Fewer boxes than this a cell, and looking at cells costs more than they save.
 constexpr double least_boxes_per_cell = 16;
@@ -58,22 +58,22 @@ template <int D>
 void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell) {
   axes_ = sample.axes_by_overlap();
   const auto boxes = static_cast<double>(count);
-  const double most_cells =
-      std::clamp(cell ? most_cells_per_box * boxes : boxes / least_boxes_per_cell, 1.0, most_cells_on_axis);
+  const double most_for_boxes =
+      std::clamp(cell ? most_cells_per_box * boxes : boxes / least_boxes_per_cell, 1.0, most_cells);
   const auto cells_of_size = [&](const auto& size_on) {
     std::array<double, gridded> cells;
     for (int axis = 0; axis < gridded; ++axis) {
       const core::AxisSample& on_axis = sample[axes_[axis + 1]];
       const double range = range_of(on_axis);
       const double size = size_on(on_axis);
-      cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, most_cells)) : 1;
+      cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, most_for_boxes)) : 1;
     }
     // Too many cells in all: the longer side gives way first.
     for (;;) {
       double product = 1;
       for (const double cells_on_axis : cells) product *= cells_on_axis;
       double& longest = *std::ranges::max_element(cells);
-      if (product <= most_cells || longest <= 1) break;
+      if (product <= most_for_boxes || longest <= 1) break;
       longest = std::max(1.0, std::floor(longest / 2));
     }
     return cells;

@@ -22,6 +22,9 @@ class GridLayout {
  public:
   static constexpr int gridded = D - 1;
 
+  /// A cell's number has no more bits than this.
+  static constexpr int cell_bits = 20;
+
   /// Chooses axes and cells for `count` boxes by what a search would cost; or cells `cell` wide, unless there
   /// would be too many.
   void choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell);

@@ -64,6 +64,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
   axes_ = layout.axes();
   range_ = range;
   doubles_ = cells.doubles;
+  checkpoint_ = cells.checkpoint;
   statistics_ = {};
   const std::size_t length = layout.row_length();
   columns_.resize(std::max(columns_.size(), length));
@@ -106,6 +107,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   next_up_.size = 0;
   next_along_.size = 0;
   if (count == 0) return true;
+  if (checkpoint_ != nullptr) checkpoint_->count(count);  // where cells are many, so are references to a box
   // Room for one more than there may be: where none goes on, one is written all the same.
   next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
   if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
@@ -125,7 +127,8 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   run_.reserve(count);
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
-  const kernels::Run<D> run = run_.view(doubles_, slack);
+  kernels::Run<D> run = run_.view(doubles_, slack);
+  run.checkpoint = checkpoint_;
   if (kernels::is_wasteful(run, most_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;

@@ -35,6 +35,7 @@ struct BoxesByCell {
   std::span<const CellEntry<D>> boxes;
   std::span<const std::uint64_t> begin;
   const Box<D, double>* doubles;  ///< as in a run
+  Checkpoint* checkpoint;         ///< likewise
 };
 
 /// The swept axis cut into buckets: how far it reaches.
@@ -107,6 +108,7 @@ class GridSweep {
   std::size_t swept_to_ = 0;
   SweptRange range_{};
   const Box<D, double>* doubles_ = nullptr;
+  Checkpoint* checkpoint_ = nullptr;
   Statistics statistics_;
   Carried along_;                      // to this cell, from the one before it in the row
   Carried next_along_;                 // from this cell to the next

@@ -119,23 +119,23 @@ void GridTracker<D>::move(const Change<D>& change, std::span<const BoxId> ids, b
 /// Finds what the boxes in parts_ meet.
 template <int D>
 void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
-  const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended) {
-    core::EventSinks<D> events(change, its_begun, its_ended, every_pair);
+  const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
+    core::EventSinks<D> events(change, its_begun, its_ended, every_pair, parallel_.checkpoint(worker));
     part.work =
         kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
     events.flush();
   };
-  if (parallel_.workers() == 1) return search(parts_.front(), begun, ended);
+  if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
   // A sink with a limit counts while threads search, not once their lists are full.
   const core::FilterSink* const limit = begun.as_filter();
-  parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t) {
+  parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
     for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {
       part.begun.clear();
       part.ended.clear();
       PairCollector its_begun(part.begun);
       PairCollector its_ended(part.ended);
       const auto limited = limit != nullptr ? limit->onto(its_begun) : nullptr;
-      search(part, limited ? *limited : static_cast<PairSink&>(its_begun), its_ended);
+      search(part, limited ? *limited : static_cast<PairSink&>(its_begun), its_ended, worker);
       if (limited) limited->flush();
       its_begun.flush();
       its_ended.flush();

@@ -67,6 +67,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     kernels::RunBuffer<D> run;
     kernels::RunBuffer<D> kept_run;
     Statistics statistics;
+    Checkpoint* checkpoint;
   };
 
   /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
@@ -81,6 +82,8 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     workers_.resize(std::max(workers_.size(), parallel_.workers()));
     sample_.take(boxes);
     sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
+    for (std::size_t worker = 0; worker < parallel_.workers(); ++worker)
+      workers_[worker].checkpoint = parallel_.checkpoint(worker);
     Worker& first = workers_[0];
     first.statistics = {};
     first.stack.references.clear();
@@ -216,7 +219,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     if (count <= capacity_ || !worker.stack.split(sorted_boxes_, begin, end, split)) {
       worker.statistics.references += count;
       gather(worker, begin, end, worker.run, [](std::size_t) { return true; });
-      worker.statistics.tests += kernels::sweep(worker.run.view(this->doubles()), pairs);
+      worker.statistics.tests += kernels::sweep(view(worker, worker.run), pairs);
       return;
     }
     if (worker.stack.kept_count > 0) sweep_kept(worker, begin, end, pairs);
@@ -237,9 +240,15 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     gather(worker, begin, end, worker.run,
            [&worker](std::size_t i) { return worker.stack.children[i] != 0; });
     worker.statistics.references += worker.kept_run.size();
-    worker.statistics.tests += kernels::sweep(worker.kept_run.view(this->doubles()), pairs);
-    worker.statistics.tests +=
-        kernels::sweep(worker.kept_run.view(this->doubles()), worker.run.view(this->doubles()), pairs);
+    const kernels::Run<D> kept = view(worker, worker.kept_run);
+    worker.statistics.tests += kernels::sweep(kept, pairs);
+    worker.statistics.tests += kernels::sweep(kept, view(worker, worker.run), pairs);
+  }
+
+  kernels::Run<D> view(const Worker& worker, kernels::RunBuffer<D>& buffer) const {
+    kernels::Run<D> run = buffer.view(this->doubles());
+    run.checkpoint = worker.checkpoint;
+    return run;
   }
 
   /// Fills `run` with those of the node's references whose places in the node are `wanted`.

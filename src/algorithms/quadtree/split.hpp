@@ -12,6 +12,7 @@
 #include "broadside/box.hpp"
 
 #include "core/large_array.hpp"
+#include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 
 namespace broadside::algorithm {
@@ -104,7 +105,7 @@ class QuadtreeStack {
       const auto sample = [&](std::size_t i) -> const Box<D>& {
         return boxes[references[begin + (2 * i + 1) * count / (2 * samples)].place].box;
       };
-      for (std::size_t i = 0; i < samples; ++i) minima[i] = sample(i).min[axis];
+      for (std::size_t i = 0; i < samples; ++i) minima[i] = core::without_nan(sample(i).min[axis]);
       std::ranges::sort(minima);
       const float at = minima[samples / 2];
       std::size_t crossing = 0;

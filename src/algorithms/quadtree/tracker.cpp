@@ -73,7 +73,9 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
       moved_since_build_ = 0;
     }
     tree_.resize(boxes);
-    core::EventSinks<D> events(change, begun, ended, every_pair);
+    Checkpoint checkpoint(this->workers().checkpoint);
+    checkpoint_ = &checkpoint;
+    core::EventSinks<D> events(change, begun, ended, every_pair, &checkpoint);
     std::uint64_t tests = 0;
     // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
     // once would be compared with each other.
@@ -163,6 +165,7 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
   /// Makes sure that a mover is in a node.
   void place(std::uint32_t number, std::uint32_t node, const Parts& parts) {
     const core::MovedBox<D>& mover = movers_[number];
+    checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // blocks of a chain that are passed
     std::uint32_t slot;
     if (parts.before == 0)
       slot = tree_.insert(node, mover.bounds, mover.id);
@@ -209,6 +212,7 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
   std::vector<Look> looks_;
   std::vector<Look> above_;  // for each mover the uppermost node it has looked at
   std::vector<kernels::BlockTask> tasks_;
+  Checkpoint* checkpoint_ = nullptr;  // of this update
 
   // The mover that is being inserted: where it was at home, and in how many nodes it stays.
   QuadtreeHome home_;

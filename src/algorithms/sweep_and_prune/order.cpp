@@ -157,7 +157,7 @@ void SweepOrder<D>::set_reach(std::size_t first_block, std::size_t last_block) {
 }
 
 template <int D>
-void SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
+std::size_t SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
   const SweepKey to_key{box.min[0], id_[from]};
   std::size_t to = find(to_key, from);
   // The search has counted the box itself where it goes up.
@@ -171,6 +171,7 @@ void SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
   }
   arrays_.set(to, box, to_key.id);
   set_reach(std::min(from, to) / fan, std::max(from, to) / fan);
+  return std::max(from, to) - std::min(from, to);
 }
 
 template <int D>

@@ -65,7 +65,8 @@ class SweepOrder {
   Box<D> box(std::size_t place) const;
 
   /// Gives the box at `place` other bounds and moves it to where it belongs, and those between by one.
-  void move(std::size_t place, const Box<D>& box);
+  /// Returns how many these are.
+  std::size_t move(std::size_t place, const Box<D>& box);
 
   /// Lets the box at `place` overlap nothing, until it is left out of a new order.
   void remove(std::size_t place);

@@ -145,10 +145,12 @@ class SweepAndPrune final : public PairFinder<D>,
       this->count({.references = run.size});
       return;
     }
-    const auto sweep = [&](core::Range some, std::size_t, PairSink& sink) {
+    const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * swept_at_once;
       const std::size_t end = std::min(some.end * swept_at_once, run.size);
-      return Statistics{.tests = kernels::sweep(kernels::rows_of(run, begin, end), sink)};
+      kernels::Run<D> rows = kernels::rows_of(run, begin, end);
+      rows.checkpoint = parallel_.checkpoint(worker);
+      return Statistics{.tests = kernels::sweep(rows, sink)};
     };
     Statistics statistics = parallel_.search((run.size + swept_at_once - 1) / swept_at_once, pairs, sweep);
     statistics.references = run.size;
@@ -187,7 +189,9 @@ class SweepAndPrune final : public PairFinder<D>,
           run.append(sorted[i].box, sorted[i].id,
                      before | kernels::side_bit(sorted[i].id, this->left_count()));
         }
-        statistics.tests += kernels::sweep(run.view(this->doubles()), sink);
+        kernels::Run<D> view = run.view(this->doubles());
+        view.checkpoint = parallel_.checkpoint(worker);
+        statistics.tests += kernels::sweep(view, sink);
         statistics.references += list.size();
       }
       return statistics;

@@ -33,6 +33,7 @@ class SweepAndPruneTracker final : public PairTracker<D> {
     moved_.clear();
     core::append_moved(change, change.changed, moved_);
     core::EventSinks<D> events(change, begun, ended);
+    Checkpoint checkpoint(this->workers().checkpoint);
     std::uint64_t tests = 0;
     bool comes_or_goes = false;
     for (core::MovedBox<D>& box : moved_) {
@@ -41,16 +42,22 @@ class SweepAndPruneTracker final : public PairTracker<D> {
       comes_or_goes |= !box.was_present || !box.is_present;
       if (!box.was_present) continue;
       const std::size_t place = order_.find({box.before.min[0], box.id});
-      tests += order_.find_changes(box, place, events.sinks());
+      const std::uint64_t compared = order_.find_changes(box, place, events.sinks());
+      tests += compared;
+      std::size_t moved = 0;
       if (box.is_present)
-        order_.move(place, box.now);
+        moved = order_.move(place, box.now);
       else
         order_.remove(place);
+      checkpoint.count(compared + moved);
     }
     if (comes_or_goes) merge(change);
     for (const core::MovedBox<D>& box : moved_) {
-      if (!box.was_present)
-        tests += order_.find_changes(box, order_.find({box.now.min[0], box.id}), events.sinks());
+      if (box.was_present) continue;
+      const std::uint64_t compared =
+          order_.find_changes(box, order_.find({box.now.min[0], box.id}), events.sinks());
+      tests += compared;
+      checkpoint.count(compared);
     }
     events.flush();
     this->count(Statistics{.tests = tests, .references = order_.size()});

@@ -68,24 +68,33 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
   }
   state_->reserve_moves(boxes.size());
   if (!state_->has_margin() && !state_->quarantines()) return state_->set_boxes(handles, boxes);
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    state_->set_box(handles[i].slot, boxes[i], velocities.empty() ? nullptr : &velocities[i]);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const std::uint32_t slot = handles[i].slot;
+    if (slot >= state_->slots.size()) continue;  // written by another thread since it was checked
+    state_->set_box(slot, boxes[i], velocities.empty() ? nullptr : &velocities[i]);
+  }
 }
 
 template <int D, typename Real>
 void World<D, Real>::remove(std::span<const Handle> handles) {
   using SlotState = typename State::SlotState;
   state_->reserve_removals(handles.size(), state_->ignored_edges.size());
-  // One that is there twice is no longer live when it comes again.
-  for (std::size_t i = 0; i < handles.size(); ++i) {
-    if (state_->is_live(handles[i])) {
-      state_->slots[handles[i].slot].state = SlotState::removed;
+  // Each handle is read once: another thread may write to the caller's list. One that is there twice is no
+  // longer live when it comes again.
+  const std::size_t removed_before = state_->removed.size();
+  for (const Handle handle : handles) {
+    if (state_->is_live(handle)) {
+      state_->list_removed(handle.slot);
       continue;
     }
-    for (const Handle earlier : handles.first(i)) state_->slots[earlier.slot].state = SlotState::live;
-    state_->refuse(handles[i], state_->is_live(handles[i]) ? "remove twice" : "remove");
+    for (std::size_t i = removed_before; i < state_->removed.size(); ++i)
+      state_->slots[state_->removed[i].slot].state = SlotState::live;
+    state_->removed.erase(state_->removed.begin() + static_cast<std::ptrdiff_t>(removed_before),
+                          state_->removed.end());
+    state_->refuse(handle, state_->is_live(handle) ? "remove twice" : "remove");
   }
-  for (const Handle handle : handles) state_->remove_valid(handle.slot);
+  for (std::size_t i = removed_before; i < state_->removed.size(); ++i)
+    state_->clear_removed(state_->removed[i].slot);
 }
 
 template <int D, typename Real>

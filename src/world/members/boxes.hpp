@@ -49,7 +49,8 @@ template <int D, typename Real>
 void World<D, Real>::remove(Handle handle) {
   const std::uint32_t slot = state_->live_slot(handle, "remove");
   state_->reserve_removals(1, state_->ignored_edges.size());
-  state_->remove_valid(slot);
+  state_->list_removed(slot);
+  state_->clear_removed(slot);
 }
 
 template <int D, typename Real>
@@ -260,6 +261,7 @@ void World<D, Real>::State::set_boxes(std::span<const Handle> handles, BoxView<D
   BoxId* next = changed.data() + listed;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::uint32_t slot = handles[i].slot;
+    if (slot >= slots.size()) continue;  // written by another thread since it was checked
     boxes[slot] = given[i];
     *next = BoxId{slot};
     next += static_cast<std::size_t>(!slots[slot].is_changed);
@@ -280,11 +282,16 @@ void World<D, Real>::State::reserve_removals(std::size_t count, std::size_t igno
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::remove_valid(std::uint32_t slot) noexcept {
-  mark_changed(slot);
+void World<D, Real>::State::list_removed(std::uint32_t slot) noexcept {
   slots[slot].state = SlotState::removed;
   slots[slot].place = static_cast<std::uint32_t>(removed.size());
   removed.push_back({slot, boxes[slot]});
+}
+
+/// Takes a box that list_removed() has listed out of all else.
+template <int D, typename Real>
+void World<D, Real>::State::clear_removed(std::uint32_t slot) noexcept {
+  mark_changed(slot);
   boxes[slot] = absent_box<D, Real>();
   if (has_margin()) {
     mark_moved(slot);
