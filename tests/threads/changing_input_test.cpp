@@ -245,7 +245,7 @@ TEST_P(ChangingInput, SpoilsNothingButPairsWhereAnotherThreadWrites) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ChangingInput, testing::ValuesIn(threaded_cases()),
-                         [](const auto& info) { return name(info.param); });
+                         [](const auto& one) { return name(one.param); });
 
 TEST(ChangingIndex, SpoilsNothingButAnswersWhereAnotherThreadWrites) {
   if (is_race_refused) GTEST_SKIP() << "a race that is meant";

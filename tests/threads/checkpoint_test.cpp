@@ -30,7 +30,7 @@ std::vector<Box2> apart(std::size_t count) {
   return boxes;
 }
 
-class Checkpoint : public testing::TestWithParam<std::size_t> {
+class SearchCheckpoint : public testing::TestWithParam<std::size_t> {
  protected:
   std::unique_ptr<PairFinder<2>> finder(std::string_view spec, std::function<void()> checkpoint) const {
     auto made = make_finder<2>(spec);
@@ -46,7 +46,7 @@ class Checkpoint : public testing::TestWithParam<std::size_t> {
   mutable laws::ReverseExecutor executor_;
 };
 
-TEST_P(Checkpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
+TEST_P(SearchCheckpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
   std::vector<Box2> boxes = apart(20'000);
   for (std::size_t i = 0; i < 500; ++i) boxes.push_back(boxes[7 * i]);
   for (const std::string_view spec : {"brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"}) {
@@ -63,7 +63,7 @@ TEST_P(Checkpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
   }
 }
 
-TEST_P(Checkpoint, EndsASearchThatFindsNothing) {
+TEST_P(SearchCheckpoint, EndsASearchThatFindsNothing) {
   const std::vector<Box2> boxes = apart(20'000);
   int passed = 0;
   const auto brute = finder("brute_force", [&] {
@@ -107,7 +107,7 @@ TEST(CheckpointOfAWaitingThread, EndsWhatAnotherThreadSearches) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Checkpoint, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Threads, SearchCheckpoint, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace broadside

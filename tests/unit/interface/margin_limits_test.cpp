@@ -26,9 +26,9 @@ namespace {
 /// large ones' pairs to a box. A small box and a large one overlap nowhere, and all do once they are
 /// enlarged.
 template <typename Real>
-class Wall {
+class BoxesBesideAWall {
  public:
-  explicit Wall(std::size_t count, double unit = 1) : unit_(unit), gaps(count), boxes(count) {
+  explicit BoxesBesideAWall(std::size_t count, double unit = 1) : unit_(unit), gaps(count), boxes(count) {
     while (large * (large - 1) / 2 < 2 * count) ++large;
     for (std::size_t i = 0; i < count; ++i) {
       gaps[i] = random.between(0.06F, 0.08F);
@@ -107,7 +107,7 @@ constexpr std::size_t boxes_beside_the_wall = 8000;
 template <typename Real>
 void tremble_beside_a_wall(const std::string& spec, std::size_t threads, double unit = 1) {
   SCOPED_TRACE(spec + ", " + std::to_string(threads) + " threads");
-  Wall<Real> wall(boxes_beside_the_wall, unit);
+  BoxesBesideAWall<Real> wall(boxes_beside_the_wall, unit);
   const auto tracker = make_tracker<2, Real>(spec);
   tracker->set_workers({.threads = threads, .executor = nullptr, .boxes_per_thread = 1});
   const auto expected = make_tracker<2, Real>("grid:update=follow");
@@ -135,7 +135,7 @@ TEST(MarginLimits, AreTestedWhileCandidatesAreFound) {
 template <typename Real>
 void approach_a_wall(const std::string& spec, std::size_t threads, bool at_once) {
   SCOPED_TRACE(spec + ", " + std::to_string(threads) + " threads");
-  Wall<Real> wall(boxes_beside_the_wall);
+  BoxesBesideAWall<Real> wall(boxes_beside_the_wall);
   for (double& gap : wall.gaps) gap = at_once ? 0.6 : wall.random.between(0.5F, 0.9F);
   const auto tracker = make_tracker<2, Real>(spec);
   tracker->set_workers({.threads = threads, .executor = nullptr, .boxes_per_thread = 1});
@@ -164,7 +164,7 @@ TEST(MarginLimits, HoldInEveryFrameAfterwards) {
 }
 
 TEST(MarginLimits, AreTriedLessAndLessOften) {
-  Wall<float> wall(600);
+  BoxesBesideAWall<float> wall(600);
   const auto tracker = make_tracker<2>("auto");
   std::vector<std::uint64_t> tests;
   for (int frame = 0; frame < 7000; ++frame) {
@@ -184,7 +184,7 @@ TEST(MarginLimits, AreTriedLessAndLessOften) {
 
 TEST(MarginLimits, CountNoCandidatesThatFiltersRefuse) {
   // As beside the wall, and nothing large meets anything small.
-  Wall<float> wall(boxes_beside_the_wall);
+  BoxesBesideAWall<float> wall(boxes_beside_the_wall);
   std::vector<Filter> filters(wall.boxes.size());
   for (std::size_t i = 0; i < filters.size(); ++i) {
     filters[i].category = i < wall.large ? 1 : 2;
