@@ -69,7 +69,9 @@ class BoxesBesideAWall {
   std::vector<BoxId> changed;
 };
 
-bool is_enlarged(const std::string& explanation) { return explanation.find("enlarged") != std::string::npos; }
+bool mentions_enlarged(const std::string& explanation) {
+  return explanation.find("enlarged") != std::string::npos;
+}
 
 /// What the frames of a tracker took at most.
 struct Most {
@@ -99,7 +101,7 @@ void follow(PairTracker<2, Real>& tracker, PairTracker<2, Real>& expected, const
   most.tests = std::max(most.tests, tracker.statistics()->tests);
   most.bytes = std::max(most.bytes, tracker.bytes());
   most.last_bytes = tracker.bytes();
-  most.enlarged += static_cast<std::size_t>(is_enlarged(tracker.explanation()));
+  most.enlarged += static_cast<std::size_t>(mentions_enlarged(tracker.explanation()));
 }
 
 constexpr std::size_t boxes_beside_the_wall = 8000;
@@ -171,7 +173,7 @@ TEST(MarginLimits, AreTriedLessAndLessOften) {
     wall.tremble();
     PairCounter none;
     tracker->update({wall.boxes, wall.changed}, none, none);
-    ASSERT_FALSE(is_enlarged(tracker->explanation())) << frame;
+    ASSERT_FALSE(mentions_enlarged(tracker->explanation())) << frame;
     if (frame > 0) tests.push_back(tracker->statistics()->tests);
   }
   std::vector<std::uint64_t> sorted = tests;
