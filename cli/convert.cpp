@@ -27,6 +27,7 @@ struct ConvertArguments {
 };
 
 Exit run(const ConvertArguments& arguments) {
+  check_is_no_scene(arguments.file);
   check_writable("-o", arguments.output);
   check_is_other_file("-o", arguments.output, arguments.file);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);

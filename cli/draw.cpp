@@ -19,6 +19,7 @@
 #include "cli/verbs.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/formats/write_file.hpp"
+#include "lab/numbers.hpp"
 #include "lab/report/drawing.hpp"
 #include "lab/scenes/scene.hpp"
 
@@ -121,6 +122,9 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
                       arguments.seed.value_or(lab::SceneRequest{}.seed), frame_of(arguments, named.scene));
   const std::string picture = lab::svg_of(drawing);
   lab::write_file(arguments.output, [&picture](std::ostream& file) { file << picture; });
+  say(fmt::format("{}: {} of {} boxes in {}D, {}",
+                  arguments.output == "-" ? "standard output" : arguments.output, lab::grouped(drawing.boxes),
+                  lab::grouped(drawing.of), drawing.dimension, lab::bytes(picture.size())));
   return Exit::fine;
 }
 

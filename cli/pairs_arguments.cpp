@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <span>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -142,6 +144,13 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
                                arguments.files.size()));
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
+  for (const std::string& file : arguments.files) check_is_no_scene(file);
+  // What is read from a pipe is gone, and the second reader would wait for ever.
+  std::error_code ignored;
+  if (arguments.files.size() == 2 && !std::filesystem::is_regular_file(arguments.files[0], ignored) &&
+      std::filesystem::equivalent(arguments.files[0], arguments.files[1], ignored))
+    throw Unusable(fmt::format("{} and {} are one pipe; expected it once, or a file", arguments.files[0],
+                               arguments.files[1]));
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);

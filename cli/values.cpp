@@ -12,9 +12,11 @@
 #include "broadside/executor.hpp"
 
 #include "cli/message.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/formats/input.hpp"
 #include "lab/formats/write_file.hpp"
 #include "lab/platform/descriptor.hpp"
+#include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
 
@@ -123,6 +125,16 @@ void check_extension(const std::string& option, const std::string& path,
     return;
   throw Unusable(
       fmt::format("{} is '{}'; expected a file's name with {}", option, path, fmt::join(expected, " or ")));
+}
+
+void check_is_no_scene(const std::string& path) {
+  std::error_code ignored;
+  const std::string name = path.substr(0, path.find(':'));
+  if (lab::is_path(path) || std::filesystem::exists(path, ignored) ||
+      std::ranges::find(lab::scenes(), name, &lab::Scene::name) == lab::scenes().end())
+    return;
+  throw Unusable(fmt::format("'{}' is a scene; expected a file, such as `broadside scene {} -o {}.csv` makes",
+                             path, path, name));
 }
 
 void check_is_other_file(const std::string& option, const std::string& path, const std::string& input) {

@@ -272,15 +272,10 @@ std::string resolve(std::span<const std::string_view> names, BoxColumns& columns
   };
   if (columns.has_frames) {
     const int track = box == none ? first_of(names, track_names) : none;
-    if (box == none && track == none)
-      return fmt::format("column {} without a column 'box' or 'id'",
-                         shown(names[static_cast<std::size_t>(frame)]));
-    columns.has_tracks = track != none;
+    columns.has_tracks = box == none;
     place(frame, BoxColumns::frame);
-    if (columns.has_tracks)
-      place(track, BoxColumns::track);
-    else
-      place(box, BoxColumns::box);
+    if (box != none) place(box, BoxColumns::box);
+    if (track != none) place(track, BoxColumns::track);
   }
   return resolve_bounds(names, found, are_chosen, columns);
 }
@@ -379,8 +374,9 @@ std::vector<std::string> unnamed_meanings(std::size_t count) {
       return {"-,cx,cy,w,h", "-,left,top,right,bottom", "left,top,right,bottom"};
     case 6:
       return {"-,cx,cy,w,h", "-,-,left,top,right,bottom", "-,left,top,right,bottom", "left,top,right,bottom"};
-    case 7:
     case 8:
+      return {"-,x,y,w,h", "frame,id,left,top,width,height"};  // Make Sense
+    case 7:
     case 9:
     case 10:
       return {"frame,id,left,top,width,height"};  // MOT Challenge

@@ -97,7 +97,9 @@ struct BoxColumns {
   std::vector<int> places{};         ///< of each column's value in a row, or `ignored`
   int dimension = 2;
   bool has_frames = false;
-  bool has_tracks = false;  ///< each frame lists the boxes that are there, by a name or number
+  /// Each frame lists the boxes that are there, by a name or number, or without one: then they are numbered
+  /// anew.
+  bool has_tracks = false;
   bool has_geometry =
       false;  ///< a text instead of columns of bounds; its dimension is known once one is read
   std::array<BoundsForm, 3> forms{};
@@ -141,7 +143,7 @@ bool is_column_name(std::string_view name);
 /// Whether a name is that of a column of geometries as text, or of bounds in one field.
 bool is_geometry_name(std::string_view name);
 
-/// BoxColumns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
+/// Columns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
 std::string positional(std::size_t count, BoxColumns& columns);
 
 /// What else columns may mean, as lists for --columns: those of a table, those of rows of so many numbers,

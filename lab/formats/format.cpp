@@ -288,8 +288,9 @@ template void write_scene(const History<3, double>&, const std::filesystem::path
 bool is_path(std::string_view text) {
   const std::filesystem::path path(text);
   std::error_code ignored;
-  return text == "-" || std::filesystem::is_regular_file(path, ignored) ||
-         text.find('/') != std::string_view::npos ||
+  const std::filesystem::file_type type = std::filesystem::status(path, ignored).type();
+  return text == "-" || type == std::filesystem::file_type::regular ||
+         type == std::filesystem::file_type::fifo || text.find('/') != std::string_view::npos ||
          std::ranges::any_of(formats(),
                              [&](const Format& format) { return has_extension(format, extension_of(path)); });
 }

@@ -47,6 +47,13 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
      "python3 -c \"import h5py, numpy; numpy.save('out.npy', h5py.File('IN')['NAME'][:])\""},
     {"a MATLAB file", ".mat ", "MATLAB 5.0 MAT-file",
      "python3 -c \"import scipy.io, numpy; numpy.save('out.npy', scipy.io.loadmat('IN')['NAME'])\""},
+    {"an annotation in Pascal VOC's XML", "", "<annotation",
+     "python3 -c \"import xml.etree.ElementTree as E; print('xmin,ymin,xmax,ymax'); [print(*(b.findtext(k) "
+     "for k in "
+     "('xmin', 'ymin', 'xmax', 'ymax')), sep=',') for b in E.parse('IN').iter('bndbox')]\" > out.csv"},
+    {"intervals of a genome (BED)", ".bed ", "",
+     "awk -v OFS=, 'BEGIN {print \"id,min_x,min_y,max_x,max_y\"} !($1 in n) {n[$1] = NR} {print NR - 1, $2, "
+     "n[$1], $3 - 1, n[$1]}' IN > out.csv"},
     {"a pickle of Python", ".pkl .pickle ", "",
      "python3 -c \"import pickle, numpy; numpy.save('out.npy', pickle.load(open('IN', 'rb')))\""},
     {"a spreadsheet", ".xls ", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", office},

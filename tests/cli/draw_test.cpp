@@ -26,6 +26,7 @@ TEST(DrawVerb, WritesAPictureOfASceneWithWhatAlgorithmsLayOverIt) {
       run({"draw", "uniform", "--algorithm", "grid,quadtree:capacity=16", "-n", "100", "-o", file});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_EQ(ended.output, "");
+  EXPECT_THAT(ended.errors, HasSubstr("grid.svg: 100 of 100 boxes in 2D, "));
   EXPECT_THAT(folder.names(), ElementsAre("grid.svg"));
   EXPECT_THAT(text_of(file), AllOf(StartsWith("<svg "), HasSubstr(">grid</text>"),
                                    HasSubstr(">quadtree:capacity=16</text>"), EndsWith("</svg>\n")));

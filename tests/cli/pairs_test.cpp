@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "process.hpp"
 #include "refusal.hpp"
@@ -235,19 +236,41 @@ TEST(PairsVerb, WritesTheUsersIds) {
             "id,min_x,min_y,max_x,max_y\n2.50,2,2,2,2\nx,9,9,9,9\n");
   const std::string array = folder.file("left.npy");
   ASSERT_EQ(run({"convert", left, "-o", array}).status, 0);
-  const std::string no_ids = folder.put("no.csv", "id,min_x,min_y,max_x,max_y\n,0,0,1,1\n");
+  EXPECT_EQ(run({"convert", right, "--ids", "other", "--to", "csv", "-o", "-"}).output,
+            "id,min_x,min_y,max_x,max_y\n,2,2,2,2\n1,9,9,9,9\n")
+      << "a feature without the property has an empty id";
+  const std::string no_ids = folder.put("no.csv", "id,min_x,min_y,max_x,max_y\n,0,0,1,1\nb,1,1,2,2\n");
+  EXPECT_EQ(run({"pairs", no_ids, "--ids", "id"}).output, "first,second\n,b\n");
   expect_refused(
       "pairs",
       {
           {{left, "--ids", "nam"}, {"left.csv:1: no column 'nam'", "expected one of: name, min_x"}},
           {{left, "--ids", "min_x"}, {"column 'min_x' is read already"}},
-          {{no_ids, "--ids", "id"}, {"no.csv:2: column id is ''", "expected an id"}},
-          {{right, "--ids", "other"}, {"feature 0: a feature without a property 'other'"}},
+          {{right, "--ids", "nme"}, {"right.geojson: no feature has a property 'nme'"}},
           {{left, "--ids", "name", "--ids", "name"}, {"--ids 2 times with 1 file"}},
           {{left, "--ids", "name", "--count"}, {"--ids with --count"}},
           {{left, "--ids", "name", "-o", folder.file("a.npy")}, {"--ids with an array", "expected CSV"}},
           {{array, "--ids", "name"}, {"format npy, which has no ids"}},
       });
+}
+
+TEST(PairsVerb, ReadsAPipeOnceAndNeverWaitsForASecondWriter) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string verb : {"pairs --count", "info", "draw -o -"}) {
+    const Ended ended = shell("printf 'min_x,min_y,max_x,max_y\\n0,0,2,2\\n1,1,3,3\\n' > " + pipe +
+                              " & $BROADSIDE " + verb + " " + pipe);
+    EXPECT_EQ(ended.status, 0) << verb << ended.errors;
+  }
+  expect_refused("pairs", {{{pipe, pipe}, {"are one pipe; expected it once"}}});
+}
+
+TEST(PairsVerb, SaysHowASceneBecomesAFile) {
+  for (const std::string verb : {"pairs", "convert"})
+    expect_refused(verb, {{{"uniform", "-o", "out.csv"},
+                           {"'uniform' is a scene; expected a file, such as `broadside scene uniform -o "
+                            "uniform.csv` makes"}}});
 }
 
 TEST(PairsVerb, FindsWhatIsWithinADistance) {
@@ -279,10 +302,8 @@ TEST(PairsVerb, LeavesOutWhatIsInvalidAndSaysWhich) {
       5,
       {"type": "Feature", "id": 3, "geometry": {"type": "Point", "coordinates": [1, 1]}}]})");
   const Ended mapped = run({"pairs", map, "--skip-invalid", "--ids", "id"});
-  EXPECT_EQ(mapped.output, "first,second\n2,3\n");
-  EXPECT_THAT(mapped.errors,
-              AllOf(HasSubstr("feature 0: '\"x\"'"), HasSubstr("feature 2: a feature without a member"),
-                    HasSubstr("left out 3 invalid boxes")));
+  EXPECT_EQ(mapped.output, "first,second\n2,\n2,3\n,3\n");
+  EXPECT_THAT(mapped.errors, AllOf(HasSubstr("feature 0: '\"x\"'"), HasSubstr("left out 2 invalid boxes")));
   EXPECT_EQ(run({"pairs", map, "--skip-invalid"}).output, "first,second\n1,2\n1,4\n2,4\n");
   const std::string array = folder.file("boxes.npy");
   ASSERT_EQ(run({"scene", "uniform", "-n", "5", "-o", array}).status, 0);

@@ -45,7 +45,7 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
   const skipped = comparison.measurements.filter(({ verified }) => verified === null).length;
   const measured = comparison.measurements.length - skipped;
   return el("dl", { class: "tiles" },
-    best !== undefined && tile("Fastest over all", best.algorithm,
+    best !== undefined && tile("Fastest overall", best.algorithm,
       `${rounded(best.ratio)} times the fastest's time, geometric mean of ${plural(best.cases, "case")}`),
     leads.length > 0 && tile("Ours against the fastest peer",
       `${rounded(geometricMean(leads.map(({ ratio }) => ratio.median)))} times`,
@@ -131,8 +131,8 @@ function caseTable(of: Case): HTMLElement {
       { title: "rounds", value: (m) => m.rounds, text: (m) => (isTimed(m) && m.rounds !== null ? grouped(m.rounds) : "–") },
       { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
       { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytesText(m.own_bytes)) },
-      { title: "remarks", long: true, value: remarksOf, text: (m) => remarksOf(m) ?? "" },
     ],
+    note: remarksOf,
   });
 }
 
@@ -181,12 +181,12 @@ function measurementsTable(comparison: Comparison): HTMLElement {
     { title: "references", value: (m) => m.references, text: (m) => number(m.references) },
     { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytesText(m.own_bytes)) },
     { title: "outcome", value: outcomeOf },
-    { title: "remarks", long: true, value: remarksOf, text: (m) => remarksOf(m) ?? "" },
   ];
   return dataTable({
     caption: "All measurements",
     rows: comparison.measurements,
     columns,
+    note: remarksOf,
     search: true,
     filters: [
       { title: "Scene", value: (m) => m.scene },

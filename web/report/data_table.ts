@@ -8,8 +8,6 @@ export interface DataColumn<Row> {
   value: (row: Row) => number | string | null;
   /** Standard: the value as it is. */
   text?: (row: Row) => string;
-  /** May be long, and is broken. */
-  long?: boolean;
 }
 
 export interface DataFilter<Row> {
@@ -23,6 +21,8 @@ export interface DataTableSpec<Row> {
   rows: readonly Row[];
   /** A list to choose from for each; lists that would offer one choice are left out. */
   filters?: readonly DataFilter<Row>[];
+  /** Text of any length, below its row and as wide as the table is seen; null for none. */
+  note?: (row: Row) => string | null;
   /** With a field in which rows are searched by their texts. */
   search?: boolean;
 }
@@ -47,7 +47,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   let most = pageRows;
 
   const numeric = spec.columns.map((column) => spec.rows.every((row) => typeof column.value(row) !== "string"));
-  const classOf = (i: number): string => (numeric[i] === true ? "number" : spec.columns[i]?.long === true ? "long" : "");
+  const classOf = (i: number): string => (numeric[i] === true ? "number" : "");
   const body = el("tbody");
   const count = el("p", { class: "note" });
   const more = el("button", { type: "button", class: "more", onclick: () => {
@@ -73,7 +73,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
     const left = spec.rows.filter((row) =>
       [...chosen].every(([filter, value]) => filter.value(row) === value) &&
       (words.length === 0 || (() => {
-        const text = spec.columns.map((column) => textOf(column, row)).join(" ").toLowerCase();
+        const text = [...spec.columns.map((column) => textOf(column, row)), spec.note?.(row) ?? ""].join(" ").toLowerCase();
         return words.every((word) => text.includes(word));
       })()));
     const column = spec.columns[sorted];
@@ -83,8 +83,13 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   function show(): void {
     const left = rowsLeft();
     const shown = left.slice(0, most);
-    body.replaceChildren(...shown.map((row) =>
-      el("tr", {}, ...spec.columns.map((column, i) => el("td", { class: classOf(i) }, textOf(column, row))))));
+    body.replaceChildren(...shown.flatMap((row) => {
+      const note = spec.note?.(row) ?? null;
+      const cells = spec.columns.map((column, i) => el("td", { class: classOf(i) }, textOf(column, row)));
+      if (note === null) return [el("tr", {}, ...cells)];
+      return [el("tr", { class: "noted" }, ...cells),
+        el("tr", { class: "remark" }, el("td", { colspan: spec.columns.length }, el("p", {}, note)))];
+    }));
     const rows = left.length === 1 ? "row" : "rows";
     count.textContent = left.length === spec.rows.length
       ? `${grouped(left.length)} ${rows}` : `${grouped(left.length)} of ${grouped(spec.rows.length)} rows`;

@@ -145,7 +145,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
 
   test("filters and searches its measurements, and says how many are left", async () => {
     const { page } = await open("fixture.html");
-    const rows = "#measurements tbody tr";
+    const rows = "#measurements tbody tr:not(.remark)";
     assert.equal(await page.locator(rows).count(), comparison.measurements.length);
     await page.getByLabel("Outcome").selectOption("skipped");
     assert.equal(await page.locator(rows).count(), 1);
@@ -156,6 +156,17 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     await page.locator("#measurements").getByLabel("Search").fill("churn");
     assert.equal(await page.locator(rows).count(), 1);
     await page.close();
+  });
+
+  test("shows each remark whole, within the window", async () => {
+    for (const width of [1280, 400]) {
+      const { page } = await open("fixture.html", { width });
+      const remark = page.locator("#measurements .remark p").first();
+      await remark.scrollIntoViewIfNeeded();
+      const { x, width: wide } = (await remark.boundingBox())!;
+      assert.ok(x >= 0 && x + wide <= width, `from ${x}, ${wide} px wide, in a window of ${width}`);
+      await page.close();
+    }
   });
 
   test("says at its top that the machine was busy and times unsteady", async () => {

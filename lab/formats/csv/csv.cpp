@@ -307,7 +307,7 @@ AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options
   if (!note.empty()) note = fmt::format("{}: {}", input->name(), note);
   std::shared_ptr<BoxLabels> labels = find_labels(options, lines, columns);
   return read_csv({std::move(input), lines, separator, std::move(columns), std::move(labels),
-                   !options.ids.empty(), Quarantine(options), lines, std::move(others), std::move(note)},
+                   Quarantine(options), lines, std::move(others), std::move(note)},
                   options.precision.value_or(Precision::float64));
 }
 

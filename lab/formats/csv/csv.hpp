@@ -19,7 +19,6 @@ struct CsvTable {
   Separator separator;
   BoxColumns columns;
   std::shared_ptr<BoxLabels> labels;
-  bool needs_ids;  ///< a present box without an id is refused
   Quarantine quarantine;
   CsvLines begin;                     ///< `lines`, as they were first
   std::vector<std::string> others{};  ///< what else the columns may mean, for other_ways()

@@ -39,7 +39,8 @@ class CsvRows {
     } while (is_blank(table_.lines.line()));
     // Here, since no row to be skipped may hide that the rows after it are counted wrong.
     if (has_open_quote(table_.lines.line(), table_.separator))
-      table_.lines.refuse("a quoted field that goes on in the next line", "each row on one line");
+      table_.lines.refuse("a quoted field that goes on in the next line",
+                          "each row on one line; a quote that is text goes by tr -d '\"'");
     return true;
   }
 
@@ -108,8 +109,8 @@ class CsvRows {
 
   const std::string& id() const noexcept { return id_; }
 
-  bool has_id_column() const noexcept {
-    return std::ranges::find(table_.columns.places, BoxColumns::id) != table_.columns.places.end();
+  bool has_column(int place) const noexcept {
+    return std::ranges::find(table_.columns.places, place) != table_.columns.places.end();
   }
 
   /// The frame of a table with tracks: any number.
@@ -140,8 +141,6 @@ class CsvRows {
     }
     if (is_absent(box)) return box;
     if (!is_present(box)) refuse_inverted(box);
-    if (table_.needs_ids && id_.empty() && (has_id_column() || track_.empty()))
-      refuse(BoxColumns::id, "an id");
     return box;
   }
 

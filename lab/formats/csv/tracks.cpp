@@ -58,6 +58,7 @@ class TracksCsv final : public FrameReader<D, Real> {
   struct Listed {
     double frame;
     std::uint32_t track;  // no_track in a row that says no more than that there is the frame
+    std::uint32_t row;
     std::uint64_t line;
     Box<D, Real> box;
   };
@@ -65,23 +66,28 @@ class TracksCsv final : public FrameReader<D, Real> {
   /// Reads all rows and brings them in the order of their frames.
   void read_rows() {
     std::unordered_map<std::string, std::uint32_t> tracks;
+    std::unordered_map<double, std::uint32_t> rows_of_frame;
     while (rows_.next()) {
       if (!rows_.read()) continue;
       rows_.holds([&] {
-        Listed listed{rows_.frame(), no_track, rows_.lines().number(), rows_.box()};
+        Listed listed{rows_.frame(), no_track, static_cast<std::uint32_t>(row_ids_.size()),
+                      rows_.lines().number(), rows_.box()};
+        // Without a column of tracks, a box is that of the same place in another frame.
+        const std::string place =
+            rows_.has_column(BoxColumns::track) ? "" : fmt::to_string(rows_of_frame[listed.frame]++);
         if (!is_absent(listed.box)) {
-          listed.track =
-              tracks.try_emplace(rows_.track(), static_cast<std::uint32_t>(tracks.size())).first->second;
+          const std::string& track = place.empty() ? rows_.track() : place;
+          listed.track = tracks.try_emplace(track, static_cast<std::uint32_t>(tracks.size())).first->second;
           if (listed.track == names_.size()) {
-            names_.push_back(rows_.track());
+            names_.push_back(track);
             ids_.emplace_back();
           }
           std::string& id = ids_[listed.track];
-          if (!id.empty() && id != rows_.id())
-            rows_.refuse(BoxColumns::id,
-                         fmt::format("{}, as {} has elsewhere", shown(id), shown(rows_.track())));
+          if (place.empty() && !id.empty() && id != rows_.id())
+            rows_.refuse(BoxColumns::id, fmt::format("{}, as {} has elsewhere", shown(id), shown(track)));
           id = rows_.id();
         }
+        if (!place.empty() && labels_->has_ids) row_ids_.push_back(rows_.id());
         listed_.push_back(listed);
       });
     }
@@ -99,16 +105,17 @@ class TracksCsv final : public FrameReader<D, Real> {
       boxes_.push_back(absent_box<D, Real>());
       last_seen_.push_back(0);
       if (labels_->has_ids)
-        labels_->ids.push_back(rows_.has_id_column() ? ids_[listed.track] : names_[listed.track]);
+        labels_->ids.push_back(rows_.has_column(BoxColumns::id) ? ids_[listed.track] : names_[listed.track]);
     } else if (last_seen_[place] == frames_) {
       rows_.holds([&] {
         rows_.lines().refuse(
             listed.line,
             fmt::format("{} is there again in frame {}", shown(names_[listed.track]), listed.frame),
-            "each id once in a frame");
+            "each id once in a frame, or --columns without ids: each frame's boxes are then numbered anew");
       });
       return;
     }
+    if (listed.row < row_ids_.size()) labels_->ids[place] = row_ids_[listed.row];
     last_seen_[place] = frames_;
     places.push_back(place);
     if (boxes_[place] == listed.box) return;
@@ -125,6 +132,7 @@ class TracksCsv final : public FrameReader<D, Real> {
   std::size_t next_ = 0;                  // in listed_
   std::vector<std::string> names_;        // by track
   std::vector<std::string> ids_;          // likewise, where they are another column
+  std::vector<std::string> row_ids_;      // by row, where boxes are numbered anew in each frame
   std::vector<std::size_t> place_of_;     // likewise
   std::size_t frames_ = 1;                // counted from 1, so that 0 is none
   std::vector<Box<D, Real>> boxes_;       // by place

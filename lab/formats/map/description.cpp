@@ -17,10 +17,19 @@ std::vector<std::string> extensions() { return {".geojson", ".topojson", ".json"
 bool says_map(std::string_view bytes) {
   const std::size_t first = bytes.find_first_not_of(" \t\r\n\x1e\xEF\xBB\xBF");
   if (first == std::string_view::npos || bytes[first] != '{') return false;
-  constexpr std::array<std::string_view, 10> types = {
-      "\"FeatureCollection\"", "\"Feature\"",           "\"Topology\"",        "\"Polygon\"",
-      "\"MultiPolygon\"",      "\"LineString\"",        "\"MultiLineString\"", "\"Point\"",
-      "\"MultiPoint\"",        "\"GeometryCollection\""};
+  constexpr std::array<std::string_view, 13> types = {"\"FeatureCollection\"",
+                                                      "\"Feature\"",
+                                                      "\"Topology\"",
+                                                      "\"Polygon\"",
+                                                      "\"MultiPolygon\"",
+                                                      "\"LineString\"",
+                                                      "\"MultiLineString\"",
+                                                      "\"Point\"",
+                                                      "\"MultiPoint\"",
+                                                      "\"GeometryCollection\"",
+                                                      "\"annotations\"",
+                                                      "\"licenses\"",
+                                                      "\"shapes\""};
   return std::ranges::any_of(
       types, [&](std::string_view type) { return bytes.find(type) != std::string_view::npos; });
 }
@@ -35,7 +44,7 @@ bool is_map(std::string_view bytes, std::string_view extension) {
 Format map_description() {
   return {
       .name = "map",
-      .summary = "GeoJSON and TopoJSON, in doubles; altitudes are left out",
+      .summary = "GeoJSON, TopoJSON, COCO's and LabelMe's JSON, in doubles",
       .extensions = extensions(),
       .parts = {{"features", "a box a feature, and none for one without a geometry"},
                 {"pieces", "a box a point, line or polygon; those of a multi-geometry apart"},

@@ -11,7 +11,7 @@ namespace {
 
 class GeoJson {
  public:
-  GeoJson(MapText& text, const MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
+  GeoJson(MapText& text, MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
       : text_(text), ids_(ids), quarantine_(quarantine), boxes_(boxes) {}
 
   void read(std::string_view type) {
@@ -101,14 +101,14 @@ class GeoJson {
   }
 
   MapText& text_;
-  const MapIds& ids_;
+  MapIds& ids_;
   Quarantine& quarantine_;
   MapBoxes& boxes_;
 };
 
 }  // namespace
 
-void read_geojson(MapText& text, std::string_view type, const MapIds& ids, Quarantine& quarantine,
+void read_geojson(MapText& text, std::string_view type, MapIds& ids, Quarantine& quarantine,
                   MapBoxes& boxes) {
   GeoJson(text, ids, quarantine, boxes).read(type);
 }

@@ -63,7 +63,10 @@ json::object MapText::root() {
   document_.rewind();
   next_string_ = strings_.get();
   json::object object;
-  if (const auto error = document_.get_object().get(object)) refuse(error, "the object of a map");
+  if (const auto error = document_.get_object().get(object))
+    refuse(error,
+           "an object of GeoJSON, TopoJSON, COCO or LabelMe; of a list of boxes, jq makes a table: jq -r "
+           "'.[].bbox|@csv'");
   return object;
 }
 
@@ -176,24 +179,30 @@ void MapText::refuse(simdjson::error_code error, std::string_view expected) {
   refuse(simdjson::error_message(error), expected);
 }
 
-std::string MapIds::of(MapText& text, json::object& feature) const {
+std::string MapIds::of(MapText& text, json::object& feature) {
   if (!any()) return {};
-  if (name_ == "id") {
-    const std::optional<json::value> id = text.optional_field(feature, "id");
-    if (!id) text.refuse("a feature without a member 'id'", "one, or the name of a property with --ids");
-    return text.label(*id, "an id: a string or a number");
-  }
-  std::string_view property = name_;
-  constexpr std::string_view prefix = "properties.";
-  if (property.starts_with(prefix)) property.remove_prefix(prefix.size());
-  const std::optional<json::value> properties = text.optional_field(feature, "properties");
+  is_asked_ = true;
   std::optional<json::value> id;
-  if (properties) {
+  if (name_ == "id") {
+    id = text.optional_field(feature, "id");
+  } else if (const std::optional<json::value> properties = text.optional_field(feature, "properties")) {
+    std::string_view property = name_;
+    constexpr std::string_view prefix = "properties.";
+    if (property.starts_with(prefix)) property.remove_prefix(prefix.size());
     json::object object = text.object(*properties, "an object of properties");
     id = text.optional_field(object, property);
   }
-  if (!id)
-    text.refuse(fmt::format("a feature without a property {}", shown(property)), "one, as --ids names it");
+  if (!id) return {};
+  is_found_ = true;
+  return text.label(*id, "an id: a string or a number");
+}
+
+std::string MapIds::of_member(MapText& text, json::object& object) {
+  if (!any()) return {};
+  is_asked_ = true;
+  const std::optional<json::value> id = text.optional_field(object, name_);
+  if (!id) return {};
+  is_found_ = true;
   return text.label(*id, "an id: a string or a number");
 }
 

@@ -11,6 +11,7 @@
 
 #include <simdjson.h>
 
+#include "lab/formats/frames.hpp"
 #include "lab/formats/input.hpp"
 #include "lab/formats/map/boxes.hpp"
 #include "lab/formats/quarantine.hpp"
@@ -95,26 +96,40 @@ class MapIds {
 
   bool any() const noexcept { return !name_.empty(); }
 
-  /// The id of a feature of GeoJSON, or of a geometry of TopoJSON, as text; empty if ids are not read.
-  /// Refuses a feature that has none.
-  std::string of(MapText& text, json::object& feature) const;
+  /// The id of a feature of GeoJSON, or of a geometry of TopoJSON, as text; empty if it has none, or if ids
+  /// are not read.
+  std::string of(MapText& text, json::object& feature);
+
+  /// Likewise of an annotation or shape, among whose members the name is looked for.
+  std::string of_member(MapText& text, json::object& object);
+
+  /// Whether no feature had an id, of those that there were.
+  bool are_missing() const noexcept { return is_asked_ && !is_found_; }
 
   /// Refuses a map that has no features, if ids are wanted.
   void refuse(MapText& text, std::string_view found) const;
 
  private:
   std::string name_;
+  bool is_asked_ = false;
+  bool is_found_ = false;
 };
 
 /// Reads GeoJSON of this outermost type: a FeatureCollection, a Feature or a geometry. A GeometryCollection
 /// that stands by itself has a feature for each of its geometries.
-void read_geojson(MapText& text, std::string_view type, const MapIds& ids, Quarantine& quarantine,
-                  MapBoxes& boxes);
+void read_geojson(MapText& text, std::string_view type, MapIds& ids, Quarantine& quarantine, MapBoxes& boxes);
 
 /// Reads TopoJSON: the layer of that name, or all, in the file's order, where `layer` is empty. A layer that
 /// is a GeometryCollection has a feature for each of its geometries. Segments are those of the arcs that the
 /// layers name, each arc once, in the file's order.
-void read_topojson(MapText& text, std::string_view layer, const MapIds& ids, Quarantine& quarantine,
+void read_topojson(MapText& text, std::string_view layer, MapIds& ids, Quarantine& quarantine,
                    MapBoxes& boxes);
+
+/// Reads the annotations of a file of COCO: a frame an image. `name` is what errors call the file.
+AnyFrameReader read_coco(MapText& text, json::object root, MapIds& ids, Quarantine& quarantine,
+                         std::string name);
+
+/// Reads the shapes of a file of LabelMe, as features.
+void read_labelme(MapText& text, json::object root, MapIds& ids, Quarantine& quarantine, MapBoxes& boxes);
 
 }  // namespace broadside::lab

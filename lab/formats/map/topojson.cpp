@@ -19,7 +19,7 @@ using Point = std::array<double, 2>;
 
 class TopoJson {
  public:
-  TopoJson(MapText& text, const MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
+  TopoJson(MapText& text, MapIds& ids, Quarantine& quarantine, MapBoxes& boxes)
       : text_(text), ids_(ids), quarantine_(quarantine), boxes_(boxes) {}
 
   void read(std::string_view layer) {
@@ -196,7 +196,7 @@ class TopoJson {
   }
 
   MapText& text_;
-  const MapIds& ids_;
+  MapIds& ids_;
   Quarantine& quarantine_;
   MapBoxes& boxes_;
   bool has_transform_ = false;
@@ -208,7 +208,7 @@ class TopoJson {
 
 }  // namespace
 
-void read_topojson(MapText& text, std::string_view layer, const MapIds& ids, Quarantine& quarantine,
+void read_topojson(MapText& text, std::string_view layer, MapIds& ids, Quarantine& quarantine,
                    MapBoxes& boxes) {
   TopoJson(text, ids, quarantine, boxes).read(layer);
 }

@@ -104,7 +104,10 @@ class SceneCollector {
     }
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices < 3) continue;
+      if (face.mNumIndices < 3) {
+        ++mesh_.other_elements;
+        continue;
+      }
       for (unsigned i = 0; i < face.mNumIndices; ++i)
         mesh_.corners.push_back(static_cast<std::uint32_t>(first + face.mIndices[i]));
       mesh_.face_ends.push_back(mesh_.corners.size());

@@ -19,6 +19,7 @@ struct IndexedMesh {
   std::vector<std::array<double, 3>> vertices;
   std::vector<std::uint32_t> corners;  ///< the vertices of the faces, one face after the other
   std::vector<std::size_t> face_ends;  ///< where each face ends in `corners`
+  std::size_t other_elements = 0;      ///< lines and points, which are left out
   bool has_own_vertices = false;       ///< whether the vertices are those of the file, in its order
   /// The type of the file's coordinates; floats are held exactly as well.
   Precision precision = Precision::float64;

@@ -10,6 +10,7 @@
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/mesh/elements.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/numbers.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -17,22 +18,26 @@ namespace {
 /// The boxes of a mesh.
 class MeshFrames final : public FrameReader<3, double> {
  public:
-  MeshFrames(std::vector<DoubleBox3> boxes, std::string_view importer)
-      : boxes_(std::move(boxes)), importer_(importer) {}
+  MeshFrames(std::vector<DoubleBox3> boxes, std::string_view importer, std::string warning)
+      : boxes_(std::move(boxes)), importer_(importer), warning_(std::move(warning)) {}
 
   std::vector<DoubleBox3> first() override { return std::move(boxes_); }
   bool next(Step<3, double>&) override { return false; }
   std::string_view importer() const override { return importer_; }
+  std::string warning() const override { return warning_; }
 
  private:
   std::vector<DoubleBox3> boxes_;
   std::string_view importer_;
+  std::string warning_;
 };
 
 AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& options) {
-  const std::string part = options.boxes.empty() ? "triangles" : options.boxes;
-  const bool are_triangles = part == "triangles";
   IndexedMesh mesh = read_mesh(*input);
+  // Vertices alone are a cloud of points.
+  const bool is_cloud = mesh.face_count() == 0 && mesh.other_elements == 0 && !mesh.vertices.empty();
+  const std::string part = !options.boxes.empty() ? options.boxes : is_cloud ? "vertices" : "triangles";
+  const bool are_triangles = part == "triangles";
   if (are_triangles)
     triangulate(mesh);
   else
@@ -41,9 +46,17 @@ AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& option
                                     : part == "edges" ? MeshPart::edges
                                                       : MeshPart::vertices);
   if (elements.size() == 0)
-    throw FileError(fmt::format("{}: has no {}; expected at least one", input->name(), part));
-  return with_precision(std::make_unique<MeshFrames>(elements.boxes(mesh, input->name()), mesh.importer),
-                        mesh.precision);
+    throw FileError(fmt::format("{}: has no {}, but {} and {}; expected at least one{}", input->name(), part,
+                                counted(mesh.vertices.size(), "vertex", "vertices"),
+                                counted(mesh.other_elements, "line or point", "lines or points"),
+                                mesh.vertices.empty() ? "" : ", or --boxes vertices"));
+  std::string warning;
+  if (is_cloud && options.boxes.empty())
+    warning = fmt::format("{}: has no faces: its {} read as points", input->name(),
+                          mesh.vertices.size() == 1 ? "vertex is" : "vertices are");
+  return with_precision(
+      std::make_unique<MeshFrames>(elements.boxes(mesh, input->name()), mesh.importer, std::move(warning)),
+      mesh.precision);
 }
 
 }  // namespace

@@ -31,6 +31,8 @@ class ObjReader {
         read_vertex();
       } else if (word == "f") {
         read_face();
+      } else if (word == "l" || word == "p") {
+        ++mesh_.other_elements;
       }
     }
     for (std::size_t i = 0; i < mesh_.corners.size(); ++i) {

@@ -148,6 +148,7 @@ class PlyReader {
       } else if (element.name == "face") {
         read_faces(element);
       } else {
+        if (element.name == "edge") mesh_.other_elements += element.count;
         for_each(element, [&] { skip(element); });
       }
     }

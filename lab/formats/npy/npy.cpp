@@ -126,11 +126,26 @@ class NpyFrame final : public FrameReader<D, Real> {
     return value;
   }
 
+  /// Whether all rows are valid as a corner and the size.
+  bool are_sizes() const {
+    for (std::size_t row = 0; row < layout_.rows; ++row) {
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        if (layout_.forms[axis] != BoundsForm::min_max || !(number(row, layout_.second[axis]) >= 0))
+          return false;
+      }
+    }
+    return true;
+  }
+
   [[noreturn]] void refuse_box(std::size_t row, const Box<D, Real>& box) const {
-    throw FileError(
-        fmt::format("{}: row {} has min ({}) and max ({}); expected numbers with min <= max, or inf and -inf "
-                    "for an absent box",
-                    input_->name(), row, fmt::join(box.min, ", "), fmt::join(box.max, ", ")));
+    throw FileError(fmt::format(
+        "{}: row {} has min ({}) and max ({}); expected numbers with min <= max, or inf and -inf "
+        "for an absent box{}",
+        input_->name(), row, fmt::join(box.min, ", "), fmt::join(box.max, ", "),
+        are_sizes() ? fmt::format("; as a corner and the size all {} rows are valid: make maxima by "
+                                  "boxes[:, {}:] += boxes[:, :{}]",
+                                  layout_.rows, int{D}, int{D})
+                    : ""));
   }
 
   std::unique_ptr<Input> input_;

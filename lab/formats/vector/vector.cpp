@@ -161,8 +161,7 @@ class LayerReader {
 
   std::string id_of(OGRFeatureH feature) const {
     if (id_field_ < 0) return fmt::format("{}", static_cast<std::int64_t>(gdal().OGR_F_GetFID(feature)));
-    if (!gdal().OGR_F_IsFieldSetAndNotNull(feature, id_field_))
-      refuse(fmt::format("no '{}'", options_.ids), "an id for each feature");
+    if (!gdal().OGR_F_IsFieldSetAndNotNull(feature, id_field_)) return {};
     return gdal().OGR_F_GetFieldAsString(feature, id_field_);
   }
 

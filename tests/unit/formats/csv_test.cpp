@@ -349,8 +349,6 @@ TEST_F(CsvTable, SaysWhatIsWrongWithItsColumns) {
                     HasSubstr("expected columns such as")));
   EXPECT_THAT(refusal_of("min_x,xmin,min_y,max_x,max_y\n"), HasSubstr("'min_x' and 'xmin' mean the same"));
   EXPECT_THAT(refusal_of("min_x,min_y,max_x\n"), HasSubstr("column 'min_y' alone"));
-  EXPECT_THAT(refusal_of("frame,min_x,min_y,max_x,max_y\n"),
-              HasSubstr("'frame' without a column 'box' or 'id'"));
   EXPECT_THAT(refusal_of("city,country\n"), HasSubstr("no columns that give bounds on the x axis"));
   EXPECT_THAT(
       refusal_of("cx,cy,w,h\n0,0,1,-1\n"),
@@ -404,13 +402,14 @@ TEST_F(CsvTable, LeavesOutInvalidRowsWhereThatIsAsked) {
   const BoxFile file = open_file(put("table.csv", rows), options);
   auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
   const DoubleBox2 absent = absent_box<2, double>();
-  EXPECT_EQ(frames.first(),
-            (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, absent, absent, absent, {{5, 5}, {6, 6}}}));
+  EXPECT_EQ(
+      frames.first(),
+      (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, absent, absent, absent, {{0, 0}, {1, 1}}, {{5, 5}, {6, 6}}}))
+      << "a box need not have an id";
   EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"a", "b", "", "c", "", "d"}));
-  EXPECT_THAT(frames.warning(), HasSubstr("table.csv: left out 4 invalid boxes"));
+  EXPECT_THAT(frames.warning(), HasSubstr("table.csv: left out 3 invalid boxes"));
   EXPECT_THAT(said, testing::ElementsAre(HasSubstr("csv:3: column min_y is 'nan', NaN"),
-                                         HasSubstr("csv:4: 3 columns"), HasSubstr("csv:5: min (3, 0)"),
-                                         HasSubstr("csv:6: column id is ''")));
+                                         HasSubstr("csv:4: 3 columns"), HasSubstr("csv:5: min (3, 0)")));
 
   // In frames, a box that is invalid goes, and the row's number counts.
   options.ids.clear();
@@ -483,6 +482,30 @@ TEST_F(CsvTable, ReadsTracksWhoseRowsListWhatIsThere) {
               HasSubstr("column frame is 'one', text; expected a number"));
   EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,,0,0,1,1\n"),
               HasSubstr("column id is ''; expected an id"));
+}
+
+TEST_F(CsvTable, NumbersBoxesAnewInEachFrameWhereNothingTellsThemApart) {
+  ReadOptions options;
+  options.precision = Precision::float64;
+  options.ids = "kind";
+  const BoxFile file = open_file(put("detections.csv",
+                                     "frame,kind,left,top,width,height\n"
+                                     "1,car,0,0,1,1\n1,bus,5,5,1,1\n1,car,7,7,1,1\n2,bus,5,5,1,1\n"),
+                                 options);
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  EXPECT_EQ(frames.first(), (std::vector<DoubleBox2>{{{0, 0}, {1, 1}}, {{5, 5}, {6, 6}}, {{7, 7}, {8, 8}}}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"car", "bus", "car"}));
+  Step<2, double> step{};
+  ASSERT_TRUE(frames.next(step));
+  std::vector<DoubleBox2> boxes(3);
+  lab::apply(step, boxes);
+  EXPECT_EQ(boxes,
+            (std::vector<DoubleBox2>{{{5, 5}, {6, 6}}, absent_box<2, double>(), absent_box<2, double>()}));
+  EXPECT_EQ(frames.labels()->ids.front(), "bus");
+  EXPECT_THAT(frames.warning(), HasSubstr("no column of ids: the boxes of each frame are numbered anew"));
+  EXPECT_THAT(
+      refusal_of("1,-1,0,0,9,9,1,-1,-1,-1\n1,-1,5,5,9,9,1,-1,-1,-1\n", "frame,id,left,top,width,height"),
+      AllOf(HasSubstr("'-1' is there again in frame 1"), HasSubstr("or --columns without ids")));
 }
 
 TEST_F(CsvTable, ReadsPointsAndCircles) {

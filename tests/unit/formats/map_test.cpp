@@ -151,6 +151,41 @@ TEST_F(MapTest, ReadsTopologiesWithoutATransformInPlace) {
               ElementsAre(DoubleBox2{{1.5, 1}, {3, 2}}, DoubleBox2{{3, 1}, {5, 5}}));
 }
 
+TEST_F(MapTest, ReadsTheBoxesOfCocosImagesAsFrames) {
+  const std::string text = R"({"info": {}, "images": [{"id": 7}, {"id": 3}], "annotations": [
+      {"id": 1, "image_id": 7, "bbox": [0, 0, 10, 10], "segmentation": [[0, 0, 1, 1]]},
+      {"id": 2, "image_id": 3, "bbox": [1, 2, 3, 4]},
+      {"bbox": [12, 12, 6, 4], "image_id": 7, "id": 5},
+      {"id": 6, "image_id": 3}]})";
+  EXPECT_EQ(boxes_of(text), (std::vector<DoubleBox2>{{{0, 0}, {10, 10}}, {{12, 12}, {18, 16}}}));
+  const BoxFile file = open_file(put("coco.json", text), {.ids = "id"});
+  auto& frames = *std::get<std::unique_ptr<FrameReader<2, double>>>(file.frames);
+  std::vector<DoubleBox2> boxes = frames.first();
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"1", "5"}));
+  Step<2, double> step{};
+  ASSERT_TRUE(frames.next(step));
+  apply(step, boxes);
+  EXPECT_EQ(boxes, (std::vector<DoubleBox2>{{{1, 2}, {4, 6}}, absent}));
+  EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"2", "6"}));
+  EXPECT_FALSE(frames.next(step));
+  EXPECT_TRUE(frames.is_computed());
+  EXPECT_THAT(frames.warning(), HasSubstr("a frame for each of 2 images, from --frame 0, image '7'"));
+  EXPECT_THAT(refusal_of(R"({"annotations": [{"bbox": [1, 2, 3, -4]}]})"),
+              AllOf(HasSubstr("feature 0: a bbox of 4 numbers"), HasSubstr("height of 0 or more")));
+  EXPECT_THAT(refusal_of(R"({"annotations": []})", "layer"), HasSubstr("expected no --layer"));
+  EXPECT_TRUE(boxes_of(R"({"annotations": []})").empty());
+}
+
+TEST_F(MapTest, ReadsTheShapesOfLabelMeWhateverCornerComesFirst) {
+  EXPECT_EQ(boxes_of(R"({"version": "5", "flags": {}, "shapes": [
+      {"label": "a", "points": [[5, 1.5], [2, 8]], "shape_type": "rectangle"},
+      {"label": "b", "points": [[0, 0], [4, 1], [2, 3]], "shape_type": "polygon"}], "imagePath": "a.png"})"),
+            (std::vector<DoubleBox2>{{{2, 1.5}, {5, 8}}, {{0, 0}, {4, 3}}}));
+  EXPECT_THAT(refusal_of(R"({"shapes": [{"points": [[5, 1], [2, 8]], "shape_type": "circle"}]})"),
+              HasSubstr("feature 0: a circle; expected rectangles"));
+  EXPECT_THAT(refusal_of(R"({"shapes": [{"points": [[5]]}]})"), HasSubstr("a point of 1 numbers"));
+}
+
 TEST_F(MapTest, IsRecognisedByContentOrName) {
   const std::string point = R"({"type":"Point","coordinates":[1,2]})";
   for (const std::string name : {"map", "map.txt", "map.geojson", "map.JSON"})
@@ -191,7 +226,8 @@ TEST_F(MapTest, RefusesWhatIsWrongNamingByteAndFeature) {
   EXPECT_THAT(refusal_of(R"({"type":"Circle","coordinates":[1,2]})"),
               AllOf(HasSubstr("'Circle'"), HasSubstr("Point, MultiPoint")));
   EXPECT_THAT(refusal_of(R"({"type":7})"), AllOf(HasSubstr("'7'"), HasSubstr("the type of a map")));
-  EXPECT_THAT(refusal_of("[1,2,3]"), HasSubstr("an array; expected the object of a map"));
+  EXPECT_THAT(refusal_of("[1,2,3]"),
+              HasSubstr("an array; expected an object of GeoJSON, TopoJSON, COCO or LabelMe"));
   EXPECT_THAT(refusal_of(R"({"type":"Point","coordinates":[1,2]} {})"),
               HasSubstr("an object is no JSON here; expected the end of the text"));
   EXPECT_THAT(refusal_of("{\"type\":\"Point\xff\",\"coordinates\":[1,2]}"), HasSubstr("UTF"));

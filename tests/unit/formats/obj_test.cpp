@@ -1,10 +1,12 @@
 // OBJ: vertices and faces as people write them, and what is wrong with those that are refused.
 #include <array>
+#include <memory>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lab/formats/descriptions.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 #include "tests/support/message.hpp"
@@ -53,6 +55,20 @@ TEST(Obj, IsRefusedNamingTheLine) {
   EXPECT_THAT(refusal_of("f 1 2 99999999999"), HasSubstr("expected vertices from 1"));
   EXPECT_THAT(refusal_of("f 1 2 4"), HasSubstr("a face names the vertex 4; expected one from 1 to 3"));
   EXPECT_THAT(refusal_of("f 1 \\\n2"), HasSubstr("a.obj:5: 'f 1  2 '"));
+}
+
+TEST(Obj, WithoutFacesIsACloudOfPointsUnlessItHasLines) {
+  const auto open = [](const std::string& bytes) {
+    return readers::mesh().open(std::make_unique<Input>("a.obj", bytes), {});
+  };
+  const AnyFrameReader cloud = open("v 0 0 0\nv 1 2 3\n");
+  auto& frames = *std::get<std::unique_ptr<FrameReader<3, double>>>(cloud);
+  EXPECT_THAT(frames.first(),
+              ElementsAre(DoubleBox3{{0, 0, 0}, {0, 0, 0}}, DoubleBox3{{1, 2, 3}, {1, 2, 3}}));
+  EXPECT_THAT(frames.warning(), HasSubstr("a.obj: has no faces: its vertices are read as points"));
+  EXPECT_THAT(message_of<FileError>([&] { open("v 0 0 0\nv 1 2 3\nl 1 2\n"); }),
+              HasSubstr("has no triangles, but 2 vertices and 1 line or point; expected at least one, or "
+                        "--boxes vertices"));
 }
 
 }  // namespace
