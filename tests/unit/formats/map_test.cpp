@@ -164,7 +164,7 @@ TEST_F(MapTest, ReadsTheBoxesOfCocosImagesAsFrames) {
   EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"1", "5"}));
   Step<2, double> step{};
   ASSERT_TRUE(frames.next(step));
-  apply(step, boxes);
+  broadside::apply(step, boxes);
   EXPECT_EQ(boxes, (std::vector<DoubleBox2>{{{1, 2}, {4, 6}}, absent}));
   EXPECT_EQ(frames.labels()->ids, (std::vector<std::string>{"2", "6"}));
   EXPECT_FALSE(frames.next(step));
