@@ -395,8 +395,8 @@ BROADSIDE_API broadside_status broadside_world_nearest(const broadside_world* wo
                                                        broadside_neighbour* neighbours, size_t room,
                                                        size_t* count, broadside_error* error);
 
-/** Those of them that are not farther away than `max_distance`, which is 0, more, or infinity, and is rounded to
- * the world's type: distance_squared <= max_distance * max_distance, rounded likewise. */
+/** As broadside_world_nearest(), but only boxes with distance_squared <= max_distance * max_distance.
+ * `max_distance` is at least 0 and may be infinite. It and the product are rounded to the world's type. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_world_nearest_within(const broadside_world* world, const void* point,
                                                               double max_distance,
                                                               const broadside_query* query,

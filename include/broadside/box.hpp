@@ -22,7 +22,8 @@ template <int D, typename Real>
 inline constexpr bool is_supported = (D == 2 || D == 3) &&
                                      (std::is_same_v<Real, float> || std::is_same_v<Real, double>);
 
-/// Instantiated by each class that works on boxes, so that a box of another kind is refused in one sentence.
+/// Each class that works on boxes instantiates this, so that the compiler reports an unsupported box type in
+/// one sentence.
 template <int D, typename Real>
 struct SupportedBox {
   static_assert(is_supported<D, Real>, "Broadside works on boxes in 2 or 3 dimensions, of float or double");
@@ -44,8 +45,8 @@ struct Box {
   Point<D, Real> min;
   Point<D, Real> max;
 
-  /// The box that reaches `half_extents` beyond `centre` on both sides of each axis, or the same distance on
-  /// every axis. Bounds are rounded to Real.
+  /// The box around `centre` that extends by `half_extents` in both directions of each axis, or by the same
+  /// `half_extent` on every axis. Bounds are rounded to Real.
   static constexpr Box around(const Point<D, Real>& centre, const Point<D, Real>& half_extents) noexcept {
     Box box{};
     for (std::size_t axis = 0; axis < centre.size(); ++axis) {
@@ -112,7 +113,7 @@ constexpr bool contains(const Box<D, Real>& box, const std::type_identity_t<Poin
   return inside;
 }
 
-/// Whether no point of `inner` is outside of `outer`: an absent one has none.
+/// Whether every point of `inner` is in `outer`. An absent `inner` has no points, so the result is true.
 template <int D, typename Real, std::same_as<Box<D, Real>> Inner>
 constexpr bool contains(const Box<D, Real>& outer, const Inner& inner) noexcept {
   bool inside = true;
@@ -121,7 +122,7 @@ constexpr bool contains(const Box<D, Real>& outer, const Inner& inner) noexcept 
   return inside;
 }
 
-/// The smallest box that contains both; exact. One that is absent adds nothing.
+/// The smallest box that contains both; exact. An absent box adds nothing.
 template <int D, typename Real>
 constexpr Box<D, Real> merged(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   Box<D, Real> box = a;
@@ -132,8 +133,9 @@ constexpr Box<D, Real> merged(const Box<D, Real>& a, const Box<D, Real>& b) noex
   return box;
 }
 
-/// The box with each side `margin` further out, or further in where that is negative; bounds are rounded to
-/// Real, infinite ones and an absent box stay. `margin` is finite; min may exceed max where it is negative.
+/// The box with each side moved outwards by `margin`, which must be finite. A negative margin moves the sides
+/// inwards, and min may then exceed max. Bounds are rounded to Real; infinite bounds and absent boxes do not
+/// change.
 template <int D, typename Real>
 constexpr Box<D, Real> enlarged(Box<D, Real> box, std::type_identity_t<Real> margin) noexcept {
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
@@ -143,8 +145,8 @@ constexpr Box<D, Real> enlarged(Box<D, Real> box, std::type_identity_t<Real> mar
   return box;
 }
 
-/// The box moved by `offset`, which is finite; bounds are rounded to Real, infinite ones and an absent box
-/// stay.
+/// The box moved by `offset`, which must be finite. Bounds are rounded to Real; infinite bounds and absent
+/// boxes do not change.
 template <int D, typename Real>
 constexpr Box<D, Real> translated(Box<D, Real> box,
                                   const std::type_identity_t<Point<D, Real>>& offset) noexcept {
@@ -155,7 +157,8 @@ constexpr Box<D, Real> translated(Box<D, Real> box,
   return box;
 }
 
-/// The middle of a present box, rounded to Real: NaN on an axis that is infinite both ways.
+/// The centre of a present box, rounded to Real; NaN on an axis where both bounds are infinite with opposite
+/// signs.
 template <int D, typename Real>
 constexpr Point<D, Real> centre(const Box<D, Real>& box) noexcept {
   Point<D, Real> point{};

@@ -61,24 +61,26 @@ struct Workers {
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 
-  /// Called now and then in a search, by the thread that called find() or update(): after every few million
-  /// pairs of boxes compared (see Checkpoint), and while it waits for other threads. Sorting and building
-  /// have none, and an executor that leaves the calling thread out leaves it none. What it throws ends the
-  /// search and is thrown by that function. If it is empty, a search of one thread runs through.
+  /// Called during a search by the thread that called find() or update(): after every few million pairs of
+  /// boxes compared (see Checkpoint), and while that thread waits for other threads. It is not called while
+  /// a structure is sorted or built, nor if the executor runs no task on the calling thread. An exception
+  /// from it ends the search and leaves find() or update(). Without a checkpoint, a search by one thread is
+  /// never interrupted.
   std::function<void()> checkpoint{};
 };
 
-/// Calls a checkpoint in time, for algorithms: once for each few million pairs of boxes compared, wherever
-/// these stand. For one thread.
+/// For algorithms: counts the pairs of boxes compared across loops and functions, and calls a checkpoint once
+/// every few million. Each thread needs its own.
 class BROADSIDE_PUBLIC Checkpoint {
  public:
-  /// The most pairs that are compared between two calls, beside those of a few boxes with all others.
+  /// The maximum number of pairs compared between two calls, plus the comparisons of a few boxes with all
+  /// others.
   static constexpr std::uint64_t max_tests = std::uint64_t{1} << 22;
 
-  /// `call`, which may be empty, must outlive it.
+  /// `call` may be empty, and must outlive the Checkpoint.
   explicit Checkpoint(const std::function<void()>& call) noexcept : call_(&call) {}
 
-  /// Says that so many more pairs were compared. Throws what the checkpoint throws.
+  /// Adds `tests` to the number of pairs compared. Throws what the checkpoint throws.
   void count(std::uint64_t tests) {
     tests_ += tests;
     if (tests_ >= max_tests) pass();

@@ -1,9 +1,10 @@
-// The border between a program and the library: what a shared library exports, and how lists cross it.
+// The binary interface between a program and the library: which symbols a shared library exports, and how
+// lists are passed.
 //
-// A program may be compiled in libstdc++'s debug mode (-D_GLIBCXX_DEBUG), which replaces std::vector and the
-// other containers by larger classes, and be linked with a library that is not. So no exported function takes
-// or returns a container. Lists cross the border as spans or as detail::Vector; the caller's own vectors are
-// filled by inline functions, directly or through a detail::Output.
+// libstdc++'s debug mode (-D_GLIBCXX_DEBUG) replaces std::vector and the other containers by larger classes.
+// A program in debug mode may be linked with a library that was compiled without it. So no exported function
+// takes or returns a container. Lists are passed as spans or as detail::Vector. Inline functions fill the
+// caller's own vectors, directly or through a detail::Output.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@
 
 #include "broadside/version.hpp"
 
-// BROADSIDE_PUBLIC marks what a program links or catches, BROADSIDE_HIDDEN a part of that which stays inside;
-// so does all that is not marked. On Windows a shared library exports all that it has: see
+// BROADSIDE_PUBLIC marks what a program links or catches. BROADSIDE_HIDDEN marks members of a public class
+// that are not exported. Unmarked names are not exported either. On Windows a shared library exports all: see
 // WINDOWS_EXPORT_ALL_SYMBOLS in src/CMakeLists.txt.
 #if defined(__GNUC__) && !defined(_WIN32)
 #define BROADSIDE_PUBLIC __attribute__((visibility("default")))
@@ -23,9 +24,9 @@
 #define BROADSIDE_HIDDEN
 #endif
 
-// BROADSIDE_CALLERS_VECTOR marks inline functions and classes that use the caller's vectors without naming
-// them in their parameters. They get another symbol in debug mode. Otherwise the linker would take a
-// program's for the library's own, or the other way round.
+// BROADSIDE_CALLERS_VECTOR marks inline functions and classes that use the caller's vectors but do not name
+// them in their parameters. In debug mode they get a different symbol. Otherwise the linker could merge the
+// program's function with the library's.
 #ifdef _GLIBCXX_DEBUG
 #define BROADSIDE_CALLERS_VECTOR __attribute__((abi_tag("debug")))
 #else
@@ -34,8 +35,8 @@
 
 namespace broadside::detail {
 
-/// std::vector with the same layout in debug mode: for members of classes that programs and the library
-/// share. In debug mode it is std::vector without its checks.
+/// A std::vector whose layout is the same in debug mode, without the debug checks. For members of classes
+/// that programs and the library share.
 #ifdef _GLIBCXX_DEBUG
 template <typename T>
 using Vector = std::_GLIBCXX_STD_C::vector<T>;
@@ -44,11 +45,11 @@ template <typename T>
 using Vector = std::vector<T>;
 #endif
 
-/// A vector of the caller's that the library fills.
+/// A vector of the caller that the library fills.
 template <typename T>
 class Output {
  public:
-  /// Makes `size` the vector's size, and returns its elements; new ones are T{}.
+  /// Resizes the vector to `size` elements and returns them; new ones are T{}.
   virtual std::span<T> resize(std::size_t size) = 0;
 
  protected:

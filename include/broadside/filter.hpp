@@ -127,7 +127,7 @@ class IgnoredPairs {
     keys_.swap(larger.keys_);
   }
 
-  detail::Vector<std::uint64_t> keys_;  // as many as a power of two; `none` where a place is free
+  detail::Vector<std::uint64_t> keys_;  // size is a power of two; `none` where a slot is free
   std::size_t size_ = 0;
 };
 

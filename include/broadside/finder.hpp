@@ -76,7 +76,7 @@ class BROADSIDE_PUBLIC PairFinder {
   /// the left set. Where none is absent this saves copying them.
   void find_between(std::span<const Box<D, Real>> boxes, std::size_t left_count, PairSink& pairs);
 
-  /// The same with a function of a Pair, or of a std::span<const Pair>.
+  /// The same with a function instead of a sink: of a Pair, or of a std::span<const Pair>.
   template <PairCallback Function>
   void find(BoxView<D, Real> boxes, Function&& function, const PairFilters& filters = {}) {
     detail::with_sink(function, [&](PairSink& pairs) { find(boxes, pairs, filters); });
@@ -141,9 +141,10 @@ class BROADSIDE_PUBLIC PairFinder {
   template <int, typename>
   friend class PairFinder;
 
-  /// What an algorithm writes. `boxes` are all present: min <= max, no NaN, perhaps infinite. Pairs are of
-  /// places in `boxes`. No need to flush. Where `boxes` are the caller's own array, another thread may write
-  /// to it, against the rules: what is read twice may differ, and must not lead out of memory.
+  /// The search, implemented by each algorithm. `boxes` are all present: min <= max, no NaN, perhaps
+  /// infinite. Pairs hold indexes into `boxes`. No need to flush. `boxes` may be the caller's own array, and
+  /// another thread may break the rules and write to it. Two reads of a box may then differ, but must not
+  /// cause an access out of bounds.
   virtual void find_valid(std::span<const Box<D, Real>> boxes, PairSink& pairs) = 0;
 
   /// find_between() for boxes that are all present.
@@ -158,9 +159,9 @@ class BROADSIDE_PUBLIC PairFinder {
   /// Appends the present ones of `boxes` to present_ and their places to ids_.
   void take_present(std::span<const Box<D, Real>> boxes);
 
-  std::array<detail::Vector<Box<D, Real>>, 2> gathered_;  // boxes that were given as no array
+  std::array<detail::Vector<Box<D, Real>>, 2> gathered_;  // boxes that were not given as an array
   detail::Vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused while one set has none
-  detail::Vector<BoxId> ids_;             // and their places in the caller's array
+  detail::Vector<BoxId> ids_;             // their indexes in the caller's array
   detail::Vector<BoxId> quarantined_;
   BadInput bad_input_ = BadInput::reject;
   std::size_t left_count_ = 0;
@@ -267,11 +268,11 @@ using ProjectedBox =
 
 }  // namespace detail
 
-/// Things that are no boxes themselves.
+/// A range of things that are not boxes themselves.
 template <typename T>
 concept ThingRange = !BoxArray<T> && std::ranges::forward_range<const T>;
 
-/// What gives the box of one of `Things`: a function of a thing, or a pointer to a member.
+/// Returns the box of a thing: a function that takes the thing, or a pointer to a member.
 template <typename Projection, typename Things>
 concept BoxProjection = std::ranges::forward_range<const Things> && requires {
   typename detail::BoxTraits<detail::ProjectedBox<Things, Projection>>::View;
@@ -279,7 +280,7 @@ concept BoxProjection = std::ranges::forward_range<const Things> && requires {
 
 namespace detail {
 
-/// The boxes of things.
+/// The box of each thing, in order.
 template <typename Things, typename Projection>
 std::vector<ProjectedBox<Things, Projection>> boxes_of(const Things& things, Projection& box_of) {
   std::vector<ProjectedBox<Things, Projection>> boxes;
@@ -301,7 +302,7 @@ template <typename Right, typename Left>
 concept SameBoxes = std::is_same_v < typename ViewTraits<Left>::View,
 typename ViewTraits<Right>::View > ;
 
-/// What the last overloads of find_pairs() refuse.
+/// The arguments that the last overloads of find_pairs() reject.
 template <typename T, typename... Rest>
 concept NoBoxes = ThingRange<T> && !(BoxProjection<Rest, T> || ...);
 template <typename Right, typename Left>
@@ -315,8 +316,8 @@ inline constexpr bool never = false;
 }  // namespace detail
 
 /// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
-/// spec and the boxes. `pairs` is a PairSink, or a function of a Pair or of a std::span<const Pair>; what it
-/// throws ends the search.
+/// spec and the boxes. `pairs` is a PairSink, or a function of a Pair or of a std::span<const Pair>. An
+/// exception from it ends the search.
 ///
 /// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
 /// first box with a NaN or with min > max, InvalidFrame where there are filters and not one for each box, and
@@ -351,8 +352,8 @@ std::vector<Pair> find_pairs(const Left& left, const Right& right, const Options
   return detail::collected([&](PairSink& pairs) { find_pairs(left, right, pairs, options); });
 }
 
-/// The pairs of things that have boxes: `box_of(thing)` or `thing.*box_of` is a thing's box, as in
-/// find_pairs(things, &Thing::box). One pass gathers the boxes. The rest as for an array of boxes.
+/// The pairs of things that have boxes, as in find_pairs(things, &Thing::box): a thing's box is
+/// `box_of(thing)` or `thing.*box_of`. One pass gathers the boxes. The rest as for an array of boxes.
 template <ThingRange Things, BoxProjection<Things> Projection, PairTarget Target,
           FindOption Options = FindOptions>
 void find_pairs(const Things& things, Projection box_of, Target&& pairs, const Options& options = {}) {
@@ -363,13 +364,13 @@ std::vector<Pair> find_pairs(const Things& things, Projection box_of, const Opti
   return find_pairs(detail::boxes_of(things, box_of), options);
 }
 
-/// The form of version 0.2, with the options first.
+/// For compatibility with version 0.2, which took the options before the projection.
 template <ThingRange Things, BoxProjection<Things> Projection, FindOption Options = FindOptions>
 std::vector<Pair> find_pairs(const Things& things, const Options& options, Projection box_of) {
   return find_pairs(detail::boxes_of(things, box_of), options);
 }
 
-/// The pairs between two sets of things, or of things and boxes, whose projection is std::identity.
+/// The pairs between two sets of things. One set may hold boxes; its projection is then std::identity.
 template <typename Left, typename Right, BoxProjection<Right> RightProjection,
           BoxProjection<Left> LeftProjection, PairTarget Target, FindOption Options = FindOptions>
 void find_pairs(const Left& left, const Right& right, LeftProjection left_box_of,
@@ -383,7 +384,7 @@ std::vector<Pair> find_pairs(const Left& left, const Right& right, LeftProjectio
   return find_pairs(detail::boxes_of(left, left_box_of), detail::boxes_of(right, right_box_of), options);
 }
 
-/// Calls that fit none of these, refused in one sentence.
+/// Reject calls that match no other overload, with a message of one sentence.
 template <typename... Rest, detail::NoBoxes<Rest...> Things>
 std::vector<Pair> find_pairs(const Things& /*things*/, const Rest&... /*rest*/) {
   static_assert(detail::never<Things>,

@@ -20,11 +20,11 @@ namespace core {
 class FilterSink;
 }  // namespace core
 
-/// A box's place in the array that was handed in, counted from 0. It converts to a number by itself, so that
-/// boxes[id] is that box; a number becomes an id only where that is written: BoxId(number).
+/// The index of a box in the caller's array, counted from 0. It converts implicitly to a number, so boxes[id]
+/// is that box. The conversion from a number must be explicit: BoxId(number).
 enum BoxId : std::uint32_t {};
 
-/// The number, where a conversion is to be seen or to stop at 32 bits.
+/// The id as a 32-bit number, for an explicit conversion.
 constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
 
 /// Two different boxes; first < second. Where two sets are joined, a box of the left one and a box of the
@@ -42,11 +42,11 @@ constexpr std::uint64_t key(Pair pair) noexcept {
 }
 
 namespace detail {
-/// Up to this many pairs are sorted by comparing them, which costs less than counting and takes no scratch.
+/// Up to this number of pairs, a comparison sort costs less than a radix sort and needs no scratch memory.
 inline constexpr std::size_t max_compared_pairs = 128;
 
-/// sort_pairs() between two arrays. If there are more than max_compared_pairs, `scratch` is as long as
-/// `pairs`. Returns whether the sorted pairs are in `scratch`.
+/// sort_pairs() with two arrays. If there are more than max_compared_pairs, `scratch` must be as long as
+/// `pairs`. Returns true if the sorted pairs are in `scratch`, false if they are in `pairs`.
 BROADSIDE_PUBLIC bool sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch);
 }  // namespace detail
 
@@ -57,8 +57,8 @@ inline void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   if (detail::sort_pairs(pairs, scratch)) pairs.swap(scratch);
 }
 
-/// The same in place, by comparison, so that very many can be sorted that a caller may want to leave: tells
-/// `checkpoint` (executor.hpp) of the comparisons. Throws what it throws; the order is then unspecified.
+/// The same in place, by comparison. `checkpoint` (executor.hpp) counts the comparisons, so that the caller
+/// can end a long sort. Throws what the checkpoint throws; the order is then unspecified.
 BROADSIDE_PUBLIC void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint);
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.

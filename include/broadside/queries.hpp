@@ -102,22 +102,22 @@ struct Neighbour {
   friend constexpr bool operator==(const Neighbour&, const Neighbour&) = default;
 };
 
-/// Which boxes a query may find; all, unless told otherwise. `Id` is what names a box: a BoxId, or a Handle.
+/// Which boxes a query may find; by default all. `Id` identifies a box: a BoxId or a Handle.
 template <typename Id>
 struct QueryOptions {
   const Filter* filter = nullptr;  ///< only boxes whose filters accept this one
   std::optional<Id> except{};      ///< a box that is not found, such as the one that a ray starts from
 };
 
-/// Which boxes nearest() may find; all, unless told otherwise.
+/// Which boxes nearest() may find; by default all.
 template <typename Id, typename Real>
 struct NearestOptions {
   const Filter* filter = nullptr;  ///< as in QueryOptions
   std::optional<Id> except{};
 
-  /// Boxes that are farther away are not found; 0, more, or infinity. A box is near enough if
-  /// distance_squared() <= max_distance * max_distance, the product rounded to Real. So one whose distance
-  /// along one axis is max_distance is found, and with 0 those that contain the point are.
+  /// Boxes that are farther away are not found. At least 0, and may be infinite. A box is near enough if
+  /// distance_squared() <= max_distance * max_distance, with the product rounded to Real. So a box is found
+  /// if its distance is max_distance along one axis. With 0, only boxes that contain the point are found.
   Real max_distance = std::numeric_limits<Real>::infinity();
 };
 
@@ -140,10 +140,10 @@ concept VisitFunction = std::invocable<Function&, Found> &&
 /// Answers queries to the boxes of a frame, exactly as the definitions above and in box.hpp say.
 ///
 /// Queries may be asked by several threads at once, but not during update(). Absent boxes are never found.
-/// Results have an order that the boxes' history fixes, and that means nothing but where it is said. A query
-/// takes some tens of nanoseconds and what it finds; none allocates, but nearest() where it finds more than
-/// 64. Each throws InvalidQuery if something asked about is NaN, or infinite where it must not be, and what
-/// the visitor throws.
+/// The history of the boxes determines the order of results, which has no meaning unless a function states
+/// one. A query takes some tens of nanoseconds plus time for each result. No query allocates memory, except
+/// nearest() with more than 64 results. Each throws InvalidQuery if an argument is NaN, or is infinite where
+/// it must not be, and throws what the visitor throws.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC BoxIndex {
   static_assert(detail::SupportedBox<D, Real>::value);
@@ -185,12 +185,12 @@ class BROADSIDE_PUBLIC BoxIndex {
     return first_hit(as_cast(ray), options);
   }
 
-  /// The `count` boxes nearest to the point, or all if there are fewer, in one chunk: by distance, equally
-  /// distant ones by id.
+  /// The `count` boxes nearest to the point, or all if there are fewer, in one chunk, ordered by distance and
+  /// then by id.
   bool nearest(const Point& point, std::size_t count, Visitor<Neighbour<Real>>& visitor,
                const NearestOptions& options = {}) const;
 
-  /// The same in a vector: a new one, or `found`, which is emptied first.
+  /// The same in a vector: a new one, or `found`, which is cleared first.
   BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Neighbour<Real>> nearest(
       const Point& point, std::size_t count, const NearestOptions& options = {}) const {
     std::vector<Neighbour<Real>> found;
@@ -226,7 +226,7 @@ class BROADSIDE_PUBLIC BoxIndex {
     return nearest(point, count, static_cast<Visitor<Neighbour<Real>>&>(calls), options);
   }
 
-  /// The form of version 0.2: the filter and the box left out, one by one.
+  /// For compatibility with version 0.2: the filter and the excluded box as separate arguments.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* filter,
                    std::optional<BoxId> except = {}) const {
@@ -303,7 +303,7 @@ class BROADSIDE_PUBLIC BoxIndex {
   virtual std::size_t index_bytes() const noexcept = 0;
 
   std::span<const Filter> filters_;     // of the last frame; empty if it had none
-  detail::Vector<Filter> own_filters_;  // what these are of after update()
+  detail::Vector<Filter> own_filters_;  // the array behind filters_ after update()
   detail::Vector<BoxId> changed_;       // with those that need not be listed
   std::size_t size_ = 0;                // of the last frame
   bool dirty_ = true;                   // the last update did not end, or there was none

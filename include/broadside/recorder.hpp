@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-// In libstdc++'s debug mode a Recorder has other symbols, as its vectors are larger than those of a Recorder
-// in a library that was compiled without it.
+// In libstdc++'s debug mode a Recorder has different symbols, because its vectors are larger than those of a
+// Recorder in a library compiled without debug mode.
 #ifdef _GLIBCXX_DEBUG
 #define BROADSIDE_RECORDER_ABI __attribute__((abi_tag("debug")))
 #else

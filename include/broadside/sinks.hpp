@@ -18,7 +18,7 @@
 namespace broadside {
 
 namespace detail {
-/// Asks for large pages for memory that has not been written yet: a hint, which never fails.
+/// Asks the system for large pages, for memory that has not been written yet. A hint, which never fails.
 BROADSIDE_PUBLIC void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
 }  // namespace detail
 
@@ -33,7 +33,7 @@ class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
     pairs_->insert(pairs_->end(), pairs.data(), pairs.data() + pairs.size());
   }
 
-  /// Doubles the vector's memory at least, and asks for large pages for it.
+  /// At least doubles the vector's capacity, and asks for large pages.
   void grow(std::size_t size) {
     std::vector<Pair> larger;
     larger.reserve(std::max(size, 2 * pairs_->capacity()));
@@ -59,19 +59,18 @@ class BROADSIDE_PUBLIC PairCounter final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-/// A function that takes pairs: one Pair, or a std::span<const Pair>, at each call. What it returns is
-/// ignored.
+/// A function that takes one Pair, or a std::span<const Pair>, at each call. Its return value is ignored.
 template <typename Function>
 concept PairCallback = std::invocable<Function&, Pair> || std::invocable<Function&, std::span<const Pair>>;
 
-/// Where pairs go: into a PairSink, or to a function.
+/// What receives pairs: a PairSink or a function.
 template <typename Target>
 concept PairTarget = std::is_convertible_v < std::remove_reference_t<Target>
 *, PairSink* > || PairCallback<Target>;
 
-/// Calls a function with each pair, or with each chunk of pairs, in the thread that called find(). A sink of
-/// a reference to a function, PairFunction<Function&>, calls the caller's own. Where the function throws, the
-/// search ends and throws the same.
+/// Calls a function with each pair, or with each chunk of pairs, in the thread that called find().
+/// PairFunction<Function&> holds a reference and calls the caller's own function. If the function throws, the
+/// search ends and throws the same exception.
 template <PairCallback Function>
 class PairFunction final : public PairSink {
  public:
@@ -90,7 +89,7 @@ class PairFunction final : public PairSink {
 };
 
 namespace detail {
-/// Calls body(sink) with a sink that the pairs of `target` go to.
+/// Calls body(sink) with a sink that passes its pairs to `target`.
 template <PairTarget Target, typename Body>
 void with_sink(Target& target, const Body& body) {
   if constexpr (std::is_convertible_v<Target*, PairSink*>) {

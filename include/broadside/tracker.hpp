@@ -117,7 +117,7 @@ class BROADSIDE_PUBLIC PairTracker {
   /// last whole update.
   void update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
-  /// The same with a function each of a Pair, or of a std::span<const Pair>.
+  /// The same with two functions instead of sinks, each of a Pair or of a std::span<const Pair>.
   template <PairCallback Begun, PairCallback Ended>
   void update(const Frame<D, Real>& frame, Begun&& begun, Ended&& ended) {
     PairFunction<Begun&> begun_sink(begun);

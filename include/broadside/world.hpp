@@ -302,12 +302,12 @@ class BROADSIDE_PUBLIC World {
 
   /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
   /// whose costs and exceptions they have. `function` takes a Handle, or a Handle and its t_enter; the search
-  /// ends when it returns false. As the box that is not found, a handle that is not in the world leaves out
-  /// nothing. Rays and cast boxes are Ray and BoxCast.
+  /// ends when it returns false. If `except` is a handle that is not in the world, no box is left out. Rays
+  /// and cast boxes are Ray and BoxCast.
   ///
   /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
-  /// update, and does not enlarge them), the queries use it. Otherwise the first one builds an index, which
-  /// follows the boxes from then on, and each one pays for what changed since the last.
+  /// update, and does not enlarge them), the queries use it. Otherwise the first query builds an index, which
+  /// follows the boxes from then on, and each query updates it with the changes since the last one.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
     return box_index().overlapping(box, [&](BoxId id) { return function(handle_of(id)); },
@@ -330,8 +330,8 @@ class BROADSIDE_PUBLIC World {
     return HandleHit<Real>{handle_of(hit->box), hit->t_enter};
   }
 
-  /// The `count` nearest boxes, or all if there are fewer, as BoxIndex::nearest() finds them; equally distant
-  /// ones by slot. In a new vector, or in `found`, which is emptied first.
+  /// The `count` nearest boxes, or all if there are fewer, as BoxIndex::nearest() finds them: ordered by
+  /// distance and then by slot. In a new vector, or in `found`, which is cleared first.
   BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<HandleNeighbour<Real>> nearest(
       const Point<D, Real>& point, std::size_t count, const NearestOptions& options = {}) const {
     std::vector<HandleNeighbour<Real>> found;
@@ -348,7 +348,7 @@ class BROADSIDE_PUBLIC World {
     box_index().nearest(point, count, add, {options.filter, slot_of(options.except), options.max_distance});
   }
 
-  /// The form of version 0.2: the filter and the box left out, one by one.
+  /// For compatibility with version 0.2: the filter and the excluded box as separate arguments.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* filter,
                    const Handle& except = {}) const {

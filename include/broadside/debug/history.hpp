@@ -22,7 +22,7 @@ struct Step {
   detail::Vector<BoxId> changed;       ///< places whose boxes change, each once
   detail::Vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
 
-  detail::Vector<Filter> filters{};  ///< their new filters, likewise; or none: then they keep those they have
+  detail::Vector<Filter> filters{};  ///< their new filters, likewise; empty if all keep their filters
   detail::Vector<Pair> toggled{};    ///< pairs that become ignored if they were not, and the other way round
 };
 
@@ -32,11 +32,12 @@ struct History {
   detail::Vector<Box<D, Real>> boxes;
   detail::Vector<Step<D, Real>> steps;
 
-  detail::Vector<Filter> filters{};  ///< one for each box, or none: then every box has the standard one
+  detail::Vector<Filter> filters{};  ///< one for each box; empty if all have the default filter
   detail::Vector<Pair> ignored{};    ///< the pairs that do not count in the first frame
 };
 
-/// Turns the boxes of one frame, a std::vector of them or a History's, into those of the next.
+/// Applies a step: turns the boxes of one frame into the boxes of the next. `boxes` is a std::vector or
+/// History::boxes.
 template <int D, typename Real, typename Boxes>
 void apply(const Step<D, Real>& step, Boxes& boxes) {
   boxes.resize(step.size, absent_box<D, Real>());
