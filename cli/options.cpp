@@ -109,8 +109,8 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
       ->type_name("NAME");
   verb.add_option(
           "--columns", options.columns,
-          "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y or -,x,y,w,h; or how a "
-          "column holds bounds: bbox=xywh")
+          "A table's columns from left to right, such as id,min_x,min_y,max_x,max_y or -,x,y,w,h; or the "
+          "numbers in a column of bounds: bbox=xywh")
       ->type_name("LIST");
   verb.add_flag("--skip-invalid", options.skips_invalid,
                 "Leave out invalid boxes, such as boxes with a NaN or min > max, and say which and why; "

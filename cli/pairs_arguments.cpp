@@ -145,7 +145,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   for (const std::string& file : arguments.files) check_is_no_scene(file);
-  // What is read from a pipe is gone, and the second reader would wait for ever.
+  // A pipe can be read only once: a second reader would wait for ever.
   std::error_code ignored;
   if (arguments.files.size() == 2 && !std::filesystem::is_regular_file(arguments.files[0], ignored) &&
       std::filesystem::equivalent(arguments.files[0], arguments.files[1], ignored))

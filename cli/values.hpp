@@ -45,7 +45,7 @@ void check_is_no_output(const std::string& option, const std::string& path);
 void check_extension(const std::string& option, const std::string& path,
                      std::initializer_list<std::string_view> expected);
 
-/// Throws Unusable if `path`, where a verb reads a file, is no file but the name of a scene.
+/// Throws Unusable if `path`, from which a verb reads a file, is the name of a scene and not a file.
 void check_is_no_scene(const std::string& path);
 
 /// Throws Unusable if what is to be written at `path` is the file at `input`, whatever the paths.

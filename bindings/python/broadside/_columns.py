@@ -1,6 +1,6 @@
-"""Tables of boxes: which columns are the bounds, and these as rows.
+"""Tables of boxes: finds the columns of bounds and makes rows of them.
 
-The names that are known are those of the extension module, the same for CSV, Parquet, data frames and Arrow.
+The extension module has the table of known names, which is the same for CSV, Parquet, data frames and Arrow.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Rows = NDArray[Any]
 
 Columns = str | Sequence[str]
 
-# What the numbers of a row are, where an array has no names or a caller says so.
+# The meaning of the numbers in a row, for an array without names or if the caller says so.
 _CONVENTIONS = {
     "xyxy": ("xmin", "ymin", "xmax", "ymax"),
     "xywh": ("xmin", "ymin", "width", "height"),
@@ -29,10 +29,10 @@ _CONVENTIONS = {
     "xyzwhd": ("xmin", "ymin", "zmin", "width", "height", "depth"),
     "cxcyczwhd": ("cx", "cy", "cz", "width", "height", "depth"),
 }
-# What rows without names may be, beside minima and maxima.
+# Conventions other than minima and maxima that rows without names may follow.
 SIZED_CONVENTIONS = [name for name, names in _CONVENTIONS.items() if "width" in names]
 
-# The names that an array's columns have in pandas and polars. They say nothing, so they must be all there are.
+# The default names of an array's columns in pandas and polars. They have no meaning, so a table must have only these.
 _NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (4, 6)]
 
 _EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to say which they are"
@@ -40,9 +40,9 @@ _EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to
 
 @dataclass(frozen=True)
 class Choice:
-    """Columns by their places in a table, and for each axis its form and which two of them it is made of.
+    """Chosen columns by their places in a table, and for each axis its form and the two columns that give its bounds.
 
-    No axes: one column has all numbers of a box.
+    Without axes, one column has all numbers of a box.
     """
 
     places: list[int]
@@ -55,7 +55,7 @@ class Column(NamedTuple):
     label: str
     values: Rows
     missing: NDArray[np.bool_] | None = None
-    """Where there is no value; None if there are all."""
+    """True where a value is missing; None if no value is missing."""
 
     def part(self, place: int) -> Column:
         """One of several columns."""
@@ -68,7 +68,7 @@ class Column(NamedTuple):
 
 
 def checked(columns: Columns | None, name: str) -> str | list[str] | None:
-    """What a caller says of columns: None, a convention, or a list of names."""
+    """The caller's argument `columns`, checked: None, a convention, or a list of names."""
     if columns is None:
         return None
     if isinstance(columns, str):
@@ -90,7 +90,7 @@ def choose(labels: Sequence[str], name: str, columns: str | list[str] | None) ->
         return of_places(len(labels), name, columns)
     if isinstance(columns, list):
         return _named(labels, name, columns)
-    # Of a convention with centres, x and y are these.
+    # In a convention with centres, x and y are the centre.
     renamed = {"x": "cx", "y": "cy", "z": "cz"} if columns is not None and columns.startswith("c") else {}
     choice, problem = _resolved([renamed.get(label.lower(), label) for label in labels], columns is not None)
     if choice is not None and (columns is None or not choice.axes or _forms(choice) == _forms_of(columns)):
@@ -100,7 +100,7 @@ def choose(labels: Sequence[str], name: str, columns: str | list[str] | None) ->
 
 
 def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
-    """The columns of points among those of a table, which it may have in any order or, of other names, alone."""
+    """The columns of points among those of a table: by known names, or all if there are `dimension`."""
     problem, _, axes, _ = _core.resolve_columns(list(labels), False)
     places = [place for form, place, _ in axes if form == "point"]
     if problem or len(places) != dimension:
@@ -111,7 +111,7 @@ def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
 
 
 def of_places(count: int, name: str, columns: str | list[str] | None) -> Choice:
-    """The columns of an array, which have no names but those that a caller gives them."""
+    """The columns of an array, which have only the names that a caller gives them."""
     if columns is None:
         columns = "xyzxyz" if count == 6 else "xyxy"
     names = list(_CONVENTIONS[columns]) if isinstance(columns, str) else columns
@@ -128,14 +128,14 @@ def _named(labels: Sequence[str], name: str, columns: list[str]) -> Choice:
             found = f"has {len(there)} columns {column}" if there else f"has the columns {', '.join(labels) or 'none'}"
             raise ValueError(f"{name} {found}; expected one column {column}")
         places += there
-    # Names without a meaning are those of the bounds in their order.
+    # Names without a meaning stand for the bounds in order.
     has_meaning = len(columns) not in (4, 6) or _resolved(columns, True)[0] is not None
     choice = _meant(columns, name) if has_meaning else of_places(len(columns), name, None)
     return Choice([places[place] for place in choice.places], choice.axes)
 
 
 def _meant(columns: list[str], name: str) -> Choice:
-    """What names that a caller gives mean."""
+    """The choice of columns by the names that a caller gives them."""
     choice, problem = _resolved(columns, True)
     if choice is None:
         raise ValueError(f"the columns of {name} are {', '.join(columns)}: {problem}; expected {_EXPECTED}")
@@ -152,8 +152,8 @@ def _forms_of(convention: str) -> list[str]:
 
 
 def _resolved(labels: list[str], are_chosen: bool) -> tuple[Choice | None, str]:
-    """What names mean, or what is wrong with them."""
-    # Frames of a recording are nothing to a table in memory.
+    """The choice of columns by their names, or the problem with these names."""
+    # A table in memory has no frames, so a column of this name is ignored.
     names = ["-" if label.lower() == "frame" else label for label in labels]
     problem, _, axes, geometry = _core.resolve_columns(names, are_chosen)
     if problem:
@@ -168,7 +168,7 @@ def _resolved(labels: list[str], are_chosen: bool) -> tuple[Choice | None, str]:
 
 
 def rows_of(choice: Choice, columns: list[Column], name: str) -> Rows:
-    """The bounds that columns make. A row without any value is an absent box; one with some has NaN for the others."""
+    """The bounds as rows. A row without any value is an absent box; in a row with some values, the others are NaN."""
     numbers = [column.exact(name) for column in columns]
     bounds = [_bounds_on(axis, numbers) for axis in choice.axes]
     rows = np.column_stack([minimum for minimum, _ in bounds] + [maximum for _, maximum in bounds])
@@ -189,7 +189,7 @@ def _bounds_on(axis: tuple[str, int, int], numbers: list[Rows]) -> tuple[Rows, R
     if form == "bottom_top":
         # On a screen y grows downwards.
         return (b, a) if (b < a).any() else (a, b)
-    # As of files: in double. What is infinite or no number makes an invalid box.
+    # In double, as for files. Infinities and NaN make an invalid box.
     a, b = a.astype(np.float64, copy=False), b.astype(np.float64, copy=False)
     with np.errstate(invalid="ignore", over="ignore"):
         if form == "min_size":
@@ -199,7 +199,7 @@ def _bounds_on(axis: tuple[str, int, int], numbers: list[Rows]) -> tuple[Rows, R
 
 
 def exact(array: Rows, what: str, missing: NDArray[np.bool_] | None = None) -> Rows:
-    """Numbers as float32 or float64 that hold them exactly; NaN where they are missing. Decimal fractions are rounded."""
+    """Numbers as float32 or float64, which must hold them exactly; NaN where missing. Decimal fractions are rounded."""
     if missing is not None:
         array = array.copy()
         array[missing] = 0

@@ -35,7 +35,7 @@ def boxes(found: Any, name: str, columns: Columns | None = None) -> Rows:
 
 
 def with_other_conventions(error: InvalidBoxError, found: Any, name: str, columns: Columns | None) -> InvalidBoxError:
-    """An error about an invalid box, which names the convention by which all rows without names are valid."""
+    """The error about an invalid box, with the conventions in which all rows without names are valid."""
     if columns is not None or error.argument != name:
         return error
     ways = [f"columns={way!r}" for way in _columns.SIZED_CONVENTIONS if _are_valid(found, name, way)]
@@ -46,12 +46,12 @@ def with_other_conventions(error: InvalidBoxError, found: Any, name: str, column
 def _are_valid(found: Any, name: str, columns: str) -> bool:
     try:
         return not _core.invalid_rows(boxes(found, name, columns)).size
-    except (TypeError, ValueError):  # not of so many columns, or by names that say something else
+    except (TypeError, ValueError):  # another number of columns, or names with another meaning
         return False
 
 
 def given(found: Any, name: str, columns: Columns | None) -> Any:
-    """What the extension module takes for boxes of which a caller says what the columns are, or says nothing."""
+    """The boxes as the extension module takes them; converted if the caller gives `columns`."""
     return found if columns is None else boxes(found, name, columns)
 
 
@@ -97,14 +97,14 @@ class _Boxes:
         return self._of_packed(columns[0])
 
     def of_grid(self, grid: Column, columns: str | list[str] | None) -> Rows:
-        """Of columns without names, but for those that a caller gives them."""
+        """Rows from columns that have only the names that a caller gives them."""
         if columns is None and grid.missing is None:
             return grid.values
         choice = _columns.of_places(grid.values.shape[1], self.name, columns)
         return _columns.rows_of(choice, [grid.part(place) for place in choice.places], self.name)
 
     def _of_packed(self, column: Column) -> Rows:
-        """A column of all numbers of a box, such as lists; a box that is missing is absent."""
+        """Rows from one column that has all numbers of a box, such as lists; a missing box is absent."""
         if column.values.ndim == 1:
             missing = np.zeros(len(column.values), np.bool_) if column.missing is None else column.missing
             there = _of_sequence(list(column.values[~missing]), f"column {column.label} of {self.name}")
@@ -143,7 +143,7 @@ _Shape = _Boxes | _Points
 def _with_float_rows(found: Any, name: str, shape: _Shape) -> Rows:
     """An array of float32 or float64 in native byte order, whose rows are in one piece."""
     array = _columns.exact(_as_array(found, name, shape), name)
-    # C-contiguous: the extension takes longer strides from row to row as well, but then these came by another way.
+    # The extension also takes rows with longer strides, but such arrays do not come this way.
     return np.ascontiguousarray(array)
 
 
@@ -195,7 +195,7 @@ def _of_sequence(found: Any, name: str) -> Rows:
     if array.ndim == 0:
         raise TypeError(f"{name} is of {type(found).__name__}; expected an array of shape (n, 4) or (n, 6)")
     if array.dtype.kind == "f" and (np.isfinite(array) & (np.abs(array) >= 2.0**53)).any():
-        # NumPy has rounded integers that stand beside floats.
+        # NumPy has rounded integers that are mixed with floats.
         return np.asarray(found, dtype=object)
     return array
 
@@ -249,7 +249,7 @@ def _of_frame(found: Any, name: str, shape: _Shape) -> Rows | None:
 
 
 def _keys_of(series: Any) -> list[Any]:
-    """The fields of a column of dicts, as which pandas has structs of Parquet; of another column None, itself."""
+    """The fields of a column of dicts, in which pandas holds structs of Parquet; [None] for any other column."""
     if series.dtype != object:
         return [None]
     first = next((value for value in series.array if value is not None and not isinstance(value, float)), None)
@@ -313,7 +313,7 @@ def crs_of(found: Any) -> Any:
 
 
 def common_crs(known: Any, known_name: str, found: Any, name: str) -> Any:
-    """The coordinate reference system of two sets, which may be None. Raises ValueError if they have two."""
+    """The coordinate reference system of two sets, which may be None. Raises ValueError if they differ."""
     crs = crs_of(found)
     if crs is None or known is None:
         return known if crs is None else crs

@@ -20,7 +20,7 @@ _BYTES_AT_ONCE = 2**20
 
 
 class Readable(Protocol):
-    """What is open for reading."""
+    """An object with read()."""
 
     def read(self, size: int, /) -> bytes | str:
         """The next bytes or characters, or none at the end."""
@@ -88,9 +88,9 @@ def advise(
         algorithms: Names, specs or groups (own, paper, literature, all) with commas between.
         threads: Numbers of threads to try besides one.
         budget: About how many seconds it may take.
-        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
+        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
 
-    Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ends at Ctrl-C, also within a long search.
+    Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ctrl-C ends it, even during a long search.
     """
     budget = _arguments.number(budget, "budget")
     if not 0 < budget <= 3600:
@@ -129,12 +129,13 @@ def read(
     and GeoParquet, if pyarrow is installed.
 
     Args:
-        path: The file: its path, or what has ``read()``, such as an open file or ``io.BytesIO``, from where it is to its
-            end; its ``name``, if it has one, counts as a path does. A named pipe is read until its writers have closed it.
+        path: The file's path, or an object with ``read()``, such as an open file or ``io.BytesIO``. Such an object is read
+            from its current position to its end; its ``name``, if it has one, is used like a path. A named pipe is read
+            until its writers have closed it.
         format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
-        columns: The columns of a table: a list of their names, a str of these with commas between, or what the numbers of
-            a row are, such as "xywh": see `pairs`. The names of CSV are those of its columns from left to right.
+        columns: A table's columns of bounds: a list of names, a str of names separated by commas, or the meaning of the
+            numbers in a row, such as "xywh": see `pairs`. For CSV, the names are given to the columns from left to right.
         layer: The layer of a map.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
@@ -144,7 +145,7 @@ def read(
     Returns:
         An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it. Of GeoParquet these are the
         bounds in its covering column or, where it has none, of its geometries, which takes shapely; of other Parquet the
-        columns of bounds, by the names that `pairs` knows.
+        columns of bounds, found by the names that `pairs` knows.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -152,7 +153,8 @@ def read(
             other formats by the program.
         ImportError: It takes pyarrow or shapely, which is not installed.
 
-    Cost: a file is read in place. What `path` reads is held in memory; of ``io.BytesIO`` it is not copied.
+    Cost: a file is read in place. The content of an object with ``read()`` is held in memory, and that of
+    ``io.BytesIO`` is not copied.
     """
     name, content = _source_of(path)
     chosen = _columns.checked(columns, "the file")
@@ -186,7 +188,7 @@ def read(
 
 
 def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
-    """What errors and the extension call a file, and its bytes if these are not those of the file of this name."""
+    """The name of a file in errors and in the extension, and its bytes if they do not come from the file of that name."""
     if hasattr(path, "read"):
         name = getattr(path, "name", None)
         called = os.fsencode(name) if isinstance(name, (str, bytes, os.PathLike)) else b"the file object"
@@ -200,7 +202,7 @@ def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
 
 
 def _content_of(file: Any) -> _parquet.Content:
-    """The rest of an open file. Python's reading ends at Ctrl-C, also while a pipe has nothing."""
+    """The rest of an open file. Ctrl-C ends Python's reading, even while it waits for a pipe."""
     if isinstance(file, io.BytesIO):
         rest = file.getbuffer()[file.tell() :]
         file.seek(0, os.SEEK_END)
@@ -223,7 +225,7 @@ def _content_of(file: Any) -> _parquet.Content:
 
 
 def _most_bytes() -> int:
-    """A quarter of the memory, as of pipes that the program reads."""
+    """A quarter of the memory, as the program's limit for pipes."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 4
     except (AttributeError, OSError, ValueError):
@@ -264,7 +266,7 @@ def draw(
             side by side; empty: only the boxes.
         most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
         title: What the picture is called.
-        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
+        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
 
     Raises InvalidBoxError, InvalidAlgorithmError, ValueError.
     """

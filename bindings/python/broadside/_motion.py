@@ -62,9 +62,9 @@ class World:
         first_generation: The generation of the first handles; by default each world has another one.
 
     Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not while
-    the first query after a change makes its index: an update that was ended can be made again. Functions of many boxes
+    the first query after a change builds its index. You can repeat an update that Ctrl-C ended. Functions of many boxes
     do all or, if one is wrong, nothing. A world can be pickled and copied, with its handles. Its queries take `filters`
-    and `exclude` as those of `Index` do, the latter handles.
+    and `exclude` as those of `Index` do; `exclude` takes handles.
     """
 
     __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
@@ -349,7 +349,7 @@ class Tracker:
             boxes: n boxes, whatever `pairs` takes.
             changed: The rows that may differ from the frame before; a change that is not listed is not seen. None: any.
             filters: A filter for each box, made by `broadside.filters`; a change of one is listed as well.
-            columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
+            columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
 
         Raises InvalidBoxError and ValueError, and has taken nothing then; so does Ctrl-C, after which the next update
         tells of all events since the last one that ended.

@@ -87,10 +87,10 @@ def pairs(
             are taken as they are, without a copy if they are C-contiguous; rows farther apart are gathered by the
             search, and other strides, integers (refused where float64 does not hold one), float16 and nested lists
             are converted once. So are shapely geometries, GeoSeries and GeoDataFrames (by their bounds; empty ones
-            overlap nothing), whatever has ``__array__`` or ``__dlpack__``, and tables: pandas and polars DataFrames,
-            structured arrays, and Arrow tables and arrays (structs of columns, lists of a fixed size). Of tables only
-            the columns of bounds are looked at; a row without any bound is an absent box, as an empty geometry is. An
-            empty list is no boxes. The array must not be changed by another thread meanwhile.
+            overlap nothing), objects with ``__array__`` or ``__dlpack__``, and tables: pandas and polars DataFrames,
+            structured arrays, and Arrow tables and arrays (structs of columns, lists of a fixed size). Only a table's
+            columns of bounds are read; a row without any bound is an absent box, as an empty geometry is. An empty
+            list stands for no boxes. No other thread may change the array during the call.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
             found. If one set is float32 and the other float64, the former is widened, which is exact.
         algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
@@ -99,11 +99,11 @@ def pairs(
             with n rows and as many columns as the second set has boxes, whose true elements are the pairs: of one set
             those above the diagonal.
         threads: The most threads; None: all cores. A thread has at least 4096 boxes, so few boxes take one.
-        columns: Which columns of a table are the bounds: a list of their names, such as ``["x", "y", "w", "h"]``; names
-            without a meaning are minima, then maxima. Or what the numbers of a row are: ``"xyxy"``, ``"xywh"``,
-            ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, also of an array and of a column `bbox` of
-            lists. By default the names tell, as those of CSV do: xmin, ymin, xmax, ymax; left, top, right, bottom;
-            a struct `bbox` ...; and rows without names are minima, then maxima.
+        columns: A table's columns of bounds, as a list of names such as ``["x", "y", "w", "h"]``; names without a
+            meaning are minima, then maxima. Or the meaning of the numbers in a row: ``"xyxy"``, ``"xywh"``,
+            ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, which also applies to an array and to a column
+            `bbox` of lists. By default the bounds are found by the names that CSV uses: xmin, ymin, xmax, ymax; left,
+            top, right, bottom; a struct `bbox` ...; and rows without names are minima, then maxima.
         other_columns: Likewise for `other`.
         filters: Which boxes may pair: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
@@ -121,8 +121,8 @@ def pairs(
         ValueError: Something has another shape, or does not fit to the rest.
 
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends
-    within a few million tests, and sorting pairs within as many comparisons; it looks for signals every 50 milliseconds
-    at most. Any number of threads may call it at once.
+    within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
+    milliseconds. Any number of threads may call it at once.
     """
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
@@ -153,7 +153,7 @@ def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
 
 
 def _sets(boxes: Any, other: Any, columns: Columns | None, other_columns: Columns | None) -> tuple[Any, Any]:
-    """Both sets as the extension module takes them. Raises ValueError if they are in different places."""
+    """Both sets as the extension module takes them. Raises ValueError if their reference systems differ."""
     if other is not None:
         _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
         other = _convert.given(other, "other", other_columns)

@@ -100,7 +100,7 @@ def _geometry(metadata: dict[bytes, bytes], shown: str) -> dict[str, Any] | None
 
 
 def _of_covering(file: Any, covering: dict[str, list[str]], shown: str, dimension: int) -> Rows:
-    """The bounds that the metadata name. What has no extent, an empty geometry or none, has bounds of null or NaN."""
+    """The bounds that the metadata name. An empty or missing geometry has bounds of null or NaN."""
     axes = "xyz" if "zmin" in covering and dimension != 2 else "xy"
     if dimension == 3 and axes == "xy":
         raise FileError(f"{shown}: has a covering in 2D; expected boxes in 3D")
@@ -120,7 +120,7 @@ def _of_covering(file: Any, covering: dict[str, list[str]], shown: str, dimensio
 
 
 def _by_name(file: Any, shown: str, columns: str | list[str] | None, dimension: int) -> tuple[Rows, str]:
-    """The bounds by the columns' names, and these."""
+    """The bounds found by the columns' names, and the text that names these columns."""
     paths = _paths_of(file)
     try:
         choice = _columns.choose([".".join(path) for path in paths], shown, columns)
@@ -137,7 +137,7 @@ def _by_name(file: Any, shown: str, columns: str | list[str] | None, dimension: 
 
 
 def _paths_of(file: Any) -> list[list[str]]:
-    """The path of each column and, of structs, of each field."""
+    """The path of each column, or of each field of a struct."""
     return [path for field in file.schema_arrow for path in _paths(field)]
 
 

@@ -1,4 +1,4 @@
-"""What subclasses of this package's classes add to their instances, for pickle and copy."""
+"""The attributes that subclasses add to this package's classes, for pickle and copy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def state_of(instance: object, base: type) -> tuple[dict[str, Any] | None, dict[str, Any]] | None:
-    """The attributes beyond those of `base`, as pickle puts them back; None if there are none."""
+    """The attributes beyond those of `base`, in the form that pickle restores; None if there are none."""
     kinds = type(instance).__mro__
     names = [name for kind in kinds[: kinds.index(base)] for name in _slots_of(kind)]
     slots = {name: getattr(instance, name) for name in names if hasattr(instance, name)}

@@ -43,7 +43,7 @@ class FirstHits(NamedTuple):
 
 
 class Neighbours(NamedTuple):
-    """The nearest boxes of each point, shape (m, k). Where fewer are found, the rest is the greatest number, ``inf``."""
+    """The nearest boxes of each point, shape (m, k). Places without a box hold the greatest number and ``inf``."""
 
     box: NDArray[Any]
     """By distance, then by row: rows (uint32), of a world handles (uint64)."""
@@ -56,7 +56,7 @@ class Index:
 
     Args:
         boxes: n boxes, whatever `pairs` takes. They are copied.
-        columns: Which columns of a table are the bounds, or what the numbers of a row are: see `pairs`.
+        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
         filters: A filter for each box, made by `broadside.filters`, for queries with filters.
         dtype: float32 or float64, to widen the boxes. Queries are of the same dtype: those of float64 to an index of
             float32 are refused unless they are exact in float32, so that answers are exact.
@@ -69,9 +69,9 @@ class Index:
     finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once. Making an index releases
     the GIL and is not interrupted. An index can be pickled.
 
-    Each query takes `filters` and `exclude`, of each query one or one for all: a filter made by `broadside.filters`, which
-    the filter of a box that is found accepts; and a box that is not found, such as the one that a point is of. A box
-    that is not there leaves out nothing.
+    Each function takes `filters` and `exclude`, with one value for each query or one for all. `filters` are made by
+    `broadside.filters`: a query finds only boxes whose filters accept its own. `exclude` names a box that the query leaves
+    out, such as the box that a point belongs to. If there is no such box, nothing is left out.
     """
 
     __slots__ = ("__weakref__", "_boxes", "_crs", "_filters", "_index")
@@ -94,7 +94,7 @@ class Index:
             raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
 
     def _take(self, array: NDArray[Any], crs: Any, filters: NDArray[np.void] | None) -> None:
-        # Bytes cannot be changed, nor can any array that shows them be made to.
+        # Bytes are immutable, so an array over them cannot be made writable.
         self._boxes: NDArray[Any] = np.ndarray(array.shape, array.dtype, array.tobytes())
         self._crs = crs
         self._filters = None if filters is None else np.array(filters)
@@ -174,7 +174,7 @@ class Index:
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> Neighbours:
-        """The k boxes nearest to each of `points`, shape (m, dimension), of those at most `max_distance` away.
+        """The k boxes nearest to each of `points`, shape (m, dimension), at a distance of at most `max_distance`.
 
         `k` is from 1 to 65,536, or to the number of boxes where these are more. Raises InvalidQueryError for a NaN; an
         infinite point is infinitely far from every finite box.

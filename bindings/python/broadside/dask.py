@@ -63,7 +63,7 @@ def pairs(
             bounds of its geometries. A list of chunks: delayed objects, DataFrames, GeoDataFrames, GeoSeries and arrays.
             Whatever else ``broadside.pairs`` takes is cut into chunks and travels with the tasks.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are found.
-        columns: Which columns of frames are the bounds, or what the numbers of a row are: see ``broadside.pairs``.
+        columns: The frames' columns of bounds, or the meaning of the numbers in a row: see ``broadside.pairs``.
         other_columns: Likewise of `other`.
         ids: What a box is called: ``"row"``, its row number counted over all chunks; or ``"index"``, its label in the
             index of its frame. Labels need not be unique.

@@ -18,7 +18,7 @@ const joinOptions = [...pairsOptions, "rightFilters"];
 /** Views of fewer ids than this are kept: making one costs as much as comparing ten boxes. */
 const maxKept = 256;
 
-/** Up to so many ids a loop copies faster than slice(). */
+/** Up to this number of ids, a loop copies faster than slice(). */
 const maxLoop = 16;
 
 /** Finders of so many kinds are kept; those of a program that makes up more go. */

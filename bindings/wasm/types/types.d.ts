@@ -45,8 +45,8 @@ export interface CountOptions {
 
 export interface ResultOptions {
   /**
-   * Whether the arrays that a call returns are views of the module's memory. A view costs no copy, and the next such
-   * call changes it; memory that grows empties it. If left out, arrays are copies, which nothing changes.
+   * Whether the returned arrays are views of the module's memory. A view saves the copy, but the next such call changes
+   * it, and it becomes empty when the memory grows. By default arrays are copies, which no later call changes.
    */
   readonly view?: boolean;
 }
@@ -94,7 +94,7 @@ export interface Boxes extends Freeable {
   readonly data: Float32Array;
 }
 
-/** What one update brought, sorted: two numbers a pair. */
+/** The events of one update, sorted: two numbers per pair. */
 export interface Events<Numbers> {
   readonly begun: Numbers;
   readonly ended: Numbers;
@@ -185,7 +185,7 @@ export interface Neighbours<Numbers> {
   readonly distances: Float64Array;
 }
 
-/** Questions about boxes. The order of what is found means nothing unless it says so. */
+/** Queries about boxes. The order of results has no meaning unless a query states one. */
 export interface Queries<Numbers> {
   /** The boxes that overlap a box. For the boxes that contain a point, give it as minima and as maxima. */
   overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Numbers;
