@@ -127,9 +127,14 @@ TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneFrameAskFor) {
     tracker->update({.boxes = boxes_in_one_place<D>(count, 0.25F), .changed = all}, events, events);
     const std::uint64_t pairs = std::uint64_t{count} * (count - 1) / 2;
     EXPECT_EQ(events.count(), pairs);
-    EXPECT_GE(calls.count, least_calls(pairs, count));
+    // Some keep ends in order, and test nothing where the order stays; these count nothing either.
+    const std::uint64_t tests = tracker->statistics() ? tracker->statistics()->tests : 0;
+    if (is_own(GetParam())) {
+      EXPECT_GE(tests, pairs);
+    }
+    EXPECT_GE(calls.count, least_calls(tests, count));
     calls = {.count = 0, .last = 1};
-    if (least_calls(pairs, count) > 0) {
+    if (least_calls(tests, count) > 0) {
       EXPECT_THROW(
           tracker->update({.boxes = boxes_in_one_place<D>(count, 0.5F), .changed = all}, events, events),
           Enough);
