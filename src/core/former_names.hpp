@@ -17,9 +17,9 @@ std::string_view current_value(std::string_view algorithm, std::string_view tuna
 /// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
 std::string current_spec(std::string_view spec);
 
-/// The one text of all specs that make the same algorithm with the same values: current names, tunables in the
-/// algorithm's order without those of standard values, numbers as short as they can be. For a spec that an
-/// algorithm was made of.
+/// The canonical form of a spec, the same for all specs that make the same algorithm with the same values:
+/// current names, tunables in the algorithm's order except those with default values, numbers in their
+/// shortest form. `spec` must be one that made an algorithm.
 std::string canonical_spec(std::string_view spec);
 
 /// The reason why a tunable of the library's algorithm no longer has this value, as the end of an error

@@ -1,4 +1,4 @@
-// Vectors that grow by an eighth, and that give their memory back.
+// Helpers for vectors: growth by an eighth, and release of memory.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,7 @@ void resize_by_eighths(std::vector<T>& vector, std::size_t size, const T& value 
   vector.resize(size, value);
 }
 
-/// Empties vectors and gives their memory back. `vector = {}` would not: it assigns an empty list and keeps
-/// the memory.
+/// Clears vectors and releases their memory. `vector = {}` would assign an empty list and keep the memory.
 template <typename... Vectors>
 void give_back(Vectors&... vectors) noexcept {
   ((vectors = Vectors()), ...);

@@ -44,7 +44,7 @@ struct ChangeSinks {
   /// By id: 1 for boxes that move, whether the structure has moved them already or not yet.
   const std::uint8_t* moves;
 
-  /// Is told of the pairs compared, and may end the search by an exception; or null.
+  /// Counts the pairs compared, and may end the search by an exception; or null.
   Checkpoint* checkpoint = nullptr;
 };
 

@@ -36,10 +36,10 @@ namespace {
 /// Thrown where there is no room for a piece's pairs.
 struct NoRoom {};
 
-/// Thrown by a worker's checkpoint where another worker has thrown.
+/// Thrown by a worker's checkpoint after another worker has thrown.
 struct Ended {};
 
-/// The time between two checkpoints of a thread that waits.
+/// The time between two checkpoints of the waiting caller's thread.
 constexpr std::chrono::milliseconds between_checkpoints{20};
 
 /// Collects a piece's pairs.
@@ -142,8 +142,8 @@ class Parallel::Errors {
   std::atomic<bool> any_ = false;
 };
 
-/// Has the caller's thread wait for the workers of other threads, and pass its checkpoint meanwhile. Not for
-/// those of its own: an executor may nest one in the other.
+/// Makes the caller's thread wait for the workers on other threads, and call its checkpoint meanwhile. It
+/// does not wait for workers on its own thread, because an executor may run one within another.
 class Parallel::Waiting {
  public:
   void begin() {

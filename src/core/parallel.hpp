@@ -45,8 +45,9 @@ class Parallel {
 
   std::size_t workers() const noexcept { return is_lean ? 1 : workers_; }
 
-  /// What a worker is to tell of the pairs it compares: in the caller's thread it calls the caller's
-  /// checkpoint, in others it ends what they do once an exception is to be thrown. Null if there is none.
+  /// The checkpoint to which a worker reports the pairs it compares. In the caller's thread it calls the
+  /// caller's checkpoint. In other threads it ends the work once there is an exception. Null if there is
+  /// none.
   Checkpoint* checkpoint(std::size_t worker) noexcept {
     return is_lean || checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
   }
@@ -119,7 +120,7 @@ class Parallel {
   /// Calls the caller's checkpoint, if there is one. In the caller's thread.
   void pass_checkpoint() const;
 
-  /// Of a worker: passes the caller's checkpoint or, in another thread, ends its work where something threw.
+  /// For a worker: calls the caller's checkpoint or, in another thread, ends the work after an exception.
   void pass_workers_checkpoint() const;
 
   /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw, but notes in
@@ -128,7 +129,7 @@ class Parallel {
 
   class Waiting;
 
-  /// In a cache line of its own.
+  /// A checkpoint in its own cache line.
   struct alignas(64) WorkersCheckpoint {
     Checkpoint value;
   };
@@ -138,9 +139,9 @@ class Parallel {
   std::size_t boxes_ = 0;
   std::function<void()> checkpoint_;
   std::function<void()> workers_checkpoint_ = [this] { pass_workers_checkpoint(); };
-  std::vector<WorkersCheckpoint> checkpoints_;  // by worker, where there is one
+  std::vector<WorkersCheckpoint> checkpoints_;  // by worker; empty without a checkpoint
   std::thread::id caller_;
-  const Errors* errors_ = nullptr;  // of what the workers do
+  const Errors* errors_ = nullptr;  // of the workers
   PairBlocks blocks_;
 };
 

@@ -138,7 +138,7 @@ std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) 
   const std::size_t tries = std::min(boxes.size(), 4 * most_fitted);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < tries && taken < most_fitted; ++i) {
-    // A copy, since the caller's may change between two looks at it, and a NaN has no median.
+    // A copy, since another thread may change the caller's; a NaN has no median.
     const Box<D, double> box = boxes[tries == boxes.size() ? i : sampled_place(i, boxes.size())];
     if (!is_present(box)) continue;
     ++taken;

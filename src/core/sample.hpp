@@ -27,7 +27,7 @@ struct AxisSample {
   std::vector<float> minima;  ///< of the sampled boxes, ascending
 };
 
-/// `value`, or -infinity for a NaN, by which nothing can be sorted. A box that was checked has none, but
+/// `value`, or -infinity for a NaN, which cannot be sorted. Boxes had no NaN when they were checked, but
 /// another thread may have written to the caller's array since.
 inline float without_nan(float value) noexcept {
   return std::max(-std::numeric_limits<float>::infinity(), value);

@@ -44,7 +44,7 @@ class Digits {
 using Counts = std::array<std::uint32_t, std::size_t{1} << most_bits>;
 
 /// Sorts `pairs` into `scratch` by a digit, and swaps the two. `counts` has the number of pairs for each
-/// value of the digit. Pairs that are alike in it stay in order.
+/// value of the digit. The sort is stable.
 template <typename DigitOf>
 void sort_by(std::span<Pair>& pairs, std::span<Pair>& scratch, std::span<std::uint32_t> counts,
              DigitOf digit) {
@@ -83,10 +83,10 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   return (first.steps() + second.steps()) % 2 != 0;
 }
 
-/// Parts pairs until they are few enough to be sorted without a checkpoint in between.
+/// Partitions the pairs until each part is small enough to be sorted without a checkpoint.
 void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
   constexpr std::size_t sorted_at_once = std::size_t{1} << 16;
-  constexpr std::uint64_t comparisons_a_pair = 16;  // of those
+  constexpr std::uint64_t comparisons_a_pair = 16;  // in such a part
   while (pairs.size() > sorted_at_once) {
     std::array<std::uint64_t, 15> sampled;
     for (std::size_t i = 0; i < sampled.size(); ++i)
@@ -97,7 +97,7 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
       return key(pair) < sampled[sampled.size() / 2];
     });
     auto lower = static_cast<std::size_t>(middle - pairs.begin());
-    if (std::min(lower, pairs.size() - lower) < pairs.size() / 16) {  // a sample that says little
+    if (std::min(lower, pairs.size() - lower) < pairs.size() / 16) {  // the sample was a poor guide
       lower = pairs.size() / 2;
       std::ranges::nth_element(pairs, pairs.begin() + static_cast<std::ptrdiff_t>(lower), {}, key);
       checkpoint.count(4 * pairs.size());

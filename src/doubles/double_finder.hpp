@@ -24,7 +24,7 @@ template <int D>
 class DoubleFinder final : public PairFinder<D, double>, public Outlined<D, double> {
  public:
   Outlined<D, double>* outlined() noexcept override { return this; }
-  /// It gives up where the finder of floats does, whose boxes is_left() asks for.
+  /// It gives up when the finder of floats does; is_left() then takes the boxes of that finder.
   Yielding<D>* yielding() noexcept override { return finder_->yielding(); }
 
   explicit DoubleFinder(std::unique_ptr<PairFinder<D>> finder);

@@ -16,8 +16,8 @@ constexpr std::uint64_t most_false_candidates = 32;
 
 struct TooManyFalse {};
 
-/// Writes the events among candidates, and counts the candidates that are false. Throws
-/// TooManyFalse where these are more than `most`.
+/// Writes the events among the candidates, and counts false candidates. Throws TooManyFalse if there are more
+/// than `most`.
 template <int D>
 class Candidates final : public PairSink {
  public:
@@ -49,9 +49,9 @@ class Candidates final : public PairSink {
 
 }  // namespace
 
-/// Boxes that a rounding no longer tells apart make false candidates: where these become too many, also in
-/// the middle of a frame, all boxes are rounded anew. By events that were written already nothing is lost:
-/// they may be written more than once.
+/// Boxes that rounding makes equal cause false candidates. If there are too many, even in the middle of a
+/// frame, all boxes are rounded anew. Events that were already written are harmless: an event may be written
+/// more than once.
 template <int D>
 void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
   const std::uint64_t most = most_false_candidates * change.now.size();
@@ -65,7 +65,7 @@ void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& 
   follow(change, true, std::numeric_limits<std::uint64_t>::max(), begun, ended);
 }
 
-/// Follows until there are more false candidates than `most`.
+/// Follows the boxes; throws TooManyFalse if there are more than `most` false candidates.
 template <int D>
 void DoubleFollower<D>::follow(const Change<D, double>& change, bool starts, std::uint64_t most,
                                PairSink& begun, PairSink& ended) {

@@ -143,7 +143,8 @@ void AdaptiveTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& 
   policy_.found(change.now.size(), pairs_.size(), this->statistics());
 }
 
-/// The tests have a limit where the finder can give up; an algorithm that chooses lets another one go on.
+/// The number of tests is limited only if the finder can give up. If an algorithm that chooses gives up,
+/// another one continues.
 template <int D, typename Real>
 void AdaptiveTracker<D, Real>::find_within_limits(std::span<const Box<D, Real>> boxes,
                                                   std::span<const Filter> filters, PairSink& pairs) {

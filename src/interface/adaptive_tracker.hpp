@@ -41,20 +41,22 @@ class AdaptiveTracker final : public PairTracker<D, Real> {
 
   std::string explanation() const override;
 
-  /// Finds all pairs that filters accept, and changes nothing but the statistics. Throws LimitPassed where
-  /// that takes far more tests than boxes and pairs account for, and what the sink throws.
+  /// Finds all pairs that the filters accept, and changes only the statistics. Throws LimitPassed if that
+  /// takes far more tests than the numbers of boxes and pairs justify, and throws what the sink throws.
   void find_within_limits(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters,
                           PairSink& pairs);
 
-  /// After that search, which found so many pairs: makes ready to follow these boxes from the next update on.
+  /// To be called after find_within_limits(), with the number of pairs it found: prepares to follow these
+  /// boxes from the next update on.
   void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs);
 
-  /// From now on an update that finds all pairs anew keeps at most so many, and none that filters refuse.
-  /// Where there are more, or tests as above, it throws LimitPassed, and the next one has to be a rebuild.
+  /// From now on, an update that finds all pairs anew keeps at most `most` pairs, and none that the filters
+  /// refuse. If it finds more, or makes too many tests (see above), it throws LimitPassed, and the next
+  /// update must be a rebuild.
   void limit_pairs(std::size_t most) noexcept { most_pairs_ = most; }
   static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
-  /// Gives back what is kept of the last frame. The next update has to be a rebuild.
+  /// Releases the memory for the last frame. The next update must be a rebuild.
   void forget() noexcept;
 
   /// Where it does nothing but follow.

@@ -1,4 +1,5 @@
-// Sinks of candidates that stop a search: a limit is tested while pairs are written, not after the search.
+// Sinks that stop a search when it finds too many candidates. They check the limit while pairs are written,
+// not after the search.
 #pragma once
 
 #include <algorithm>
@@ -20,10 +21,10 @@
 
 namespace broadside::core {
 
-/// Thrown out of a search where it would keep more pairs, or make more tests, than it may.
+/// Thrown from a search that would exceed its limit of pairs or tests.
 struct LimitPassed {};
 
-/// How many candidates may be kept, beside those that each one that holds allows for.
+/// The maximum number of candidates: a constant, plus a number for each candidate that holds.
 struct CandidateLimit {
   std::size_t candidates;
   std::size_t candidates_per_holding = 0;
@@ -33,8 +34,8 @@ struct CandidateLimit {
   }
 };
 
-/// Appends candidates to a vector, and throws before it has more than `limit` allows. By `boxes` it decides
-/// which candidates hold.
+/// Appends candidates to a vector, and throws before the vector exceeds `limit`. A candidate holds if its
+/// boxes in `boxes` overlap.
 template <int D, typename Real>
 class CandidateCollector final : public PairSink {
  public:
@@ -54,13 +55,13 @@ class CandidateCollector final : public PairSink {
   }
 
   const std::vector<Pair>& candidates_;
-  PairCollector collector_;  // for its large pages
+  PairCollector collector_;  // because it asks for large pages
   CandidateLimit limit_;
   std::span<const Box<D, Real>> boxes_;
   std::size_t holding_ = 0;
 };
 
-/// Passes pairs on until there are more than `most`, of all threads together.
+/// Passes pairs on, and throws when all threads together have passed more than `most`.
 class LimitSink final : public FilterSink {
  public:
   LimitSink(std::size_t most, PairSink& target) : FilterSink(target), most_(most), passed_(&count_) {}
@@ -80,7 +81,7 @@ class LimitSink final : public FilterSink {
 
   std::size_t most_;
   std::atomic<std::size_t> count_ = 0;
-  std::atomic<std::size_t>* passed_;  // the first one's
+  std::atomic<std::size_t>* passed_;  // count_ of the original sink
 };
 
 }  // namespace broadside::core

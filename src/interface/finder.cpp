@@ -101,7 +101,7 @@ void check_filters(std::span<const Filter> filters, std::size_t boxes, const cha
       {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
 }
 
-/// The boxes as an array: themselves, or gathered into `scratch`.
+/// The boxes as an array: the caller's array, or a copy in `scratch`.
 template <int D, typename Real>
 std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, detail::Vector<Box<D, Real>>& scratch) {
   if (boxes.is_array()) return {boxes.array(), boxes.size()};
@@ -259,7 +259,7 @@ void PairFinder<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
   core::reserve_large(present_, present_.size() + boxes.size());
   ids_.reserve(ids_.size() + boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box<D, Real> box = boxes[i];  // the caller's may change between two looks at it
+    const Box<D, Real> box = boxes[i];  // a copy, since another thread may change the caller's
     if (!is_present(box)) continue;
     present_.push_back(box);
     ids_.push_back(BoxId(i));

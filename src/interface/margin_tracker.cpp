@@ -40,8 +40,8 @@ constexpr double candidates_a_mover = 96;
 constexpr double candidates_a_test = 1.5;
 constexpr std::size_t most_calm_frames = 8;
 
-/// The most candidates that are kept, for each pair that holds and each box. Where there would be more, boxes
-/// are no longer enlarged.
+/// The maximum number of candidates, per pair that holds and per box. If there would be more, boxes are no
+/// longer enlarged.
 constexpr std::size_t max_candidates_per_pair = 4;
 constexpr std::size_t max_candidates_per_box = 16;
 
@@ -65,13 +65,13 @@ void MarginTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSin
   try {
     statistics.tests += start(change);
   } catch (const LimitPassed&) {
-    // What was spent counts. The other tracker is where it was.
+    // The tests made so far count. The other tracker has not changed.
     statistics.tests += candidates_.size() + tracker_->statistics().value_or(Statistics{}).tests;
     give_up(pause_after_limit());
   } catch (const std::bad_alloc&) {
     // The frame itself is whole.
     give_up(max_pause);
-  } catch (...) {  // a checkpoint's or an executor's
+  } catch (...) {  // thrown by a checkpoint or an executor
     give_up(min_pause);
     throw;
   }
@@ -90,7 +90,7 @@ void MarginTracker<D, Real>::update_exactly(const Change<D, Real>& change, PairS
   this->update_with(*tracker_, exact, begun, ended);
 }
 
-/// Whether many boxes moved and hardly any far; sets margins_ then.
+/// Whether many boxes moved and hardly any moved far. If so, sets margins_.
 template <int D, typename Real>
 bool MarginTracker<D, Real>::suits_margins(const Change<D, Real>& change) {
   if (change.now.size() < least_boxes || change.changed.size() < change.now.size() / many_movers)
@@ -104,7 +104,8 @@ bool MarginTracker<D, Real>::suits_margins(const Change<D, Real>& change) {
   return margins.has_value();
 }
 
-/// Enlarges all boxes of a frame whose events are told, and finds the candidates. Returns the tests.
+/// Enlarges all boxes of a frame, whose events are already reported, and finds the candidates. Returns the
+/// number of tests.
 template <int D, typename Real>
 std::uint64_t MarginTracker<D, Real>::start(const Change<D, Real>& change) {
   const std::size_t size = change.now.size();
@@ -118,7 +119,7 @@ std::uint64_t MarginTracker<D, Real>::start(const Change<D, Real>& change) {
   test_candidates(change.now);
   tests += candidates_.size();
   holding_ = static_cast<std::size_t>(std::ranges::count(holds_, std::uint8_t{1}));
-  boxes_ = Boxes::ending;  // until all is made
+  boxes_ = Boxes::ending;  // until everything is built
   tracker_->start_at(now_, candidates_.size());
   before_ = now_;
   flags_.assign(size, 0);
@@ -129,21 +130,22 @@ std::uint64_t MarginTracker<D, Real>::start(const Change<D, Real>& change) {
   return tests;
 }
 
-/// The most candidates that are kept.
+/// The maximum number of candidates.
 template <int D, typename Real>
 std::size_t MarginTracker<D, Real>::max_candidates() const noexcept {
   return max_candidates_per_box * now_.size() + max_candidates_per_pair * holding_;
 }
 
-/// A try that ends at a limit costs about as much as one that lasts, so each costs less than a hundredth of
-/// the frames until the next; and where one after the other does, the same boxes will most likely again.
+/// A try that ends at a limit costs about as much as one that succeeds. The pause makes that less than a
+/// hundredth of the cost of the frames until the next try. It doubles with each failure in a row, because the
+/// same boxes will most likely exceed the limit again.
 template <int D, typename Real>
 std::size_t MarginTracker<D, Real>::pause_after_limit() const noexcept {
   return std::clamp(2 * next_pause_, max_pause, max_pause_after_limit);
 }
 
-/// False where there would be too many candidates: no event of this frame is told then, and nothing is left
-/// of the enlarged boxes.
+/// Returns false if there would be too many candidates. It has then reported no event of this frame, and the
+/// enlarged boxes are gone.
 template <int D, typename Real>
 bool MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, PairSink& begun,
                                              PairSink& ended) {
@@ -176,7 +178,7 @@ bool MarginTracker<D, Real>::follow_enlarged(const Change<D, Real>& change, Pair
   return true;
 }
 
-/// Sets begun_ and ended_, by the other tracker. Throws LimitPassed.
+/// Sets begun_ and ended_ by updating the other tracker. Throws LimitPassed.
 template <int D, typename Real>
 void MarginTracker<D, Real>::find_candidates(const Change<D, Real>& change) {
   begun_.clear();
@@ -290,7 +292,7 @@ void MarginTracker<D, Real>::report(const Change<D, Real>& change, PairSink& beg
 /// Decides whether boxes stay enlarged, by how many changed and how many of them left.
 template <int D, typename Real>
 void MarginTracker<D, Real>::judge() {
-  // Where pairs part, their candidates count for less.
+  // Fewer candidates are allowed once pairs have ended.
   if (candidates_.size() > max_candidates()) return give_up(pause_after_limit());
   ++lasted_;
   const auto boxes = static_cast<double>(now_.size());
@@ -314,7 +316,7 @@ void MarginTracker<D, Real>::give_up(std::size_t pause) noexcept {
   release();
 }
 
-/// Gives back what enlarged boxes took.
+/// Releases the memory for enlarged boxes.
 template <int D, typename Real>
 void MarginTracker<D, Real>::release() noexcept {
   give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);

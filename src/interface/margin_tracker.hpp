@@ -25,9 +25,9 @@ namespace broadside::core {
 /// events are the same either way.
 ///
 /// Cost of a frame with enlarged boxes: a comparison a changed box, a test a candidate, and the other
-/// tracker's for the boxes that left theirs. Candidates, and what is spent on finding them, have a limit by
-/// the numbers of boxes and of pairs, which is tested while they are found. Where it is passed, boxes are no
-/// longer enlarged, the frame is done without, and all that memory is given back.
+/// tracker's for the boxes that left theirs. The number of candidates, and of tests to find them, is limited
+/// by the numbers of boxes and pairs. The limit is checked during the search. If it is exceeded, boxes are no
+/// longer enlarged, the frame is processed without margins, and the memory is released.
 template <int D, typename Real = float>
 class MarginTracker final : public PairTracker<D, Real> {
  public:

@@ -15,32 +15,33 @@ namespace {
 
 // Thresholds: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
 
-/// The displacement in a frame, over their shortest side, up to which boxes are enlarged.
+/// Boxes are enlarged up to this displacement in a frame, as a fraction of their shortest side.
 constexpr double max_displacement = 0.0125;
 
-/// A margin over that displacement: boxes stay within it for at least about so many frames. And its limits,
-/// over a box's shortest side: a large one makes far more candidates than pairs.
+/// A margin divided by that displacement: about the minimum number of frames for which boxes stay within it.
+/// Then the limits of a margin, as fractions of a box's shortest side: a large margin makes far more
+/// candidates than pairs.
 constexpr double frames_within_margin = 48;
 constexpr double min_margin = 0.01;
 constexpr double max_margin = 0.2;
 
-/// How many displacements are sampled, and the part of them that the margins are made for.
+/// How many displacements are sampled, and the fraction of them that the margins should cover.
 constexpr std::size_t sampled_displacements = 64;
 constexpr double covered = 0.75;
 
-/// Of the boxes that are covered, the part by whose displacements the greatest margin goes, so that a few
-/// large boxes do not decide about all others; and what is added, for those beyond.
+/// The maximum margin follows this quantile of the covered boxes' displacements, so that a few large boxes do
+/// not decide for all others. The factor after it allows for the boxes beyond the quantile.
 constexpr double covered_by_greatest = 0.9;
 constexpr double added_to_greatest = 1.25;
 
-/// The most that the greatest margin is over a displacement: where boxes hardly move, the quotient of two
+/// The upper limit of the maximum margin divided by a displacement. If boxes hardly move, the quotient of two
 /// numbers near 0 may be anything.
 constexpr double max_frames_within_greatest = 1e6;
 
 /// How far a box moved in a frame.
 template <typename Real>
 struct Displacement {
-  Real relative;  ///< over its shortest side; infinite for absent boxes, and those that move and have no side
+  Real relative;  ///< over the shortest side; infinite for absent boxes and for moving boxes with a side of 0
   Real absolute;
 };
 
@@ -59,9 +60,10 @@ Displacement<Real> displacement_of(const Box<D, Real>& before, const Box<D, Real
 
 }  // namespace
 
-/// Margins are a part of a box's shortest side: by a part of the longest, thin boxes would meet many more.
-/// And at most by what boxes move, so that large ones at rest do not meet all small ones around them. Both go
-/// by the same boxes: two quantiles, each of all, may be exceeded by different boxes, and cover few together.
+/// A margin is a fraction of a box's shortest side; with a fraction of the longest side, thin boxes would
+/// meet many more boxes. It is also limited in proportion to the boxes' motion, so that large boxes at rest
+/// do not meet all small boxes around them. Both values come from the same boxes: different boxes could
+/// exceed two independent quantiles, which would cover few boxes together.
 template <int D, typename Real>
 std::optional<Margins<D, Real>> margins_for(const Change<D, Real>& change) {
   std::array<Displacement<Real>, sampled_displacements> sampled;
@@ -80,7 +82,7 @@ std::optional<Margins<D, Real>> margins_for(const Change<D, Real>& change) {
       static_cast<std::ptrdiff_t>(covered_by_greatest * static_cast<double>(last - sampled.begin()));
   std::nth_element(sampled.begin(), greatest, last + 1,
                    [](const auto& a, const auto& b) { return a.absolute < b.absolute; });
-  // None where the boxes that are listed did not move.
+  // No margins if the listed boxes did not move.
   if (!(greatest->absolute > 0)) return std::nullopt;
   const Real relative = std::clamp(static_cast<Real>(frames_within_margin) * displacement,
                                    static_cast<Real>(min_margin), static_cast<Real>(max_margin));

@@ -19,7 +19,7 @@ struct Margins {
   Real frames;
   bool is_of_shortest = false;  ///< whether `relative` is of a box's shortest side, instead of its longest
 
-  /// Whether each of the two counts. One that was given and rounds to 0 does: it limits the other one to 0.
+  /// Whether each of the two applies. A given one that rounds to 0 does apply: it limits the other one to 0.
   bool has_margin = margin > 0;
   bool has_relative = relative > 0;
 
@@ -74,8 +74,8 @@ struct Margins {
   }
 };
 
-/// The margins for boxes of which many moved and hardly any far, by a sample of those that changed; nothing
-/// where that is not so.
+/// The margins for boxes, from a sample of the changed ones, if many boxes moved and hardly any moved far.
+/// Otherwise nothing.
 template <int D, typename Real>
 std::optional<Margins<D, Real>> margins_for(const Change<D, Real>& change);
 

@@ -49,7 +49,7 @@ Outline<D, Real> outline(PairFinder<D, Real>& finder,
   core::check_count(boxes.size());
   core::check_boxes(boxes, 0, finder.bad_input());
   Outlined<D, Real>* const outlined = finder.outlined();
-  // Copied first, since the caller's may change between two looks at them.
+  // Copied first, since another thread may change the caller's boxes.
   std::vector<Box<D, Real>> present(boxes.begin(), boxes.end());
   std::erase_if(present, [](const Box<D, Real>& box) { return !is_present(box); });
   if (outlined == nullptr || present.empty()) return {};

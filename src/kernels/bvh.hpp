@@ -45,7 +45,7 @@ struct WritableBvh {
   const BvhNodeInfo* info;
   std::uint32_t root;
   std::array<std::uint32_t*, 2> lists;  ///< scratch: each with room for all nodes and two more blocks
-  Checkpoint* checkpoint = nullptr;     ///< is told of the pairs that follow() compares; or null
+  Checkpoint* checkpoint = nullptr;     ///< counts the pairs that follow() compares; or null
 };
 
 /// The bounds of a node's children; the absent box if there are none.

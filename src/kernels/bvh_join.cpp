@@ -115,7 +115,8 @@ class Join {
     const std::size_t begin = node * fan_out;
     if (tree_.left_size == 0) {
       within(begin);
-      // The list is led by this leaf itself, unless another thread made its boxes invalid as they were read.
+      // This leaf is the first one in the list, unless another thread made its boxes invalid while they were
+      // read.
       const std::size_t own = count > 0 && *list == node ? 1 : 0;
       list += own;
       count -= own;
@@ -215,7 +216,7 @@ class Join {
   std::uint64_t tests_ = 0;   // where a leaf counts as full, which is what the work is
   std::uint64_t unused_ = 0;  // of these, those with a place that holds no box
   std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
-  std::uint64_t told_ = 0;    // the checkpoint, of the work
+  std::uint64_t told_ = 0;    // the work that was reported to the checkpoint
   std::size_t next_leaf_;
   std::uint32_t
       queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf

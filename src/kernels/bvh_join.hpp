@@ -66,7 +66,7 @@ std::size_t join_scratch(const PackedBvh<D>& tree) {
 }
 
 /// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
-/// Comparing bounds counts as comparing boxes, also for the checkpoint.
+/// A comparison of bounds counts as a comparison of boxes, also for the checkpoint.
 struct JoinLimit {
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t tests_per_pair = 0;

@@ -45,7 +45,7 @@ struct Run {
   /// null.
   const Box<D, double>* doubles = nullptr;
 
-  /// Is told of the pairs compared, and may end the search by an exception; or null.
+  /// Counts the pairs compared, and may end the search by an exception; or null.
   Checkpoint* checkpoint = nullptr;
 };
 
@@ -64,7 +64,7 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
   return run;
 }
 
-/// Tells a checkpoint, if there is one, of the pairs compared since there were `told`.
+/// Reports to a checkpoint, if there is one, the tests since the last report, at which there were `told`.
 inline void tell(Checkpoint* checkpoint, std::uint64_t tests, std::uint64_t& told) {
   if (checkpoint == nullptr) [[likely]]
     return;

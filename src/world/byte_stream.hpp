@@ -38,7 +38,7 @@ class ByteWriter {
     size_ += sizeof(T);
   }
 
-  /// Makes room for `bytes` in all, more than there is.
+  /// Increases the room to `bytes` in total.
   void reserve(std::size_t bytes) { bytes_ = output_->resize(bytes); }
   std::size_t size() const noexcept { return size_; }
 
@@ -47,7 +47,7 @@ class ByteWriter {
     for (std::size_t i = 0; i < 8; ++i) bytes_[at + i] = static_cast<std::byte>(value >> 8 * i & 0xff);
   }
 
-  /// Ends with the checksum of all bytes; the output then has these bytes alone.
+  /// Appends the checksum of all bytes, and shrinks the output to what was written.
   void seal() {
     put(checksum_of(bytes_.first(size_)));
     bytes_ = output_->resize(size_);

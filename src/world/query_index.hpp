@@ -1,4 +1,4 @@
-// The index that a world's queries ask where its tracker has none of the boxes as they are now.
+// The index for a world's queries while its tracker has no index of the current boxes.
 #pragma once
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 
 namespace broadside::core {
 
-/// Built by the first query that needs it. From then on it lists the slots that changed since the index took
-/// them, each once: a query pays for what changed since the last query, whatever the updates in between.
-/// Memory beside the index: 5 bytes a slot.
+/// The first query that needs the index builds it. From then on QueryIndex lists the slots that changed since
+/// the index took them, each once. So a query costs time for the changes since the last query, however many
+/// updates lie between. Memory besides the index: 5 bytes per slot.
 template <int D, typename Real>
 class QueryIndex {
  public:
@@ -30,7 +30,7 @@ class QueryIndex {
     if (index_ != nullptr) make_room(count);
   }
 
-  /// Lists a slot, one below what was reserved: its box or filter has changed.
+  /// Lists a slot whose box or filter has changed. reserve() must have made room for it.
   void mark(std::uint32_t slot) noexcept {
     if (index_ == nullptr) return;
     is_current_.store(false, std::memory_order_relaxed);
@@ -39,7 +39,7 @@ class QueryIndex {
     marked_.push_back(BoxId{slot});
   }
 
-  /// Whether get() would do no work. To be asked by several threads at once.
+  /// Whether the index is up to date. Several threads may call it at once.
   bool is_current() const noexcept { return is_current_.load(std::memory_order_acquire); }
 
   const BoxIndex<D, Real>& get() const noexcept { return *index_; }
@@ -50,7 +50,7 @@ class QueryIndex {
       make_room(boxes.size());
       index_ = make_box_index<D, Real>();
     }
-    // Slots that are gone need not be listed; those that came and went in between must not be.
+    // Slots that are gone need not be listed; slots that came and went in between must not be listed.
     std::erase_if(marked_, [&](BoxId slot) {
       const bool is_gone = index(slot) >= boxes.size();
       if (is_gone) is_marked_[index(slot)] = 0;
@@ -62,17 +62,17 @@ class QueryIndex {
     is_current_.store(true, std::memory_order_release);
   }
 
-  /// Whether so much has changed since the last query that building the index anew costs about as much.
+  /// Whether so many slots have changed since the last query that a rebuild costs about as much as an update.
   bool is_outdated(std::size_t slots) const noexcept { return marked_.size() > slots / 2 + 1024; }
 
-  /// Gives back all memory; the next query builds the index.
+  /// Releases all memory; the next query builds the index.
   void drop() noexcept {
     index_.reset();
     give_back(marked_, is_marked_);
     is_current_.store(false, std::memory_order_relaxed);
   }
 
-  /// Takes over another world's index and what that one has listed.
+  /// Takes over another world's index and its list of changed slots.
   void take(QueryIndex& other) noexcept {
     index_ = std::move(other.index_);
     marked_ = std::move(other.marked_);

@@ -23,7 +23,7 @@ namespace broadside {
 
 namespace detail {
 
-/// A BoxSource as a join sees it.
+/// The interface through which a join reads a BoxSource.
 template <int D, typename Real>
 class BoxPieces {
  public:

@@ -124,7 +124,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     if (!finder) {
       const Algorithm& algorithm = algorithm_of(choice_);
       Spec spec{algorithm.name, {}};
-      // In stripes a sweep does not give up.
+      // A sweep in stripes cannot give up, so ask for one axis.
       if (algorithm.name == "sweep_and_prune") spec.values.emplace_back("axes", "1");
       finder = make_finder<D>(algorithm, spec);
       if (core::Yielding<D>* const search = finder->yielding()) search->let_yield(true);

@@ -51,7 +51,8 @@ Statistics SegmentJoin<D>::join(std::span<const Box<D>> boxes, std::size_t left_
     const std::size_t begin = stack_.size();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i) {
       const core::SortedBox<D>& sorted = sorted_boxes_[i];
-      // One that another thread has made invalid since it was checked might be in both sides of each cut.
+      // Another thread may have made the box invalid since the check. It could then be on both sides of every
+      // cut.
       if (!is_present(sorted.box)) continue;
       if (left_count == 0 || (index(sorted.id) < left_count) == left) stack_.push_back({i, 0});
     }

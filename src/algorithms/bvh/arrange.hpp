@@ -16,7 +16,7 @@ struct NumberedBox {
   std::uint32_t number;
 };
 
-/// Twice the middle on an axis, within what can be added up. Never a NaN, whatever the box.
+/// Twice the centre on an axis, limited so that sums do not overflow. Never NaN, even for an invalid box.
 template <int D>
 float middle(const Box<D>& box, int axis) {
   const auto limited = [](float value) { return std::min(std::max(-0x1p120f, value), 0x1p120f); };

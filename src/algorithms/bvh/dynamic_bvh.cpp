@@ -41,7 +41,7 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   packed_.clear();
   ids_.clear();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box<D> box = boxes[i];  // the caller's may change between two looks at it
+    const Box<D> box = boxes[i];  // a copy, since another thread may change the caller's
     if (!is_present(box)) continue;
     packed_.push_back(box);
     ids_.push_back(static_cast<std::uint32_t>(i));

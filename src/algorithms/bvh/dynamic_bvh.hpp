@@ -42,7 +42,7 @@ class DynamicBvh {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
 
-  /// Whether another build pays, after the insertions since the last one. It looks at absent boxes as well.
+  /// Whether a rebuild pays after the insertions since the last build. A build also reads absent boxes.
   bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + slots_.size() / 64 + 1024; }
 
   /// The number of boxes, and of nodes.
@@ -62,7 +62,7 @@ class DynamicBvh {
 
   std::size_t bytes() const noexcept;
 
-  /// How many boxes build() and set() were given since this was made: what tests count instead of time.
+  /// How many boxes build() and set() have taken so far. Tests measure this instead of time.
   std::uint64_t boxes_taken() const noexcept { return boxes_taken_; }
 
  private:

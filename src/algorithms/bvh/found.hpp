@@ -114,14 +114,14 @@ class First final : public kernels::FoundBoxes {
   int exponent_;
 };
 
-/// The nearest boxes so far: a max-heap of at most `count`, on the stack while they are few.
+/// The nearest boxes so far: a max-heap of at most `count` boxes, on the stack while it is small.
 template <typename Real>
 class NearestBoxes {
  public:
   NearestBoxes(std::size_t count, Real max_distance_squared)
       : count_(count), max_distance_squared_(max_distance_squared) {}
 
-  /// A box that is farther away is none of them.
+  /// A box with a greater squared distance is not among the nearest.
   Real limit() const noexcept {
     return size_ < count_ ? max_distance_squared_ : heap_.front().distance_squared;
   }
@@ -137,7 +137,7 @@ class NearestBoxes {
     std::ranges::push_heap(heap_.first(size_), is_before);
   }
 
-  /// All of them, the nearest first. They are a heap no more.
+  /// All of them, the nearest first. This destroys the heap.
   std::span<const Neighbour<Real>> sorted() {
     std::ranges::sort_heap(heap_.first(size_), is_before);
     return heap_.first(size_);

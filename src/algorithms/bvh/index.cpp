@@ -31,7 +31,7 @@ float in_tree(Real t_max, int exponent) {
 template <int D, typename Real>
 void BvhIndex<D, Real>::update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
                                      bool rebuild) {
-  // Many changes cost more one by one than all boxes at once. A build looks at the absent ones as well.
+  // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
   if (rebuild || changed.size() > tree_.size() / 4 + boxes.size() / 64 + 16) return build(boxes);
   if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
   for (const BoxId id : changed) {

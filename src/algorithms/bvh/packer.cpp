@@ -96,7 +96,7 @@ void BvhPacker<D>::choose_axes(std::size_t boxes) {
 template <int D>
 void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core::Parallel& parallel) {
   const std::size_t most = std::max<std::size_t>(1024, entries_.size() / 64);
-  // By keys, which order NaNs too: another thread may have written one since the boxes were checked.
+  // Compares keys, which also order NaNs: another thread may have written a NaN since the check.
   const auto is_before = [first = axes_[0]](const Entry& a, const Entry& b) {
     const std::uint32_t first_key = core::sort_key(a.box.min[first]);
     const std::uint32_t second_key = core::sort_key(b.box.min[first]);

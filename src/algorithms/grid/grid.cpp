@@ -156,8 +156,9 @@ class Grid final : public PairFinder<D>,
             std::min(swept.high + more, std::numeric_limits<float>::max())};
   }
 
-  /// Counts the cells that a box is put into, and returns them as a number: that of the cell of its minimum
-  /// and, in the bits above, how many further slabs it reaches. In each of these it is in the first row.
+  /// Counts the cells that get a copy of the box, and returns them encoded in a number. The low bits are the
+  /// cell of the box's minimum. The bits above are the number of further slabs that the box reaches; in each
+  /// of them it is in the first row.
   std::uint32_t count_places(const Box<D>& box, std::uint64_t* counts) const {
     const std::size_t row = layout_.row_of(box);
     const std::size_t column = layout_.column_of(box);
@@ -177,7 +178,7 @@ class Grid final : public PairFinder<D>,
     return static_cast<std::uint32_t>(cell) | further << GridLayout<D>::cell_bits;
   }
 
-  /// Calls `visit` with each cell that count_places() has counted, and the box's dedup_mask there.
+  /// Calls `visit` with each cell that count_places() counted, and with the box's dedup_mask in that cell.
   template <typename Visit>
   void for_each_place(std::uint32_t places, Visit visit) const {
     const std::size_t cell = places & ((1U << GridLayout<D>::cell_bits) - 1);
@@ -204,8 +205,8 @@ class Grid final : public PairFinder<D>,
     begin_.push_back(sum);
   }
 
-  /// Copies the boxes to the cells that were counted, not to those where they are: the caller's array may
-  /// have changed since.
+  /// Copies the boxes to the cells that were counted. It does not compute the cells again, because another
+  /// thread may have changed the caller's array since.
   void scatter(std::span<const Box<D>> boxes) {
     core::renew(entries_, begin_.back());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
@@ -228,7 +229,7 @@ class Grid final : public PairFinder<D>,
   GridLayout<D> layout_;
   core::LargeArray<std::uint64_t> begin_;
   core::LargeArray<std::uint64_t> next_;
-  core::LargeArray<std::uint32_t> places_;  // by box: where it is put, as count_places() has it
+  core::LargeArray<std::uint32_t> places_;  // by box: its cells, as count_places() encodes them
   core::LargeArray<CellEntry<D>> entries_;
   core::Parallel parallel_;
   std::vector<GridSweep<D>> sweeps_;   // by worker

@@ -20,7 +20,7 @@ constexpr double least_boxes_per_cell = 16;
 /// Where cells are asked for by their size, there may be this many for each box.
 constexpr double most_cells_per_box = 4;
 
-/// And the most cells that a box may be in on average.
+/// Likewise, the maximum number of cells that a box may be in on average.
 constexpr double max_references_per_box = 64;
 
 /// The cost, in tests of two boxes, of inserting a box into one more cell, beyond the tests there.
@@ -80,7 +80,7 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
   };
   if (cell) {
     std::array<double, gridded> cells = cells_of_size([&](const core::AxisSample&) { return *cell; });
-    // Boxes that are in very many cells would be compared in each of them.
+    // Boxes in very many cells would be compared in each of them.
     const auto references = [&](int axis) {
       const core::AxisSample& on_axis = sample[axes_[axis + 1]];
       return cells[axis] > 1 ? 1 + on_axis.mean_extent / range_of(on_axis) * cells[axis] : 1;

@@ -22,7 +22,7 @@ class GridLayout {
  public:
   static constexpr int gridded = D - 1;
 
-  /// A cell's number has no more bits than this.
+  /// The maximum number of bits in a cell's number.
   static constexpr int cell_bits = 20;
 
   /// Chooses axes and cells for `count` boxes by what a search would cost; or cells `cell` wide, unless there

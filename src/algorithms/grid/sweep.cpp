@@ -107,7 +107,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   next_up_.size = 0;
   next_along_.size = 0;
   if (count == 0) return true;
-  if (checkpoint_ != nullptr) checkpoint_->count(count);  // where cells are many, so are references to a box
+  if (checkpoint_ != nullptr) checkpoint_->count(count);  // with many cells, a box has many references
   // Room for one more than there may be: where none goes on, one is written all the same.
   next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
   if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);

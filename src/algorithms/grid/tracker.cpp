@@ -126,7 +126,7 @@ void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& 
     events.flush();
   };
   if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
-  // A sink with a limit counts while threads search, not once their lists are full.
+  // A sink with a limit must count while threads search, not after they have filled their lists.
   const core::FilterSink* const limit = begun.as_filter();
   parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
     for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {

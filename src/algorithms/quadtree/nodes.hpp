@@ -107,8 +107,8 @@ class QuadtreeNodes {
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
 
-  /// Whether the tree has become too deep to be left as it is, or its boxes are in too many nodes: splitting
-  /// keeps that limit, and boxes that grow do not.
+  /// Whether the tree has become too deep, or its boxes are in too many nodes. Splitting keeps that limit,
+  /// but boxes that grow may exceed it.
   bool needs_rebuild() const noexcept {
     return is_too_deep_ || references_ > most_references * homes_.size();
   }
@@ -118,8 +118,8 @@ class QuadtreeNodes {
  private:
   static constexpr std::size_t samples = 31;
   static constexpr std::uint32_t most_depth = 64;
-  /// The most references a box that splitting may lead to. Of the generated scenes thin boxes in 3D have
-  /// most, 5; long lines have as many as they may, and are better followed by bounds.
+  /// The maximum number of references per box that splitting may cause. Among the generated scenes, thin
+  /// boxes in 3D have the most, 5. Long lines reach the maximum; a tree of bounds follows them faster.
   static constexpr std::size_t most_references = 6;
 
   using Sizes = std::array<std::size_t, child_count>;

@@ -165,7 +165,7 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
   /// Makes sure that a mover is in a node.
   void place(std::uint32_t number, std::uint32_t node, const Parts& parts) {
     const core::MovedBox<D>& mover = movers_[number];
-    checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // blocks of a chain that are passed
+    checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // the blocks that a walk passes
     std::uint32_t slot;
     if (parts.before == 0)
       slot = tree_.insert(node, mover.bounds, mover.id);

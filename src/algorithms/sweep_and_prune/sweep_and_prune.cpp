@@ -62,7 +62,7 @@ class SweepAndPrune final : public PairFinder<D>,
     if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
   }
 
-  /// It gives up before it has searched, and only along one axis: in stripes it does not.
+  /// It gives up before the search starts, and only along one axis, not in stripes.
   bool is_left(const Box<D>&, BoxId, const Box<D>&, BoxId) const override { return true; }
 
  private:

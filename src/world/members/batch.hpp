@@ -79,8 +79,8 @@ template <int D, typename Real>
 void World<D, Real>::remove(std::span<const Handle> handles) {
   using SlotState = typename State::SlotState;
   state_->reserve_removals(handles.size(), state_->ignored_edges.size());
-  // Each handle is read once: another thread may write to the caller's list. One that is there twice is no
-  // longer live when it comes again.
+  // Each handle is read once, because another thread may write to the caller's list. A handle that is listed
+  // twice is no longer live the second time.
   const std::size_t removed_before = state_->removed.size();
   for (const Handle handle : handles) {
     if (state_->is_live(handle)) {

@@ -130,7 +130,7 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
                                                              (handle.generation == generations[handle.slot] &&
                                                               slots[handle.slot].state != SlotState::free)
                                                        : handle.generation < first_generation;
-  // What was restored from another world's snapshot may be older than what this one began with.
+  // Generations restored from another world's snapshot may be older than this world's first one.
   const std::uint32_t begin = options.first_generation;
   const bool is_before =
       handle.generation < begin &&
@@ -288,7 +288,7 @@ void World<D, Real>::State::list_removed(std::uint32_t slot) noexcept {
   removed.push_back({slot, boxes[slot]});
 }
 
-/// Takes a box that list_removed() has listed out of all else.
+/// Removes a box that list_removed() has listed from everything else.
 template <int D, typename Real>
 void World<D, Real>::State::clear_removed(std::uint32_t slot) noexcept {
   mark_changed(slot);

@@ -75,7 +75,7 @@ World<D, Real>::State::State(std::unique_ptr<PairTracker<D, Real>> its_tracker,
       first_generation(its_options.first_generation),
       is_refining(refines_by_boxes()) {
   if constexpr (!core::is_lean) {
-    // Snapshots of worlds that work alike have the same bytes, also after a restore().
+    // Worlds with equivalent options write the same bytes into snapshots, also after a restore().
     if (is_own)
       options.algorithm = core::canonical_spec(options.algorithm);
     else

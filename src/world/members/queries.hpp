@@ -1,4 +1,4 @@
-// World: its index for queries, the tracker's or one of its own.
+// World: the index for queries, which is the tracker's or the world's own.
 #pragma once
 
 #include <mutex>
@@ -34,7 +34,7 @@ const BoxIndex<D, Real>* World<D, Real>::State::trackers_index() const noexcept 
   return tracker->box_index();
 }
 
-/// Before another state takes over the index: lists the slots in which the two differ.
+/// Lists the slots in which the two states differ, before the other state takes over the index.
 template <int D, typename Real>
 void World<D, Real>::State::mark_differences(const State& other) {
   if (!query_index.exists()) return;

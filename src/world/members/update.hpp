@@ -50,7 +50,7 @@ template <int D, typename Real>
 Events World<D, Real>::update() {
   State& state = *state_;
   if constexpr (!core::is_lean) state.lead_back();
-  // An index that no query has used for long is built anew by the next one that needs it.
+  // Drops an index that queries have not used for long. The next query that needs one builds it anew.
   if (state.query_index.is_outdated(state.slots.size())) state.query_index.drop();
   const bool is_again = !state.refined.empty();
   state.ask_tracker();
