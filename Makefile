@@ -175,7 +175,7 @@ setup-ci:
 
 # What setup has installed, a configured build has to look for: setup then takes build.ninja away, and make, which has
 # seen it, does not miss it.
-# It is built with all that `cmake --install build/release` copies.
+# Builds everything that `cmake --install build/release` copies.
 program: build/release/build.ninja
 	@test -f $< || cmake --preset release
 	cmake --build --preset release --target broadside_installed

@@ -59,8 +59,8 @@ if(BROADSIDE_HAS_FCL)
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
 endif()
 
-# A static library needs Highway where it is linked, whose threads it uses, and for a C compiler, which links neither by
-# itself, the C++ library and libm. A shared one is linked with them.
+# A program that links the static library must also link Highway and the thread library. A C compiler must link the C++
+# library and libm as well, which it does not do by itself. A shared library is already linked with all of them.
 set(library_packages "")
 set(pkg_config_packages "")
 set(cxx_libraries "")

@@ -1,4 +1,4 @@
-// Bytes of a descriptor or in memory, as they come or decompressed.
+// Bytes of a descriptor or in memory, unchanged or decompressed.
 #include "lab/formats/byte_source.hpp"
 
 #include <algorithm>

@@ -41,7 +41,7 @@ std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, cons
 std::unique_ptr<Decompressor> gzip_decompressor(const std::string& name);
 std::unique_ptr<Decompressor> zstd_decompressor(const std::string& name);
 
-/// The bytes of a file, standard input, a pipe or in memory, decompressed if they begin as gzip or zstd do.
+/// The bytes of a file, standard input, a pipe or memory, decompressed if they are gzip or zstd data.
 /// One thread at a time.
 class ByteSource {
  public:

@@ -65,7 +65,7 @@ constexpr auto words = std::to_array<Word>({
     {Role::third, "3"},
 });
 
-/// Names of corners and sides, before an axis or behind it: the y of an upper left corner is a top.
+/// Names of corners and sides, before or after an axis: the y of an upper left corner is a top.
 struct Corner {
   std::string_view text;
   std::optional<Role> x;

@@ -60,7 +60,7 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
   return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);
 }
 
-/// Whether an axis has begin and end of an interval and nothing else; beside other columns they may be times.
+/// Whether an axis has only the begin and end of an interval. Next to other columns they may be times.
 bool is_interval(const Found& found) {
   return of(found, Role::begin) != none && of(found, Role::end) != none &&
          std::ranges::count(found, none) == std::ptrdiff_t{roles} - 2;
@@ -82,7 +82,7 @@ std::optional<Choice> choose(const Found& found, int radius, bool are_chosen) {
       {BoundsForm::centre_size, Role::centre, Role::size},
       {BoundsForm::min_size, Role::min, Role::size},
       {BoundsForm::min_size, Role::bottom, Role::size},
-      // With a height alone, the top is where a box begins, as on a screen.
+      // With only a height, the top is the minimum, as on a screen.
       {BoundsForm::min_size, Role::top, Role::size},
   });
   for (const Way& way : ways) {
@@ -304,7 +304,7 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
       !columns.has_geometry && std::all_of(columns.forms.begin(), columns.forms.begin() + columns.dimension,
                                            [](BoundsForm form) { return form == BoundsForm::min_max; });
   if (!has_bounds) return {};
-  // `bound` gives the name of a minimum (0) or maximum (1) on an axis.
+  // `bound` returns the name of a minimum (0) or a maximum (1) on an axis.
   const auto named = [&](const auto& bound) {
     std::string list;
     std::size_t end = 0;
@@ -356,7 +356,7 @@ std::vector<std::string> corner_or_centre(std::span<const std::string_view> name
                : is_kept   ? std::string(names[i])
                            : "-");
   }
-  // Without the ',-' of the columns behind the last.
+  // Drops the ',-' of the columns after the last named one.
   for (std::size_t i = end; i < names.size(); ++i) {
     corner.resize(corner.size() - 2);
     centre.resize(centre.size() - 2);
@@ -370,7 +370,7 @@ std::vector<std::string> unnamed_meanings(std::size_t count) {
     case 4:
       return {"min_x,max_x,min_y,max_y"};
     case 5:
-      // YOLO's labels; a box behind or before its class, number or score.
+      // YOLO's labels; a box after or before its class, number or score.
       return {"-,cx,cy,w,h", "-,left,top,right,bottom", "left,top,right,bottom"};
     case 6:
       return {"-,cx,cy,w,h", "-,-,left,top,right,bottom", "-,left,top,right,bottom", "left,top,right,bottom"};

@@ -1,4 +1,4 @@
-// What the columns of a table mean, by the names that people give them: the one table of names.
+// The meaning of a table's columns by their names: the one table of names.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ enum class BoundsForm : std::uint8_t {
   centre_half_size,
   centre_radius,  ///< the second is BoxColumns::radius, for all axes
   point,          ///< the first alone
-  bottom_top      ///< minimum and maximum, or the reverse: the data tell, see settle_top()
+  bottom_top      ///< minimum and maximum, or the reverse: the data decide, see settle_top()
 };
 
 /// The bounds that two values of a form are, computed in double.
@@ -97,13 +97,13 @@ struct BoxColumns {
   std::vector<int> places{};         ///< of each column's value in a row, or `ignored`
   int dimension = 2;
   bool has_frames = false;
-  /// Each frame lists the boxes that are there, by a name or number, or without one: then they are numbered
-  /// anew.
+  /// Each frame lists the boxes that are present, by an id. Without a column of ids, the boxes of each frame
+  /// are numbered anew.
   bool has_tracks = false;
   bool has_geometry =
       false;  ///< a text instead of columns of bounds; its dimension is known once one is read
   std::array<BoundsForm, 3> forms{};
-  /// Of bounds in one field: min_max ("xyxy"), min_size ("xywh") or centre_size ("cxcywh").
+  /// For bounds in one field: min_max ("xyxy"), min_size ("xywh") or centre_size ("cxcywh").
   BoundsForm geometry_form = BoundsForm::min_max;
 
   /// Whether bounds have to be computed.
@@ -124,14 +124,14 @@ struct BoxColumns {
   std::string wanted() const;
 };
 
-/// Finds the columns that are known by their names, in whatever order; docs/formats.md has the list. This is
-/// the one table of names, for CSV, NumPy, Parquet, data frames and Arrow. Returns what is wrong with them;
-/// nothing if they are fine. `are_chosen`: the user named the columns, and calls a corner x,y beside w,h; in
-/// a file x,y may be a centre, and is refused there.
+/// Finds the columns with known names, in any order; docs/formats.md lists the names. CSV, NumPy, Parquet,
+/// data frames and Arrow share this table. Returns the problem with the columns, or an empty text.
+/// `are_chosen`: the user named the columns, so x,y with w,h is a corner. In a file, x,y may be a centre, and
+/// is refused.
 std::string resolve(std::span<const std::string_view> names, BoxColumns& columns, bool are_chosen = false);
 
-/// Makes minimum and maximum of `bottom` and `top`. On a screen y grows downwards: `top_is_min` says that a
-/// row has a top below its bottom.
+/// Turns `bottom` and `top` into minimum and maximum. `top_is_min` says that a row's top is less than its
+/// bottom: y grows downwards, as on a screen.
 void settle_top(BoxColumns& columns, bool top_is_min);
 
 /// A name without what people spell differently: capitals, blanks, `_`, `-` and `.`.
@@ -146,8 +146,8 @@ bool is_geometry_name(std::string_view name);
 /// Columns of numbers without names: 4 or 6, minima and then maxima. Returns the fault, if any.
 std::string positional(std::size_t count, BoxColumns& columns);
 
-/// What else columns may mean, as lists for --columns: those of a table, those of rows of so many numbers,
-/// and those of names of which x,y may be a corner or a centre.
+/// Other meanings of columns, as lists for --columns: for the columns of a table, for rows of `count` numbers
+/// without names, and for names in which x,y may be a corner or a centre.
 std::vector<std::string> other_meanings(const BoxColumns& columns);
 std::vector<std::string> unnamed_meanings(std::size_t count);
 std::vector<std::string> corner_or_centre(std::span<const std::string_view> names);

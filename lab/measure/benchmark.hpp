@@ -27,8 +27,8 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "the comparison was stopped"; }
 };
 
-/// Watches a comparison while it runs. Both are called between samples, and `stop` also within searches that
-/// are not timed or are long, in the caller's thread.
+/// Watches a comparison while it runs. Both functions are called between samples, in the caller's thread.
+/// `stop` is also called during searches that are long or not timed.
 struct Watch {
   std::function<bool()> stop{};                           ///< whether to stop; empty: never
   std::function<void(std::string_view what)> progress{};  ///< called with the current step; empty: not called
@@ -36,8 +36,8 @@ struct Watch {
   /// Reports and asks. Throws Stopped.
   void at(std::string_view what) const;
 
-  /// Has a finder or a tracker ask on its way through a search, which then throws Stopped; or, if `asks` is
-  /// false, run undisturbed. This must outlive its searches.
+  /// Makes a finder or a tracker check during a search whether to stop; the search then throws Stopped. If
+  /// `asks` is false, searches run undisturbed. This object must outlive the searches.
   template <typename Searching>
   void ask_within(Searching& searching, bool asks = true) const {
     Workers workers = searching.workers();
@@ -50,7 +50,7 @@ struct Watch {
   void ask() const;
 };
 
-/// A timed call that takes no longer does not ask whether to stop: it runs as it would by itself.
+/// A timed call up to this long does not check whether to stop, so that the check does not disturb it.
 inline constexpr double least_asking_ms = 500;
 
 /// Everything a case is measured with except its boxes.

@@ -52,7 +52,7 @@ bool resolve_comment(std::string_view comment, std::size_t count, BoxColumns& co
   return names.size() == count && resolve(names, columns).empty();
 }
 
-/// What the numbers of a box are, by the names that torchvision made common.
+/// The meaning of a box's numbers, under the names that torchvision made common.
 struct Convention {
   std::string_view name;
   BoundsForm form;
@@ -78,7 +78,7 @@ std::optional<BoundsForm> form_named(std::string_view name) {
   return convention == nullptr ? std::nullopt : std::optional(convention->form);
 }
 
-/// The columns of a file with names that make boxes as a convention says.
+/// The columns of bounds in a file with names, as a convention says.
 BoxColumns columns_of_convention(const Convention& convention, const Fields& fields, const CsvLines& lines) {
   Fields names = fields;
   if (convention.form == BoundsForm::centre_size) {
@@ -104,8 +104,8 @@ BoxColumns columns_of_convention(const Convention& convention, const Fields& fie
   return columns;
 }
 
-/// The columns that the user names, from left to right; or, as "bbox=xywh", how the file's column of that
-/// name holds bounds; or, as "xywh", what its columns of bounds are.
+/// The columns that the user names, from left to right. Or, as "bbox=xywh", the order of the numbers in the
+/// file's column of that name; or, as "xywh", the meaning of its columns of bounds.
 BoxColumns columns_of_user(std::string_view list, const Fields& fields, const CsvLines& lines) {
   if (const Convention* const convention = find_convention(list)) {
     if (!is_table_row(fields)) return columns_of_convention(*convention, fields, lines);
@@ -123,7 +123,7 @@ BoxColumns columns_of_user(std::string_view list, const Fields& fields, const Cs
     if (!told || !is_geometry_name(name))
       lines.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
     form = *told;
-    // In a file with names it is found by its own; other columns of bounds are not asked for.
+    // In a file with names, the column is found by its name, and other columns of bounds are ignored.
     if (names.size() != 1 || std::ranges::find(fields, name) == fields.end()) continue;
     const std::string_view wanted = name;
     names = fields;
@@ -158,7 +158,7 @@ std::string_view first_geometry(CsvLines lines, Separator separator, const BoxCo
   return {};
 }
 
-/// Looks for the first row that tells in which direction y grows.
+/// Looks for the first row that shows in which direction y grows.
 void settle_top(CsvLines lines, Separator separator, BoxColumns& columns) {
   const std::size_t bottom = column_of(columns, BoxColumns::first + 1);
   const std::size_t top = column_of(columns, BoxColumns::second + 1);
@@ -174,7 +174,7 @@ void settle_top(CsvLines lines, Separator separator, BoxColumns& columns) {
   readers::settle_top(columns, false);
 }
 
-/// How columns were taken that may mean something else; empty if there is nothing to say.
+/// How ambiguous columns were read; empty if the columns are not ambiguous.
 std::string note_on(const BoxColumns& columns, std::string_view geometry, bool are_chosen, bool are_named) {
   const auto name_at = [&columns](int place) {
     const std::size_t column = column_of(columns, place);
@@ -200,7 +200,7 @@ std::string note_on(const BoxColumns& columns, std::string_view geometry, bool a
   return {};
 }
 
-/// A row of KITTI's labels of objects: a class, and 14 numbers or 15.
+/// Whether a row is one of KITTI's object labels: a class, and 14 or 15 numbers.
 bool is_kitti(const Fields& fields) {
   return (fields.size() == 15 || fields.size() == 16) && !is_number(fields.front()) &&
          std::all_of(fields.begin() + 1, fields.end(), is_number);

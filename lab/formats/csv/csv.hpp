@@ -20,16 +20,16 @@ struct CsvTable {
   BoxColumns columns;
   std::shared_ptr<BoxLabels> labels;
   Quarantine quarantine;
-  CsvLines begin;                     ///< `lines`, as they were first
-  std::vector<std::string> others{};  ///< what else the columns may mean, for other_ways()
-  std::string note{};                 ///< how ambiguous columns were taken; empty if there are none
+  CsvLines begin;                     ///< `lines` before any was read
+  std::vector<std::string> others{};  ///< other meanings of the columns, for other_ways()
+  std::string note{};                 ///< how ambiguous columns were read; empty if there are none
 };
 
-/// Which of some lists for --columns make all rows valid, as the end of an error's text; empty if none does.
+/// The `lists` for --columns that make all rows valid, as the end of an error's text; empty if there is none.
 /// Reads all rows.
 std::string other_ways(CsvLines lines, Separator separator, const std::vector<std::string>& lists);
 
-/// Likewise of bounds in one field: whether all are valid as a corner and the size.
+/// Likewise for bounds in one field: says so if all are valid as a corner and the size.
 std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns);
 
 /// The table's boxes: rounded to the nearest float or double, once, where the table has their bounds; where

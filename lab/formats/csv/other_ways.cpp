@@ -1,4 +1,4 @@
-// Whether the rows of a table are valid if its columns mean something else.
+// Finds other meanings of a table's columns in which all rows are valid.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-/// The columns by a list for --columns.
+/// The columns that a list for --columns names.
 BoxColumns columns_of(const std::string& list, std::size_t count) {
   std::vector<std::string_view> names = fields_of(list, Separator::comma);
   for (std::string_view& name : names) {
@@ -43,7 +43,7 @@ bool is_valid(const std::vector<std::string_view>& fields, BoxColumns& columns) 
     if (!parse_number(fields[i], values[static_cast<std::size_t>(place)])) return false;
   }
   if (is_empty) return true;
-  // The first row that tells in which direction y grows holds for all.
+  // The first row that shows in which direction y grows decides for all rows.
   if (const double bottom = values[BoxColumns::first + 1], top = values[BoxColumns::second + 1];
       columns.forms[1] == BoundsForm::bottom_top && bottom != top) {
     settle_top(columns, top < bottom);

@@ -40,7 +40,7 @@ class CsvRows {
     // Here, since no row to be skipped may hide that the rows after it are counted wrong.
     if (has_open_quote(table_.lines.line(), table_.separator))
       table_.lines.refuse("a quoted field that goes on in the next line",
-                          "each row on one line; a quote that is text goes by tr -d '\"'");
+                          "each row on one line; to remove quotes that are text: tr -d '\"'");
     return true;
   }
 
@@ -319,7 +319,7 @@ class CsvRows {
     table_.lines.refuse(
         fmt::format("min ({}) and max ({})", fmt::join(box.min, ", "), fmt::join(box.max, ", ")),
         fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}",
-                    is_computed_ ? "that is sizes of 0 or more, " : "", other_ways()));
+                    is_computed_ ? "that is, sizes of 0 or more, " : "", other_ways()));
   }
 
   /// As the function of that name. Once, not for each invalid row that is left out: it reads all rows.

@@ -1,4 +1,4 @@
-// Boxes that people drew in images: COCO's annotations, a frame an image, and LabelMe's shapes.
+// Boxes that people drew in images: COCO's annotations, with a frame for each image, and LabelMe's shapes.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -16,8 +16,8 @@
 namespace broadside::lab {
 namespace {
 
-/// The annotations of a file of COCO. Boxes of different images have nothing to do with each other: each
-/// frame's are numbered anew.
+/// The annotations of a COCO file. Boxes of different images are unrelated, so each frame's boxes are
+/// numbered anew.
 class ImageFrames final : public FrameReader<2, double> {
  public:
   ImageFrames(MapText& text, json::object root, MapIds& ids, Quarantine& quarantine, std::string name)
@@ -77,7 +77,7 @@ class ImageFrames final : public FrameReader<2, double> {
     return std::move(image.boxes);
   }
 
-  /// "bbox": a corner and the size; absent where an annotation has none.
+  /// "bbox": a corner and the size. The box is absent if an annotation has no bbox.
   static DoubleBox2 box_of(MapText& text, json::object& annotation) {
     const auto bbox = text.optional_field(annotation, "bbox");
     if (!bbox) return absent_box<2, double>();
@@ -117,7 +117,7 @@ void read_labelme(MapText& text, json::object root, MapIds& ids, Quarantine& qua
     const auto read = [&] {
       json::object shape = text.object(text.element(result), "a shape");
       boxes.set_id(ids.of_member(text, shape));
-      // Its two points are the centre and one on the rim.
+      // Its two points are the centre and a point on the circle.
       if (const auto type = text.optional_field(shape, "shape_type");
           type && text.string(*type, "a shape's type") == "circle")
         text.refuse("a circle", "rectangles, polygons, lines or points");

@@ -19,7 +19,8 @@ struct GeometryFault {
 /// The bounds of a text's points, each coordinate rounded once; absent if it has none. Well-known text is in
 /// 2D, whatever else its points have. Bounds are minima and then maxima, with commas or blanks between, with
 /// or without brackets; or PostGIS's "BOX(0 0,1 1)" and "BOX3D(0 0 0,1 1 1)".
-/// `form` says what the numbers of bounds are instead of minima and maxima; then they are computed in double.
+/// `form` gives the meaning of the numbers if they are not minima and maxima. Bounds are then computed in
+/// double.
 template <int D, typename Real>
 GeometryFault read_geometry_text(std::string_view text, Box<D, Real>& box,
                                  BoundsForm form = BoundsForm::min_max);

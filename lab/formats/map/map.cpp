@@ -39,16 +39,16 @@ AnyFrameReader open_map(std::unique_ptr<Input> input, const ReadOptions& options
     const std::string type(told ? text.string(*told, "the type of a map") : "");
     if (type.empty()) {
       if (!options.layer.empty() || part_of(options) != MapPart::features)
-        text.refuse("boxes in images, or no map", "no --layer and no --boxes but features");
+        text.refuse("boxes in images, or no map", "no --layer, and no --boxes other than features");
       if (text.optional_field(root, "annotations")) {
         AnyFrameReader images = read_coco(text, text.root(), ids, quarantine, input->name());
         refuse_missing(ids, options, input->name());
         return images;
       }
       if (!text.optional_field(root, "shapes"))
-        text.refuse(
-            "an object without 'type'",
-            "GeoJSON, TopoJSON, COCO's annotations or LabelMe's shapes; of other JSON, jq makes a table");
+        text.refuse("an object without 'type'",
+                    "GeoJSON, TopoJSON, COCO's annotations or LabelMe's shapes; for other JSON, make a table "
+                    "with jq");
       read_labelme(text, text.root(), ids, quarantine, boxes);
     } else if (type == "Topology") {
       read_topojson(text, options.layer, ids, quarantine, boxes);

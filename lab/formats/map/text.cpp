@@ -65,7 +65,7 @@ json::object MapText::root() {
   json::object object;
   if (const auto error = document_.get_object().get(object))
     refuse(error,
-           "an object of GeoJSON, TopoJSON, COCO or LabelMe; of a list of boxes, jq makes a table: jq -r "
+           "an object of GeoJSON, TopoJSON, COCO or LabelMe; to make a table of a list of boxes: jq -r "
            "'.[].bbox|@csv'");
   return object;
 }

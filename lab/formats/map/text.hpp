@@ -96,14 +96,14 @@ class MapIds {
 
   bool any() const noexcept { return !name_.empty(); }
 
-  /// The id of a feature of GeoJSON, or of a geometry of TopoJSON, as text; empty if it has none, or if ids
-  /// are not read.
+  /// The id of a GeoJSON feature or a TopoJSON geometry, as text; empty if it has none, or if ids are not
+  /// read.
   std::string of(MapText& text, json::object& feature);
 
-  /// Likewise of an annotation or shape, among whose members the name is looked for.
+  /// Likewise for an annotation or shape: its members are searched for the name.
   std::string of_member(MapText& text, json::object& object);
 
-  /// Whether no feature had an id, of those that there were.
+  /// Whether there were features, and none of them had an id.
   bool are_missing() const noexcept { return is_asked_ && !is_found_; }
 
   /// Refuses a map that has no features, if ids are wanted.

@@ -65,7 +65,7 @@ class NpyFrame final : public FrameReader<D, Real> {
   bool is_computed() const override { return std::ranges::any_of(layout_.forms, computes_bounds); }
 
  private:
-  /// Looks for the first row that tells in which direction y grows.
+  /// Looks for the first row that shows in which direction y grows.
   void settle_top() {
     if (layout_.forms[1] != BoundsForm::bottom_top) return;
     layout_.forms[1] = BoundsForm::min_max;
