@@ -223,7 +223,7 @@ struct Taken {
 
 using TakenArray = std::shared_ptr<Taken<ArrowArray>>;
 
-/// The type of a column's numbers; none if they are no numbers.
+/// The type of a column's numbers; nullopt if the column has no numbers.
 std::optional<nb::dlpack::dtype> type_of(const ArrowSchema& schema) {
   const std::string_view format = schema.format;
   if (schema.dictionary != nullptr || format.size() != 1) return std::nullopt;
@@ -255,7 +255,7 @@ std::optional<nb::dlpack::dtype> type_of(const ArrowSchema& schema) {
   }
 }
 
-/// What a column holds that is no number.
+/// The name, for errors, of the type of a column without numbers.
 std::string kind_of(const ArrowSchema& schema) {
   if (schema.dictionary != nullptr) return "dictionary";
   const std::string_view format = schema.format;
@@ -273,13 +273,13 @@ const char* name_of(const ArrowSchema& schema) { return schema.name == nullptr ?
 
 constexpr std::string_view fixed_size_list = "+w:";
 
-/// How many numbers a row of lists of a fixed size has; 0 for other types.
+/// The number of values in each row, for lists of a fixed size; 0 for other types.
 std::int64_t list_size_of(const ArrowSchema& schema) {
   const std::string format = schema.format;
   return format.starts_with(fixed_size_list) ? std::stoll(format.substr(fixed_size_list.size())) : 0;
 }
 
-/// A column, or a field of columns that are structs: the places of children from the outermost on.
+/// A column, or a field of a struct column: the indexes of the children from the outermost struct inwards.
 struct Leaf {
   std::vector<std::int64_t> path;
   std::vector<std::string> names;
@@ -299,7 +299,7 @@ void add_leaves(const ArrowSchema& schema, const Leaf& above, std::vector<Leaf>&
   }
 }
 
-/// `width` = 0: one value a row.
+/// A `width` of 0 stands for one value per row.
 nb::object array_of_type(const nb::dlpack::dtype& type, const void* data, std::int64_t rows,
                          std::int64_t width, nb::handle owner) {
   const std::array<std::size_t, 2> shape{static_cast<std::size_t>(rows), static_cast<std::size_t>(width)};
@@ -308,8 +308,8 @@ nb::object array_of_type(const nb::dlpack::dtype& type, const void* data, std::i
                   nb::rv_policy::reference);
 }
 
-/// The values of a column and, where some are null, a byte for each value that says so, else None. `array` is
-/// null for no rows.
+/// The values of a column, and a byte for each value that says whether it is null, or None if none is null.
+/// `array` is null if there are no rows.
 nb::object values_of(const TakenArray* array, const Leaf& leaf) {
   const std::int64_t width = list_size_of(*leaf.schema);
   const ArrowSchema& numbers = width == 0 ? *leaf.schema : *leaf.schema->children[0];
@@ -329,7 +329,7 @@ nb::object values_of(const TakenArray* array, const Leaf& leaf) {
   const std::int64_t rows = (*array)->structure.length;
   std::vector<std::uint8_t> are_null;
   std::int64_t first = 0;
-  // From the struct of all columns to the numbers. An entry that is null makes all its values null.
+  // Goes from the struct of all columns to the numbers. All values of a null entry are null.
   const auto go_to = [&](const ArrowArray& next, std::int64_t values_of_entry) {
     level = &next;
     first += next.offset;
@@ -357,10 +357,10 @@ nb::object values_of(const TakenArray* array, const Leaf& leaf) {
   return nb::make_tuple(array_of_type(*type, data, rows, width, owner), mask);
 }
 
-/// What is asked for of a table, or of an array of structs or of lists of a fixed size.
+/// The chosen columns of a table, or of an array of structs or of lists of a fixed size.
 class Choice {
  public:
-  /// `choose` is given the path of names of each column, and returns the places of those that are wanted.
+  /// `choose` takes the path of names of each column, and returns the indexes of the wanted columns.
   Choice(const ArrowSchema& schema, nb::handle choose) {
     const std::string_view format = schema.format;
     if (format != "+s") {
@@ -382,7 +382,7 @@ class Choice {
     for (const nb::handle place : choose(names)) chosen_.push_back(leaves.at(nb::cast<std::size_t>(place)));
   }
 
-  /// Of no rows where the array is null.
+  /// The values of the chosen columns; without rows if `array` is null.
   nb::list values(const TakenArray* array) const {
     nb::list columns;
     for (const Leaf& leaf : chosen_) columns.append(values_of(array, leaf));
@@ -393,7 +393,7 @@ class Choice {
   std::vector<Leaf> chosen_;
 };
 
-/// The chosen columns of each chunk; of a stream of none, those of no rows.
+/// The chosen columns of each chunk. A stream without chunks gives columns without rows.
 nb::list columns_of_stream(nb::handle capsule, nb::handle choose) {
   Taken<ArrowArrayStream> stream(structure_of<ArrowArrayStream>(capsule));
   const auto check = [&](int error) {
@@ -418,7 +418,7 @@ nb::list columns_of_stream(nb::handle capsule, nb::handle choose) {
   return chunks;
 }
 
-/// Likewise of one array.
+/// Likewise for one array.
 nb::list columns_of_array(nb::handle schema_capsule, nb::handle array_capsule, nb::handle choose) {
   const Taken<ArrowSchema> schema(structure_of<ArrowSchema>(schema_capsule));
   const auto taken = std::make_shared<Taken<ArrowArray>>(structure_of<ArrowArray>(array_capsule));

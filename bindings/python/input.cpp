@@ -22,7 +22,7 @@ std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, c
   std::vector<std::uint64_t> numbers(buffer.text().size() / sizeof(std::uint64_t));
   if (!numbers.empty())
     std::memcpy(numbers.data(), buffer.text().data(), numbers.size() * sizeof(std::uint64_t));
-  // The array may be the caller's, which another thread may have changed since it was checked.
+  // The array may be the caller's, and another thread may have changed it since the check.
   for (const std::uint64_t number : numbers) {
     if (number > most)
       throw std::invalid_argument(std::string(name) + " has " + std::to_string(number) +

@@ -24,11 +24,11 @@ namespace broadside::python {
 
 namespace nb = nanobind;
 
-/// The memory of an object, which Python keeps as it is while this lives. To be made and destroyed with the
-/// GIL held.
+/// The memory of an object, which Python does not move or resize while this lives. Needs the GIL in its
+/// constructor and destructor.
 class Buffer {
  public:
-  /// Throws what Python raises where the object has no such memory.
+  /// Throws Python's exception if the object has no such memory.
   Buffer(nb::handle object, int flags) {
     if (PyObject_GetBuffer(object.ptr(), &view_, flags) != 0) throw nb::python_error();
   }
@@ -162,7 +162,7 @@ std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name
 /// None: none. Else one for each of `count` boxes.
 std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name);
 
-/// Likewise one for each of `count` queries, perhaps the same for all.
+/// Likewise for queries: a filter for each of `count` queries. `object` may hold one for all.
 std::vector<Filter> query_filters(nb::handle object, std::size_t count);
 
 /// A handle as Python has it: one number, the generation in its upper half and the slot in its lower one.

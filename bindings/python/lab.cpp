@@ -78,8 +78,8 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
   });
 }
 
-/// The boxes of one frame of a file, and what could not be read of it. `content`: the file's bytes where they
-/// are in memory, or None.
+/// The boxes of one frame of a file, and a text about what could not be read. `content` has the file's bytes
+/// if they are in memory, and is None otherwise.
 nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
                 const std::string& boxes, const std::string& columns, const std::string& layer, int dimension,
                 std::size_t frame, bool skips_invalid) {
@@ -144,8 +144,8 @@ std::string_view name_of(lab::readers::BoundsForm form) {
   throw std::logic_error("a form of bounds without a name");
 }
 
-/// What a table's columns mean by their names: (problem, dimension, [(form, first, second) for each axis],
-/// geometry), where the last three are places in `names`, or -1 for none.
+/// The meaning of a table's columns by their names: (problem, dimension, [(form, first, second) for each
+/// axis], geometry). `first`, `second` and `geometry` are indexes into `names`, or -1 for none.
 nb::tuple resolve_columns(const std::vector<std::string>& names, bool are_chosen) {
   using lab::readers::BoxColumns;
   BoxColumns columns;

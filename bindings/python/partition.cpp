@@ -103,7 +103,8 @@ class PartitionOf final : public AnyPartition {
       for_each_touched(all, released, [&](std::size_t part, std::size_t) { ++starts[part + 1]; });
       std::partial_sum(starts.begin(), starts.end(), starts.begin());
       touching.resize(static_cast<std::size_t>(starts.back()));
-      // What another thread writes to the caller's boxes meanwhile must not lead beyond what was counted.
+      // If another thread writes to the caller's boxes meanwhile, no more places than were counted may be
+      // used.
       std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
       bool as_counted = true;
       for_each_touched(all, released, [&](std::size_t part, std::size_t row) {

@@ -21,15 +21,15 @@
 
 namespace broadside::python {
 
-/// What a query may find, as Python hands it in: filters and boxes that are not found, of each query or one
-/// of all, or None.
+/// Which boxes queries may find, as Python passes it: filters and excluded boxes. Each is one for each query,
+/// one for all, or None.
 struct QueryChoice {
   nb::handle filters;
   nb::handle exclude;
 };
 
-/// Asks a BoxIndex. `Asked` has `Number`, what Python calls a box by; ask(body), which calls
-/// body(index, number_of, place_of) with the GIL given away and the index as it is then; and D and Real.
+/// Queries a BoxIndex. `Asked` has D, Real and `Number`, the type by which Python names a box. Its ask(body)
+/// calls body(index, number_of, place_of) with the GIL released and the index up to date.
 template <typename Asked>
 class Queries {
   static constexpr int D = Asked::dimension;
@@ -109,7 +109,7 @@ class Queries {
     std::vector<Neighbour<Real>> found;
     ask_each(asked.size(), choice,
              [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
-               // Another thread may write to the caller's points once they are checked.
+               // A copy: another thread may write to the caller's points after the check.
                const Point point = asked[i];
                index.nearest(point, k, found, {options.filter, options.except, most});
                for (std::size_t j = 0; j < found.size(); ++j) {
@@ -125,7 +125,7 @@ class Queries {
   /// Queries between two looks at signals.
   static constexpr std::size_t queries_at_once = 64;
 
-  /// The greatest Real up to a limit, so that a hit's t, or a distance, is at most what was asked for.
+  /// The greatest Real that does not exceed `limit`, so that no hit's t or distance exceeds it.
   static Real rounded_down(double limit) {
     constexpr double most = std::numeric_limits<Real>::max();
     if (std::isfinite(limit)) limit = std::clamp(limit, -most, most);
@@ -161,7 +161,7 @@ class Queries {
     Real t_max_;
   };
 
-  /// Calls ask(index, number_of, i, options) for each i < count, with the GIL given away.
+  /// Calls ask(index, number_of, i, options) for each i < count, with the GIL released.
   template <typename Ask>
   void ask_each(std::size_t count, const QueryChoice& choice, const Ask& ask) const {
     if (count > std::numeric_limits<std::uint32_t>::max())

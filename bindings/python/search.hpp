@@ -36,7 +36,7 @@ class Collector final : public PairSink {
   unsigned chunks_ = 0;
 };
 
-/// Sorts pairs, and asks for signals now and then.
+/// Sorts pairs, and checks for signals at intervals.
 inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
   const std::function<void()> ask = [&released] { released.check_signals(); };
   Checkpoint checkpoint(ask);

@@ -252,7 +252,7 @@ class WorldOf final : public AnyWorld {
   template <typename Body>
   void ask(const Body& body) {
     const std::lock_guard lock(mutex_);
-    // A handle that is not in the world leaves out nothing.
+    // A handle that is not in the world excludes no box.
     const auto place_of = [&](Number number) {
       const Handle handle = handle_of(number);
       return world_.contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;

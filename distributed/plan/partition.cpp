@@ -208,7 +208,7 @@ Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t 
   typename Cutter<D, Real>::BoxesAndPairs items;
   if (parts > 1) {
     items[0].reserve(sample.size());
-    for (const Box<D, Real> box : sample)  // copied: the caller's may change between two looks at it
+    for (const Box<D, Real> box : sample)  // a copy, since another thread may change the caller's
       if (is_present(box) && space.touches(box)) items[0].push_back({box, 1});
     if (boxes > 0 && items[0].size() > 1)
       items[1] = weighted_pairs(items[0], boxes, std::max(enough_pairs, enough_pairs_per_part * parts));

@@ -208,8 +208,7 @@ class KarrasLbvh final : public PairFinder<D> {
     }
   }
 
-  /// Writes the pairs of `box` with the leaves from the place `first` on. Returns how many bounds it was
-  /// compared with.
+  /// Writes the pairs of `box` with the leaves from index `first` on. Returns the number of bounds compared.
   std::uint64_t search(const Box<D>& box, BoxId id, std::size_t first, PairSink& pairs) const {
     std::array<std::uint32_t, most_levels + 1> stack;
     std::uint64_t compared = 0;

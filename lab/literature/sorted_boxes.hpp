@@ -68,7 +68,7 @@ class SortedBoxes {
   std::vector<BoxId> ids_;
 };
 
-/// Writes each overlapping pair of `boxes` once, and tells the checkpoint.
+/// Writes each overlapping pair of `boxes` once. `checkpoint` counts the tests.
 template <int D>
 void sweep(const SortedBoxes<D>& boxes, Checkpoint& checkpoint, PairSink& pairs);
 

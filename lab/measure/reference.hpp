@@ -37,8 +37,8 @@ class Reference {
   /// The algorithm that they come from; null if it is the definition.
   const Algorithm* algorithm() const noexcept { return algorithm_; }
 
-  /// The expected pairs, sorted. Nothing but the definition can be relied on before check_sample(). Searching
-  /// and sorting pass the checkpoint.
+  /// The expected pairs, sorted. Before check_sample(), only the definition can be relied on. Searching
+  /// and sorting call the checkpoint.
   template <int D, typename Real = float>
   std::vector<Pair> pairs(BoxSpan<D, Real> boxes, const std::function<void()>& checkpoint = {}) const;
 

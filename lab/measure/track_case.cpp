@@ -40,8 +40,8 @@ struct TrackParticipant {
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
   std::size_t most_rounds = no_limit;
-  bool plays = false;    // in the pass that is going on
-  bool is_long = false;  // some of its frames are
+  bool plays = false;    // in the current pass
+  bool is_long = false;  // some of its frames are long
 };
 
 template <int D, typename Real>

@@ -1,6 +1,6 @@
-// Calls the library in every way in which lists cross its border, and prints the results and the sizes of its
-// classes. Compiled with and without libstdc++'s debug mode and linked with the same library, it must print
-// the same.
+// Passes lists to and from the library in every way there is, and prints the results and the sizes of the
+// library's classes. Compiled with and without libstdc++'s debug mode, and linked with the same library, it
+// must print the same.
 #include <array>
 #include <cstddef>
 #include <cstdio>
