@@ -13,7 +13,7 @@ namespace broadside {
 
 template <int D, typename Real>
 struct BROADSIDE_HIDDEN DiffTracker<D, Real>::Pairs {
-  std::vector<Pair> kept;  // those that overlapped in the frame before
+  std::vector<Pair> kept;  // pairs that also overlapped in the frame before
   std::vector<Pair> found;
 };
 
