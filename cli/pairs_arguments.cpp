@@ -148,6 +148,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   // A pipe can be read only once: a second reader would wait for ever.
   std::error_code ignored;
   if (arguments.files.size() == 2 && !std::filesystem::is_regular_file(arguments.files[0], ignored) &&
+      !std::filesystem::is_directory(arguments.files[0], ignored) &&
       std::filesystem::equivalent(arguments.files[0], arguments.files[1], ignored))
     throw Unusable(fmt::format("{} and {} are one pipe; expected it once, or a file", arguments.files[0],
                                arguments.files[1]));

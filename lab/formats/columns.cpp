@@ -323,9 +323,16 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
     list.resize(end);
     return list;
   };
-  std::vector<std::string> lists{named([](int bound, std::size_t axis) {
-    return std::string(1, bound == 0 ? axis_letters[axis] : "whd"[axis]);
-  })};
+  std::vector<std::string> lists;
+  // Where a maximum is before its minimum, as top is where y grows upwards, nobody meant a size.
+  const auto column_at = [&](int place) { return std::ranges::find(columns.places, place); };
+  bool has_order = true;
+  for (int axis = 0; axis < columns.dimension; ++axis)
+    has_order &= column_at(BoxColumns::first + axis) < column_at(BoxColumns::second + axis);
+  if (has_order)
+    lists.push_back(named([](int bound, std::size_t axis) {
+      return std::string(1, bound == 0 ? axis_letters[axis] : "whd"[axis]);
+    }));
   for (std::size_t exchanged = 1; exchanged < std::size_t{1} << axes; ++exchanged)
     lists.push_back(named([exchanged](int bound, std::size_t axis) {
       const bool is_min = (bound == 0) != ((exchanged >> axis & 1) != 0);

@@ -20,7 +20,7 @@ struct UnreadFormat {
   std::string_view name;
   std::string_view extensions;  ///< with a blank after each
   std::string_view magic;    ///< the first bytes; of XML ("<..."), the root element; empty: told by the name
-  std::string_view command;  ///< IN stands for the file
+  std::string_view command;  ///< the first IN stands for the file
 };
 
 constexpr std::string_view ogr = "ogr2ogr -f GeoJSON out.geojson IN";
@@ -52,7 +52,8 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
      "for k in "
      "('xmin', 'ymin', 'xmax', 'ymax')), sep=',') for b in E.parse('IN').iter('bndbox')]\" > out.csv"},
     {"intervals of a genome (BED)", ".bed ", "",
-     "awk -v OFS=, 'BEGIN {print \"id,min_x,min_y,max_x,max_y\"} !($1 in n) {n[$1] = NR} {print NR - 1, $2, "
+     "awk -v OFS=, 'NR == 1 {print \"id,min_x,min_y,max_x,max_y\"} !($1 in n) {n[$1] = NR} {print NR - 1, "
+     "$2, "
      "n[$1], $3 - 1, n[$1]}' IN > out.csv"},
     {"a pickle of Python", ".pkl .pickle ", "",
      "python3 -c \"import pickle, numpy; numpy.save('out.npy', pickle.load(open('IN', 'rb')))\""},

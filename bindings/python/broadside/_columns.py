@@ -187,8 +187,9 @@ def _bounds_on(axis: tuple[str, int, int], numbers: list[Rows]) -> tuple[Rows, R
     if form == "point":
         return a, a
     if form == "bottom_top":
-        # On a screen y grows downwards.
-        return (b, a) if (b < a).any() else (a, b)
+        # On a screen y grows downwards: the first row in which the two differ tells, as in files.
+        told = np.flatnonzero((a != b) & np.isfinite(a) & np.isfinite(b))[:1]
+        return (b, a) if (b[told] < a[told]).any() else (a, b)
     # In double, as for files. Infinities and NaN make an invalid box.
     a, b = a.astype(np.float64, copy=False), b.astype(np.float64, copy=False)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -324,7 +324,7 @@ bool is_csv(std::string_view bytes, std::string_view extension) {
   if (lines.bytes_left() == 0 && bytes.size() == Input::beginning_bytes) fields.pop_back();
   if (fields.size() < 2) return false;
   return std::ranges::count_if(fields, is_column_name) >= 2 ||
-         std::ranges::any_of(fields, is_geometry_name) ||
+         std::ranges::any_of(fields, is_geometry_name) || is_kitti(fields) ||
          (std::ranges::any_of(fields, is_number) && std::ranges::all_of(fields, [](std::string_view field) {
             return field.empty() || is_number(field);
           }));

@@ -50,6 +50,14 @@ def test_top_and_bottom_follow_the_data(table):
         np.testing.assert_array_equal(broadside.Index(found).boxes, BOXES)
 
 
+@tables
+def test_one_wrong_row_does_not_turn_top_and_bottom(table):
+    maps = BOXES[:, [0, 3, 2, 1]]
+    maps[7, [1, 3]] = maps[7, [3, 1]]
+    found = table(columns_of(maps, ["left", "top", "right", "bottom"]))
+    np.testing.assert_array_equal(broadside.invalid_rows(found), [7])
+
+
 def sizes_of(boxes):
     return np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
 

@@ -231,6 +231,8 @@ TEST_F(CsvTable, LetsTheRowsTellWhetherYGrowsUpOrDown) {
   EXPECT_EQ(boxes_of("bb_left,bb_top,bb_right,bb_bottom\n,,,\n1,2,5,8\n").back(), boxes[1]);
   EXPECT_THAT(refusal_of("left,top,right,bottom\n1,2,5,8\n1,8,5,2\n"), HasSubstr("bad.csv:3: min (1, 8)"))
       << "not both";
+  EXPECT_THAT(refusal_of("left,top,right,bottom\n1,8,5,2\n1,2,5,8\n"), Not(HasSubstr("--columns")))
+      << "a top that is the maximum is no height";
 }
 
 TEST_F(CsvTable, NamesOtherMeaningsInWhichAllRowsAreValid) {
@@ -279,6 +281,8 @@ TEST_F(CsvTable, ReadsKittisLabels) {
   EXPECT_EQ(boxes_of("Car 0.00 0 -1.5 1.0 2.0 5.0 8.0 1.6 1.7 3.7 -16.5 2.4 58.5 -1.3\n"
                      "Pedestrian 0.00 0 -0.2 -1 -2 0 1e10 1.9 0.5 1.2 1.8 1.5 8.4 0.0\n"),
             both_boxes);
+  EXPECT_EQ(open_format("Car 0.00 0 -1.5 1.0 2.0 5.0 8.0 1.6 1.7 3.7 -16.5 2.4 58.5 -1.3\n"), "csv")
+      << "their names end in .txt";
 }
 
 TEST_F(CsvTable, SaysWhyIntervalsAreNoBoxes) {

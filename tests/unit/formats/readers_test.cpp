@@ -269,6 +269,9 @@ TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
                                    HasSubstr("ogr2ogr -f GeoJSON out.geojson " + part.string())));
   EXPECT_THAT(refusal(put("a.xlsx", "PK")), HasSubstr("libreoffice --headless --convert-to csv "));
   EXPECT_THAT(refusal(put("a.laz", "?")), HasSubstr("pdal translate "));
+  const auto intervals = put("a.bed", "chr1\t10\t20\n");
+  EXPECT_THAT(refusal(intervals), AllOf(HasSubstr("awk -v OFS=, 'NR == 1 {print"),
+                                        HasSubstr("' " + intervals.string() + " > out.csv")));
   // By its content, whatever it is called.
   EXPECT_THAT(refusal(put("a.csv", "PAR1\x15\x04")),
               AllOf(HasSubstr("a.csv: is Parquet"), HasSubstr("pandas.read_parquet('")));
