@@ -317,9 +317,10 @@ nb::object values_of(const TakenArray* array, const Leaf& leaf) {
   if (!type) {
     std::string name;
     for (const std::string& part : leaf.names) name += (name.empty() ? "" : ".") + part;
-    throw nb::type_error(
-        ("the Arrow column '" + name + "' is of type " + kind_of(numbers) + "; expected floats or integers")
-            .c_str());
+    throw nb::type_error(("the Arrow column '" + name + "' is of type " + kind_of(numbers) +
+                          "; expected floats or integers" +
+                          (kind_of(numbers) == "list" ? ", or lists of a fixed size" : ""))
+                             .c_str());
   }
   if (array == nullptr)
     return nb::make_tuple(array_of_type(*type, nullptr, 0, width, nb::none()), nb::none());

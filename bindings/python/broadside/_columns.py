@@ -35,7 +35,7 @@ SIZED_CONVENTIONS = [name for name, names in _CONVENTIONS.items() if "width" in 
 # The default names of an array's columns in pandas and polars. They have no meaning, so a table must have only these.
 _NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (4, 6)]
 
-_EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to say which they are"
+_EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to say which they are, such as columns='xywh'"
 
 
 @dataclass(frozen=True)

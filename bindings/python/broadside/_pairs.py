@@ -102,8 +102,9 @@ def pairs(
         columns: A table's columns of bounds, as a list of names such as ``["x", "y", "w", "h"]``; names without a
             meaning are minima, then maxima. Or the meaning of the numbers in a row: ``"xyxy"``, ``"xywh"``,
             ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, which also applies to an array and to a column
-            `bbox` of lists. By default the bounds are found by the names that CSV uses: xmin, ymin, xmax, ymax; left,
-            top, right, bottom; a struct `bbox` ...; and rows without names are minima, then maxima.
+            `bbox` of lists (of a fixed size in Arrow and polars). By default the bounds are found by the names that
+            CSV uses: xmin, ymin, xmax, ymax; left, top, right, bottom; a struct `bbox` ...; and rows without names are
+            minima, then maxima.
         other_columns: Likewise for `other`.
         filters: Which boxes may pair: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
