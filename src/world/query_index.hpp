@@ -39,6 +39,9 @@ class QueryIndex {
     marked_.push_back(BoxId{slot});
   }
 
+  /// Says that the last slots are gone, which are not marked: the next query must not find them.
+  void shorten() noexcept { is_current_.store(false, std::memory_order_relaxed); }
+
   /// Whether the index is up to date. Several threads may call it at once.
   bool is_current() const noexcept { return is_current_.load(std::memory_order_acquire); }
 

@@ -39,6 +39,7 @@ template <int D, typename Real>
 void World<D, Real>::State::mark_differences(const State& other) {
   if (!query_index.exists()) return;
   query_index.reserve(other.slots.size());
+  if (other.slots.size() < slots.size()) query_index.shorten();
   const auto filter_of = [](const State& state, std::uint32_t slot) {
     return state.uses_filters ? state.filters[slot] : Filter{};
   };

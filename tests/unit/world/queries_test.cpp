@@ -1,5 +1,6 @@
 // World's queries: in terms of handles, about the boxes as they are now.
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -48,6 +49,17 @@ TEST(WorldQueries, SeeBoxesAsTheyAreBeforeAndAfterAnUpdate) {
   const Handle c = world.add({{0, 0}, {1, 1}});
   EXPECT_EQ(c.slot, a.slot);
   EXPECT_THAT(overlapping(world, {{0, 0}, {1, 1}}), ElementsAre(c)) << "not the handle of who was there";
+}
+
+TEST(WorldQueries, SeeNoBoxOfASlotThatARestoreTookAway) {
+  World2 world;
+  const Handle a = world.add({{0, 0}, {1, 1}});
+  const std::vector<std::byte> snapshot = world.snapshot();
+  world.add({{5, 0}, {6, 1}});
+  EXPECT_EQ(overlapping(world, everywhere).size(), 2u);
+  world.restore(snapshot);
+  EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a));
+  EXPECT_EQ(world.nearest({5, 0}, 2).size(), 1u);
 }
 
 TEST(WorldQueries, CastAndHoldInTermsOfHandles) {
