@@ -145,11 +145,15 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   for (const std::string& file : arguments.files) check_is_no_scene(file);
-  // A pipe can be read only once: a second reader would wait for ever.
-  std::error_code ignored;
-  if (arguments.files.size() == 2 && !std::filesystem::is_regular_file(arguments.files[0], ignored) &&
-      !std::filesystem::is_directory(arguments.files[0], ignored) &&
-      std::filesystem::equivalent(arguments.files[0], arguments.files[1], ignored))
+  // A pipe can be read only once: a second reader would wait for ever. std::filesystem::equivalent()
+  // does not compare pipes.
+  std::error_code fault;
+  const auto place = [&fault](const std::string& file) { return std::filesystem::canonical(file, fault); };
+  if (arguments.files.size() == 2 && std::filesystem::exists(arguments.files[0], fault) &&
+      !std::filesystem::is_regular_file(arguments.files[0], fault) &&
+      !std::filesystem::is_directory(arguments.files[0], fault) &&
+      (arguments.files[0] == arguments.files[1] ||
+       (place(arguments.files[0]) == place(arguments.files[1]) && !fault)))
     throw Unusable(fmt::format("{} and {} are one pipe; expected it once, or a file", arguments.files[0],
                                arguments.files[1]));
   check_swept(arguments);

@@ -114,7 +114,7 @@ TEST_F(Csv, OfDoublesSaysAsASceneHowManyCoordinatesAreRounded) {
                                        "0,0,0,0,16777217,1\n1,0,0,0,0.1,16777219\n"));
   EXPECT_THAT(rounded.warning,
               AllOf(HasSubstr("a.csv: 3 of 8 coordinates were rounded to float"), HasSubstr("`pairs`")));
-  EXPECT_EQ(file_scene(put("b.csv", "0,0,0.5,16777216\n")).warning, "");
+  EXPECT_EQ(file_scene(put("b.csv", "min_x,min_y,max_x,max_y\n0,0,0.5,16777216\n")).warning, "");
   EXPECT_THAT(file_scene(put("c.csv", "0,1e-60,0.1,1e60\n")).warning,
               HasSubstr("3 of 4 coordinates were rounded to float, 2 of them to infinity or zero"));
 }
