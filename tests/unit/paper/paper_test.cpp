@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 
 #include "lab/verify/verify.hpp"
 
@@ -198,6 +200,34 @@ TEST(PaperGridAndQuadtree, HoldFewReferencesWhereBoxesAreInfinite) {
   for (std::size_t i = 0; i < boxes.size(); i += 2) boxes[i] = {{-infinity, -infinity}, {infinity, infinity}};
   for (const char* const spec : {"paper_grid", "paper_quadtree"})
     EXPECT_LE(expect_right<2>(spec, boxes).references, 16U * boxes.size()) << spec;
+}
+
+/// Counts pairs, and makes all boxes invalid at the first ones: as another thread might.
+class SpoilingSink final : public PairSink {
+ public:
+  explicit SpoilingSink(std::vector<Box2>& boxes) : boxes_(boxes) {}
+  std::size_t count() const { return count_; }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    count_ += pairs.size();
+    std::ranges::fill(boxes_, Box2{{NAN, infinity}, {-infinity, NAN}});
+  }
+
+  std::vector<Box2>& boxes_;
+  std::size_t count_ = 0;
+};
+
+TEST(PaperListings, LookAtNoBoxThatChangesWhileTheySearch) {
+  const std::vector<Box2> boxes = uniform<2>(3000, 100, 4);
+  const std::size_t expected = find_pairs(boxes, "brute_force").size();
+  ASSERT_GT(expected, 2000u);
+  for (const std::string& spec : specs<2>()) {
+    std::vector<Box2> spoiled = boxes;
+    SpoilingSink pairs(spoiled);
+    make_finder<2>(spec)->find(spoiled, pairs);
+    EXPECT_EQ(pairs.count(), expected) << spec;
+  }
 }
 
 TEST(PaperGridAndQuadtree, Are2DOnly) {
