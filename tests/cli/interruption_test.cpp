@@ -135,7 +135,7 @@ TEST(ClosedPipe, EndsTheProgramWithoutAMessage) {
 TEST(ClosedPipe, EndsEveryVerbThatPrints) {
   const TemporaryFolder folder;
   const std::string status = folder.file("status");
-  const std::string boxes = folder.put("boxes.csv", "0,0,1,1\n1,1,2,2\n");
+  const std::string boxes = folder.put("boxes.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n1,1,2,2\n");
   const std::string gone = folder.file("gone");
   // The reader has closed the pipe before anything is written.
   for (const std::string& arguments : {std::string("list"), std::string("--help"), "info " + boxes,
