@@ -2,7 +2,7 @@
 # library's flags.
 #
 # Without a build type, or with Debug, a project compiles with no -O or with -O0, which makes the library ten times as slow.
-# Any other level is the user's choice, and so is a Debug build of Broadside itself.
+# Any other level is the user's choice, and so are the build types of Broadside itself.
 if(NOT BROADSIDE_OPTIMIZE MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "BROADSIDE_OPTIMIZE is '${BROADSIDE_OPTIMIZE}'; expected AUTO, ON or OFF")
 endif()
@@ -25,8 +25,7 @@ foreach(build_type IN LISTS build_types)
   string(REGEX MATCHALL "[; :]-O[^ ;>]*" levels ";${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${name}};${directory_options}")
   list(PREPEND levels -O0)
   list(POP_BACK levels level)
-  if(BROADSIDE_OPTIMIZE STREQUAL "ON" OR (BROADSIDE_OPTIMIZE STREQUAL "AUTO" AND level MATCHES "-O0$"
-                                          AND NOT (PROJECT_IS_TOP_LEVEL AND name STREQUAL "DEBUG")))
+  if(BROADSIDE_OPTIMIZE STREQUAL "ON" OR (BROADSIDE_OPTIMIZE STREQUAL "AUTO" AND level MATCHES "-O0$" AND NOT PROJECT_IS_TOP_LEVEL))
     list(APPEND optimized_types ${build_type})
   endif()
 endforeach()

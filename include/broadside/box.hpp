@@ -157,8 +157,8 @@ constexpr Box<D, Real> translated(Box<D, Real> box,
   return box;
 }
 
-/// The centre of a present box, rounded to Real; NaN on an axis where both bounds are infinite with opposite
-/// signs.
+/// The centre of a present box: half of each bound, and their sum, rounded to Real. NaN on an axis where both
+/// bounds are infinite with opposite signs.
 template <int D, typename Real>
 constexpr Point<D, Real> centre(const Box<D, Real>& box) noexcept {
   Point<D, Real> point{};
