@@ -34,7 +34,8 @@ export class Pairs {
 
   readonly #isFlat: boolean;
   readonly #mostOfFew: number;  // numbers in an array of few boxes
-  readonly #fewPairs: Uint32Array;  // room for all pairs of few boxes
+  readonly #maxFewIds: number;
+  #fewPairs: Uint32Array;  // room for all pairs of few boxes
   readonly #views: Uint32Array[] = [];  // of its first ids, by their number
   readonly #forFew: string;  // the algorithm that few boxes get where none is named
 
@@ -43,7 +44,8 @@ export class Pairs {
     this.#isFlat = core.dimension === 2;
     const most = mostFew(core.simd, core.dimension);
     this.#mostOfFew = 2 * core.dimension * most;
-    this.#fewPairs = new Uint32Array(most * (most - 1));
+    this.#maxFewIds = most * (most - 1);
+    this.#fewPairs = new Uint32Array(this.#maxFewIds);
     this.#forFew = core.algorithmFor(0);
   }
 
@@ -53,6 +55,7 @@ export class Pairs {
     if (boxes instanceof Float32Array && boxes.length <= this.#mostOfFew && (options === undefined ||
         options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined ||
         this.#meansFew(options))) {
+      if (this.#fewPairs.length === 0) this.#renewFew();
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
       if (found >= 0) return options?.view === true ? this.#viewOfFew(found) : this.#copyOfFew(found);
     }
@@ -63,6 +66,12 @@ export class Pairs {
     if (options === undefined) return this.#find(boxes, undefined, {}, 0);
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
+  }
+
+  /** Makes the room again: a view of it was transferred, and the room went with it. */
+  #renewFew(): void {
+    this.#fewPairs = new Uint32Array(this.#maxFewIds);
+    this.#views.length = 0;
   }
 
   #viewOfFew(ids: number): Uint32Array {

@@ -66,7 +66,7 @@ json::object MapText::root() {
   if (const auto error = document_.get_object().get(object))
     refuse(error,
            "an object of GeoJSON, TopoJSON, COCO or LabelMe; to make a table of a list of boxes: jq -r "
-           "'.[].bbox|@csv', with --columns x,y,w,h if they are COCO's");
+           "'.[]|[.image_id]+.bbox|@csv', with --columns=frame,x,y,w,h if they are COCO's");
   return object;
 }
 

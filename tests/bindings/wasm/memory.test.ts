@@ -103,6 +103,13 @@ test("views equal copies, share memory with the next call, and are refused where
     assert.equal(broadside.pairs(some, { view: true }).buffer, one.buffer);
     assert.notEqual(broadside.pairs(some).buffer, broadside.pairs(some).buffer);
   }
+  // A view that is transferred takes nothing with it that later calls need.
+  const two = new Float32Array([0, 0, 1, 1, 1, 1, 2, 2]);
+  for (const options of [{ view: true }, {}, { view: true }]) {
+    const view = broadside.pairs(two, { view: true });
+    structuredClone(view, { transfer: [view.buffer as ArrayBuffer] });
+    assert.deepEqual([...broadside.pairs(two, options)], [0, 1]);
+  }
   const index = broadside.index(boxes);
   const world = broadside.world();
   for (const call of [
