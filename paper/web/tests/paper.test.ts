@@ -124,7 +124,7 @@ test("charts are numbered, drawn and referred to before they stand there", () =>
 });
 
 test("pictures that the program drew are figures as well", () => {
-  assert.match(textOf('{{picture "grid" "Cells" "a=grid"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\. \[[^\]]+\]\([^)]+#a=grid\)\*\n.*\n\n\*Figure 2/);
+  assert.match(textOf('{{picture "grid" "Cells" "a=grid"}}\n{{charts "tests"}}'), /\(\.\.\/pictures\/grid\.svg\)\n\n\*Figure 1\. Cells\. [^*]+`[^`]+#a=grid`\*\n.*\n\n\*Figure 2/);
 });
 
 refuses("an unknown picture", '{{picture "x" "X" ""}}', /no picture 'x\.svg'; there are grid\.svg/);
