@@ -161,8 +161,7 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
       layer.algorithm = entry->spec.text();
       layer.caption = outline.caption;
       Edges edges(window);
-      for (const auto& level : outline.levels)
-        layer.levels.push_back(edges.next_level(seen<D>(level, axes)));
+      for (const auto& level : outline.levels) layer.levels.push_back(edges.next_level(seen<D>(level, axes)));
       if (const std::optional<Sweep<D>> sweep = sweep_of<D>(outline, drawn))
         layer.active = path_of(*sweep, axes, window);
     }
