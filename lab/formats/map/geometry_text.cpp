@@ -55,10 +55,7 @@ class GeometryText {
     const bool is_named = !rest_.empty() && std::isalpha(static_cast<unsigned char>(rest_.front())) != 0;
     if (is_named && form_ != BoundsForm::min_max)
       return fail(", which is no list of numbers", "one, in the order that --columns names");
-    if (!(is_named                       ? read_named()
-          : form_ == BoundsForm::min_max ? read_bounds<Real>()
-                                         : read_bounds<double>()))
-      return false;
+    if (!(is_named ? read_named() : read_numbers())) return false;
     skip();
     return rest_.empty() || fail(fmt::format(", with {} behind its end", shown(rest_)), "nothing there");
   }
@@ -70,6 +67,14 @@ class GeometryText {
   bool fail(std::string found, std::string expected) {
     if (fault_.found.empty()) fault_ = {std::move(found), std::move(expected)};
     return false;
+  }
+
+  bool read_numbers() {
+    // Minima and maxima are read as they are; what is computed from a size is computed in double.
+    if constexpr (!std::is_same_v<Real, double>) {
+      if (form_ == BoundsForm::min_max) return read_bounds<Real>();
+    }
+    return read_bounds<double>();
   }
 
   void skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
