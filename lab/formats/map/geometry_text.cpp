@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
