@@ -99,7 +99,7 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
     auto lower = static_cast<std::size_t>(middle - pairs.begin());
     if (std::min(lower, pairs.size() - lower) < pairs.size() / 16) {  // the sample was a poor guide
       lower = pairs.size() / 2;
-      std::ranges::nth_element(pairs, pairs.begin() + static_cast<std::ptrdiff_t>(lower), {}, key);
+      std::ranges::nth_element(pairs, pairs.begin() + static_cast<std::ptrdiff_t>(lower));
       checkpoint.count(4 * pairs.size());
     }
     sort_part(pairs.first(lower), checkpoint);

@@ -134,7 +134,7 @@ void World<D, Real>::State::refuse(Handle handle, const char* action) const {
   const std::uint32_t begin = options.first_generation;
   const bool is_before =
       handle.generation < begin &&
-      std::ranges::none_of(generations, [begin](std::uint32_t one) { return one < begin; });
+      !std::ranges::any_of(generations, [begin](std::uint32_t one) { return one < begin; });
   const char* const why = is_up_to_now && !is_before
                               ? " names a box that was removed"
                               : " was never issued by this world: it is another world's or made up";
