@@ -324,7 +324,7 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
     return list;
   };
   std::vector<std::string> lists;
-  // Where a maximum is before its minimum, as top is where y grows upwards, nobody meant a size.
+  // A maximum before its minimum, such as top before bottom where y grows upwards, is no size.
   const auto column_at = [&](int place) { return std::ranges::find(columns.places, place); };
   bool has_order = true;
   for (int axis = 0; axis < columns.dimension; ++axis)

@@ -65,7 +65,7 @@ class QueryIndex {
     is_current_.store(true, std::memory_order_release);
   }
 
-  /// Whether so many slots have changed since the last query that a rebuild costs about as much as an update.
+  /// Whether a rebuild costs about as much as an update, by the number of slots changed since the last query.
   bool is_outdated(std::size_t slots) const noexcept { return marked_.size() > slots / 2 + 1024; }
 
   /// Releases all memory; the next query builds the index.
