@@ -14,10 +14,20 @@
 #include <utility>
 
 #include "broadside/export.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/follower.hpp"
+#include "broadside/searcher.hpp"
 
 namespace broadside {
+
+class Settings;
+template <int D, typename Real>
+struct Outline;
+
+/// What a search by these settings would lay over the boxes, which are all present; there is one at least.
+/// Parts may be infinite.
+template <int D>
+using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
+                                                    const Settings& settings)>;
 
 /// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
 struct BROADSIDE_PUBLIC Spec {
@@ -70,10 +80,36 @@ enum class AlgorithmKind { own, paper, literature, peer };
 /// "own", "paper", "literature" or "peer".
 BROADSIDE_PUBLIC std::string_view name(AlgorithmKind kind) noexcept;
 
+/// The cost of finding all pairs anew, in nanoseconds of one machine: only ratios matter.
+struct FindCosts {
+  double box = 40;                ///< a box, without its pairs, with 64 tests and 4 references
+  double further_test = 0.5;      ///< each further test of a box
+  double further_reference = 30;  ///< each further reference to a box
+  double pair = 7;
+};
+
+/// The cost of following boxes in a structure, likewise.
+struct FollowCosts {
+  double start = 100;        ///< to build the structure, a box
+  double mover = 160;        ///< to follow a box that moves, before any was followed
+  double mover_alone = 140;  ///< to follow a box that moves, without its tests
+  double test = 1;           ///< each of a mover's first 64 tests
+  double further_test = 1;   ///< each further one
+};
+
 template <int D>
-using MakeFinder = std::function<std::unique_ptr<PairFinder<D>>(const Settings&)>;
-template <int D, typename Real = float>
-using MakeTracker = std::function<std::unique_ptr<PairTracker<D, Real>>(const Settings&)>;
+using MakeSearcher = std::function<std::unique_ptr<Searcher<D>>(const Settings&)>;
+
+/// A follower that a Tracker may choose.
+template <int D>
+struct FollowerChoice {
+  std::string name;  ///< as explanations name it
+  std::function<std::unique_ptr<Follower<D>>(const Settings&)> make;
+  FollowCosts costs{};
+
+  /// Not 0: the one to use for up to so many boxes, whatever the others cost, and for no more.
+  std::size_t max_boxes = 0;
+};
 
 /// A broad-phase algorithm, described. One's own is made the same way as the library's: see
 /// examples/own_algorithm.
@@ -85,14 +121,22 @@ struct Algorithm {
   std::string version{};  ///< of the library behind it; empty for what is part of Broadside
   detail::Vector<Tunable> tunables{};
 
-  MakeFinder<2> finder_2d{};  ///< empty where the algorithm does not do that dimension
-  MakeFinder<3> finder_3d{};
-  MakeTracker<2> tracker_2d{};  ///< empty where a DiffTracker over the finder is what tracks
-  MakeTracker<3> tracker_3d{};
+  MakeSearcher<2> searcher_2d{};  ///< empty where the algorithm does not do that dimension
+  MakeSearcher<3> searcher_3d{};
 
-  /// Empty where a DiffTracker over a finder of doubles is what tracks boxes of doubles.
-  MakeTracker<2, double> double_tracker_2d{};
-  MakeTracker<3, double> double_tracker_3d{};
+  /// The structures that follow boxes; empty where a Tracker finds all pairs anew in each frame. With the
+  /// tunable `update` a Tracker also finds anew, by `find_costs` and FollowCosts;
+  /// without it, it always follows, by the first.
+  detail::Vector<FollowerChoice<2>> followers_2d{};
+  detail::Vector<FollowerChoice<3>> followers_3d{};
+  FindCosts find_costs{};
+
+  /// What a search would lay over boxes, to be drawn: see debug/outline.hpp. Empty where there is nothing.
+  MakeOutline<2> outline_2d{};
+  MakeOutline<3> outline_3d{};
+
+  bool tests_doubles = false;     ///< whether the searcher heeds SearchInput::doubles
+  bool gives_candidates = false;  ///< whether every follower heeds Change::wants_candidates
 
   bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
 
@@ -107,19 +151,19 @@ struct Algorithm {
 
   /// Whether it does `dimension`.
   bool has_dimension(int dimension) const {
-    return dimension == 2 ? bool(finder_2d) : dimension == 3 && bool(finder_3d);
+    return dimension == 2 ? bool(searcher_2d) : dimension == 3 && bool(searcher_3d);
   }
 };
 
 /// Whether it can use several threads: whether it has the tunable `threads`, a whole number, which
-/// make_finder() and make_tracker() make the Workers' of what they make.
+/// Finder and Tracker make the number of their Workers.
 BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
 
 /// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
 /// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
 BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
 
-/// Adds an algorithm of your own, so that find_pairs(), World, make_finder() and make_tracker() know it by
+/// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by
 /// its name. Throws InvalidSpec if the name is taken, or is not of lower-case letters, digits and
 /// underscores.
 ///
@@ -132,16 +176,5 @@ BROADSIDE_PUBLIC void register_algorithm(Algorithm algorithm);
 /// its place: `hierarchical_grid` is `grid`.
 BROADSIDE_PUBLIC const Algorithm* find_algorithm(std::string_view name,
                                                  std::span<const Algorithm> among = algorithms());
-
-/// Makes a finder of `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec
-/// if a value is wrong or the algorithm does not do D dimensions.
-template <int D, typename Real = float>
-BROADSIDE_PUBLIC std::unique_ptr<PairFinder<D, Real>> make_finder(const Algorithm& algorithm,
-                                                                  const Spec& spec);
-
-/// Likewise a tracker: the algorithm's own, or a DiffTracker over its finder.
-template <int D, typename Real = float>
-BROADSIDE_PUBLIC std::unique_ptr<PairTracker<D, Real>> make_tracker(const Algorithm& algorithm,
-                                                                    const Spec& spec);
 
 }  // namespace broadside

@@ -69,6 +69,9 @@ struct Workers {
   std::function<void()> checkpoint{};
 };
 
+/// One thread and no checkpoint.
+inline const Workers default_workers{};
+
 /// For algorithms: counts the pairs of boxes compared across loops and functions, and calls a checkpoint once
 /// every few million. Each thread needs its own.
 class BROADSIDE_PUBLIC Checkpoint {

@@ -63,7 +63,7 @@ BROADSIDE_PUBLIC void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint);
 
 /// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
 ///
-/// PairFinder and PairTracker flush the sink they were given before they return. One thread at a time: a
+/// Finder and Tracker flush the sink they were given before they return. One thread at a time: a
 /// search by several threads collects what they find and calls consume() in the thread that called find(),
 /// with the pairs in the order in which one thread would have found them; unless the sink can be cloned.
 class BROADSIDE_PUBLIC PairSink {

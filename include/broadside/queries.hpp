@@ -158,7 +158,7 @@ class BROADSIDE_PUBLIC BoxIndex {
   BoxIndex& operator=(const BoxIndex&) = delete;
   virtual ~BoxIndex() = default;
 
-  /// Takes a frame, as a PairTracker does: in the first one everything has changed; ignored pairs are not
+  /// Takes a frame, as a Tracker does: in the first one everything has changed; ignored pairs are not
   /// looked at. Throws InvalidInput or InvalidFrame before anything has changed; after running out of memory,
   /// queries find nothing until an update ends. Cost: O(changed), or for many changes that of finding all
   /// pairs.

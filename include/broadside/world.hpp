@@ -216,7 +216,7 @@ class BROADSIDE_PUBLIC World {
   explicit World(const WorldOptions& options);
 
   /// A world over a tracker of the caller's, which no frame was handed to; options.algorithm is not used.
-  explicit World(std::unique_ptr<PairTracker<D, Real>> tracker, const WorldOptions& options = {});
+  explicit World(Tracker<D, Real> tracker, const WorldOptions& options = {});
 
   World(World&& other) noexcept;
   World& operator=(World&& other) noexcept;

@@ -3,12 +3,12 @@
 
 #include <span>
 #include <string>
-#include <type_traits>
+#include <string_view>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/export.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
 namespace broadside {
 
@@ -25,25 +25,15 @@ struct Outline {
   detail::Vector<detail::Vector<Box<D, Real>>> levels;
 };
 
-/// A second face of a finder that lays something over boxes: its class derives from this one as well, and its
-/// outlined() returns itself.
+/// What a find() by the algorithm of `spec` would lay over these boxes; nothing for an algorithm without
+/// outlines, or if no box is present. Takes what laying it out takes. Throws as Finder::find() does, and
+/// InvalidSpec. Boxes of doubles are laid out as floats.
 template <int D, typename Real>
-class BROADSIDE_PUBLIC Outlined {
- public:
-  Outlined() = default;
-  Outlined(const Outlined&) = delete;
-  Outlined& operator=(const Outlined&) = delete;
-  virtual ~Outlined() = default;
-
-  /// What a find() of these boxes would lay over them; not to be called but by outline(). The boxes are all
-  /// present, and there is one at least. Parts may be infinite.
-  virtual Outline<D, Real> lay_out(std::span<const Box<D, Real>> boxes) = 0;
-};
-
-/// What the finder's find() would lay over these boxes; nothing for a finder without an outlined(), or if no
-/// box is present. Takes what laying it out takes, and no search pays for it. Throws as find() does.
+BROADSIDE_PUBLIC Outline<D, Real> outline(std::string_view spec, std::span<const Box<D, Real>> boxes,
+                                          const Workers& workers = default_workers);
 template <int D, typename Real>
-BROADSIDE_PUBLIC Outline<D, Real> outline(PairFinder<D, Real>& finder,
-                                          std::type_identity_t<std::span<const Box<D, Real>>> boxes);
+BROADSIDE_PUBLIC Outline<D, Real> outline(const Algorithm& algorithm, const Spec& spec,
+                                          std::span<const Box<D, Real>> boxes,
+                                          const Workers& workers = default_workers);
 
 }  // namespace broadside

@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -71,19 +72,15 @@ struct ShadowOptions {
 };
 
 /// Runs a tracker and compares its events with those of brute force, by the definition, in every frame; the
-/// first difference is thrown as a DivergenceOf<D, Real>. For looking for faults, in the tracker and in the
+/// first difference is thrown as a DivergenceOf<D, Real>. For looking for faults, in the algorithm and in the
 /// caller's list of what changed.
 ///
-/// update() throws, besides what every tracker's does: DivergenceOf, and from then on the same each time;
-/// InvalidFrame, before the tracker is asked, if a box, a filter or an ignored pair has changed and is not
-/// listed.
-///
-/// Cost a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
+/// Cost of a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
 /// frames of ShadowOptions.
 template <int D, typename Real = float>
-class BROADSIDE_PUBLIC ShadowTracker final : public PairTracker<D, Real> {
+class BROADSIDE_PUBLIC ShadowTracker final {
  public:
-  using Make = std::function<std::unique_ptr<PairTracker<D, Real>>()>;
+  using Make = std::function<Tracker<D, Real>()>;
 
   /// Shadows a tracker of the library's. Throws InvalidSpec.
   explicit ShadowTracker(std::string_view spec, const ShadowOptions& options = {});
@@ -92,22 +89,22 @@ class BROADSIDE_PUBLIC ShadowTracker final : public PairTracker<D, Real> {
   explicit ShadowTracker(Make make, const ShadowOptions& options = {});
 
   /// Shadows the one tracker that there is: a history is not made small.
-  explicit ShadowTracker(std::unique_ptr<PairTracker<D, Real>> tracker, const ShadowOptions& options = {});
+  explicit ShadowTracker(Tracker<D, Real> tracker, const ShadowOptions& options = {});
 
-  ~ShadowTracker() override;
+  ShadowTracker(ShadowTracker&& other) noexcept;
+  ShadowTracker& operator=(ShadowTracker&& other) noexcept;
+  ~ShadowTracker();
 
-  std::string explanation() const override;
+  /// As Tracker::update(). Throws, besides: DivergenceOf, and from then on the same each time; InvalidFrame,
+  /// before the tracker is asked, if a box, a filter or an ignored pair has changed and is not listed.
+  std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+
+  /// The tracker that is shadowed: for its explanation, its bytes, its workers.
+  const Tracker<D, Real>& tracker() const noexcept;
+  Tracker<D, Real>& tracker() noexcept;
 
  private:
   struct State;
-
-  ShadowTracker(std::unique_ptr<PairTracker<D, Real>> tracker, Make make, std::string name,
-                const ShadowOptions& options);
-
-  void update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) override;
-  void workers_changed() override;
-  std::size_t algorithm_bytes() const noexcept override;
-
   std::unique_ptr<State> state_;
 };
 
