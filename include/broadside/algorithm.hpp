@@ -107,7 +107,8 @@ struct FollowerChoice {
   std::function<std::unique_ptr<Follower<D>>(const Settings&)> make;
   FollowCosts costs{};
 
-  /// Not 0: the one to use for up to so many boxes, whatever the others cost, and for no more.
+  /// Not 0: it compares each changed box with all others, so that its cost is known beforehand. It is used for
+  /// up to so many boxes whatever the others cost, and for more where they make about as many tests.
   std::size_t max_boxes = 0;
 };
 

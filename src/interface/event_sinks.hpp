@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <span>
 
+#include "broadside/executor.hpp"
+#include "broadside/follower.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/tracker.hpp"
 
 #include "core/moved_box.hpp"
 #include "kernels/overlap_flags.hpp"
@@ -23,12 +24,16 @@ class CandidateSink final : public PairSink {
   CandidateSink(const Change<D>& change, PairSink& begun, PairSink& ended)
       : change_(change), begun_(begun), ended_(ended) {}
 
+  /// The pairs looked at so far.
+  std::uint64_t count() const noexcept { return count_; }
+
  private:
   void consume(std::span<const Pair> pairs) override {
     constexpr std::size_t at_once = 256;
     std::array<std::uint8_t, at_once> did;
     std::array<std::uint8_t, at_once> does;
     const bool has_filters = !change_.filters_now.empty();
+    count_ += pairs.size();
     while (!pairs.empty()) {
       const std::span<const Pair> some = pairs.first(std::min(at_once, pairs.size()));
       kernels::set_overlap_flags(change_.before, some, did.data());
@@ -46,21 +51,21 @@ class CandidateSink final : public PairSink {
   const Change<D>& change_;
   PairSink& begun_;
   PairSink& ended_;
+  std::uint64_t count_ = 0;
 };
 
 /// Without filters, what overlaps a box at rest is all there is to ask; else every pair is a candidate. Where
-/// the caller judges `every_pair`, all are written to `begun` as they are found.
+/// the change wants candidates, all are written to `begun` as they are found.
 template <int D>
 class EventSinks {
  public:
-  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair = false,
-             Checkpoint* checkpoint = nullptr)
+  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, Checkpoint* checkpoint = nullptr)
       : candidates_(change, begun, ended),
-        sinks_{.begun = every_pair || change.filters_now.empty() ? begun : candidates_,
-               .ended = every_pair                   ? begun
+        sinks_{.begun = change.wants_candidates || change.filters_now.empty() ? begun : candidates_,
+               .ended = change.wants_candidates      ? begun
                         : change.filters_now.empty() ? ended
                                                      : candidates_,
-               .candidates = every_pair ? begun : candidates_,
+               .candidates = change.wants_candidates ? begun : candidates_,
                .moves = change.flags.data(),
                .checkpoint = checkpoint} {}
   EventSinks(const EventSinks&) = delete;
@@ -68,6 +73,9 @@ class EventSinks {
 
   const ChangeSinks& sinks() const noexcept { return sinks_; }
   void flush() { candidates_.flush(); }
+
+  /// The pairs that had to be looked at again in both frames, up to the last flush().
+  std::uint64_t candidates() const noexcept { return candidates_.count(); }
 
  private:
   CandidateSink<D> candidates_;

@@ -1,4 +1,4 @@
-// What the algorithms cost that follow boxes: the tuned numbers of FollowPolicy, in one table.
+// What the algorithms cost that follow boxes: the tuned numbers of track::UpdatePolicy, in one table.
 //
 // In nanoseconds of one machine; only ratios within an algorithm matter. `ways` of bench/motion shows what
 // comes of them: auto over the better of following and finding anew, 0.1 to 100 % of the boxes moving, and a
@@ -7,9 +7,12 @@
 // (3D) for trees and cells, and about 500 / (4000 + tests) for a sweep.
 #pragma once
 
-#include "interface/follow_policy.hpp"
+#include "broadside/algorithm.hpp"
 
 namespace broadside::core {
+
+/// The tunable by which users choose how a tracker updates: "auto", "follow" or "rebuild".
+Tunable update_tunable();
 
 inline constexpr FindCosts brute_force_finding = {.box = 40};
 inline constexpr FollowCosts brute_force_following = {

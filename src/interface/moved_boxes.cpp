@@ -6,13 +6,12 @@
 namespace broadside::core {
 
 template <int D>
-void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved,
-                  bool every_pair) {
+void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved) {
   for (const BoxId id : ids) {
     const Box<D>& before = change.before[index(id)];
     const Box<D>& now = change.now[index(id)];
     const bool filter_changed =
-        every_pair ||
+        change.wants_candidates ||
         (!change.filters_now.empty() && change.filters_before[index(id)] != change.filters_now[index(id)]);
     if (!filter_changed && before == now) continue;
     const bool was = is_present(before);
@@ -28,7 +27,7 @@ void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vect
   }
 }
 
-template void append_moved(const Change<2>&, std::span<const BoxId>, std::vector<MovedBox<2>>&, bool);
-template void append_moved(const Change<3>&, std::span<const BoxId>, std::vector<MovedBox<3>>&, bool);
+template void append_moved(const Change<2>&, std::span<const BoxId>, std::vector<MovedBox<2>>&);
+template void append_moved(const Change<3>&, std::span<const BoxId>, std::vector<MovedBox<3>>&);
 
 }  // namespace broadside::core

@@ -4,17 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "broadside/tracker.hpp"
+#include "broadside/follower.hpp"
 
 #include "core/moved_box.hpp"
 
 namespace broadside::core {
 
 /// Appends the boxes of `ids`, some of `change.changed`, whose box or filter differs and that are present
-/// before or now. With `every_pair` all that are present are appended, each as if its filter had changed: for
-/// callers that judge pairs by more than these boxes, such as the doubles behind them.
+/// before or now. Where the change wants candidates, all that are present are appended, each as if its filter
+/// had changed.
 template <int D>
-void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved,
-                  bool every_pair = false);
+void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved);
 
 }  // namespace broadside::core

@@ -1,15 +1,14 @@
-// The tracker of brute force: each changed box against all others. Section VI-A of the paper.
+// BruteForceFollower: each changed box against all others. Section VI-A of the paper.
 //
 // The paper's flag and previous state are in the Change; what is kept here is one copy of all boxes as a
 // structure of arrays. Changed boxes are taken one after the other, and each one's place is brought up to
 // date when it has been compared, so an event of two changed boxes shows when the second one is taken.
-#include "algorithms/brute_force/tracker.hpp"
+#include "algorithms/brute_force/brute_force_follower.hpp"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "core/lean.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
@@ -21,9 +20,9 @@ namespace {
 constexpr std::size_t boxes_at_once = 1024;
 
 template <int D>
-class BruteForceTracker final : public PairTracker<D> {
- private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+class BruteForceFollower final : public Follower<D> {
+ public:
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     const std::size_t size = change.now.size();
     resize(size);
     if (change.rebuild) {
@@ -32,7 +31,7 @@ class BruteForceTracker final : public PairTracker<D> {
     moved_.clear();
     core::append_moved(change, change.changed, moved_);
     core::EventSinks<D> events(change, begun, ended);
-    Checkpoint checkpoint(this->workers().checkpoint);
+    Checkpoint checkpoint(change.workers.checkpoint);
     for (std::size_t begin = 0; begin < size; begin += boxes_at_once) {
       const std::size_t end = std::min(begin + boxes_at_once, size);
       for (const core::MovedBox<D>& box : moved_) {
@@ -42,9 +41,18 @@ class BruteForceTracker final : public PairTracker<D> {
       }
     }
     events.flush();
-    this->count(Statistics{.tests = std::uint64_t{moved_.size()} * size, .references = size});
+    return Statistics{
+        .tests = std::uint64_t{moved_.size()} * size, .references = size, .hits = events.candidates()};
   }
 
+  std::size_t bytes() const noexcept override {
+    std::size_t bytes = ids_.capacity() * sizeof(BoxId) + moved_.capacity() * sizeof(core::MovedBox<D>);
+    for (int axis = 0; axis < D; ++axis)
+      bytes += (min_[axis].capacity() + max_[axis].capacity()) * sizeof(float);
+    return bytes;
+  }
+
+ private:
   /// Makes the arrays as long as the frame; new places are absent.
   void resize(std::size_t size) {
     const std::size_t known = std::min(ids_.size(), size);
@@ -71,14 +79,6 @@ class BruteForceTracker final : public PairTracker<D> {
     }
   }
 
-  std::size_t algorithm_bytes() const noexcept override {
-    if constexpr (core::is_lean) return 0;
-    std::size_t bytes = ids_.capacity() * sizeof(BoxId) + moved_.capacity() * sizeof(core::MovedBox<D>);
-    for (int axis = 0; axis < D; ++axis)
-      bytes += (min_[axis].capacity() + max_[axis].capacity()) * sizeof(float);
-    return bytes;
-  }
-
   std::array<std::vector<float>, D> min_;
   std::array<std::vector<float>, D> max_;
   std::vector<BoxId> ids_;
@@ -89,11 +89,11 @@ class BruteForceTracker final : public PairTracker<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_brute_force_tracker() {
-  return std::make_unique<BruteForceTracker<D>>();
+std::unique_ptr<Follower<D>> make_brute_force_follower() {
+  return std::make_unique<BruteForceFollower<D>>();
 }
 
-template std::unique_ptr<PairTracker<2>> make_brute_force_tracker();
-template std::unique_ptr<PairTracker<3>> make_brute_force_tracker();
+template std::unique_ptr<Follower<2>> make_brute_force_follower();
+template std::unique_ptr<Follower<3>> make_brute_force_follower();
 
 }  // namespace broadside::algorithm

@@ -1,9 +1,9 @@
-// The tracker of sweep and prune: boxes stay in order along an axis, and movers change places.
+// SweepAndPruneFollower: boxes stay in order along an axis, and movers change places.
 //
 // Section VI-C of the paper, in the fastest of its ways: a mover is compared with the boxes that
 // touch its old or its new box on the axis, and then put into its new place by binary search, so that only
 // the boxes between its two places make way.
-#include "algorithms/sweep_and_prune/tracker.hpp"
+#include "algorithms/sweep_and_prune/sweep_and_prune_follower.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,17 +23,16 @@ constexpr std::uint64_t tests_between_looks = 1'000'000;
 constexpr std::uint64_t tests_of_a_box_between_looks = 64;
 
 template <int D>
-class SweepAndPruneTracker final : public PairTracker<D> {
+class SweepAndPruneFollower final : public Follower<D> {
  public:
-  explicit SweepAndPruneTracker(int axis) : axis_(axis) {}
+  explicit SweepAndPruneFollower(int axis) : axis_(axis) {}
 
- private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || has_better_axis_) start(change);
     moved_.clear();
     core::append_moved(change, change.changed, moved_);
     core::EventSinks<D> events(change, begun, ended);
-    Checkpoint checkpoint(this->workers().checkpoint);
+    Checkpoint checkpoint(change.workers.checkpoint);
     std::uint64_t tests = 0;
     bool comes_or_goes = false;
     for (core::MovedBox<D>& box : moved_) {
@@ -60,10 +59,16 @@ class SweepAndPruneTracker final : public PairTracker<D> {
       checkpoint.count(compared);
     }
     events.flush();
-    this->count(Statistics{.tests = tests, .references = order_.size()});
     compare_axes(change, tests);
+    return Statistics{.tests = tests, .references = order_.size(), .hits = events.candidates()};
   }
 
+  std::size_t bytes() const noexcept override {
+    return order_.bytes() + moved_.capacity() * sizeof(core::MovedBox<D>) +
+           (entries_.capacity() + merged_.capacity() + coming_.capacity()) * sizeof(SweepEntry);
+  }
+
+ private:
   /// Axes in the sweep's order.
   Box<D> turned(const Box<D>& box) const {
     Box<D> turned;
@@ -138,11 +143,6 @@ class SweepAndPruneTracker final : public PairTracker<D> {
     has_better_axis_ = 2 * sample_[best_axes()[0]].overlap < sample_[axes_[0]].overlap;
   }
 
-  std::size_t algorithm_bytes() const noexcept override {
-    return order_.bytes() + moved_.capacity() * sizeof(core::MovedBox<D>) +
-           (entries_.capacity() + merged_.capacity() + coming_.capacity()) * sizeof(SweepEntry);
-  }
-
   int axis_;  // -1: to be chosen
 
   std::array<int, D> axes_{};
@@ -160,11 +160,11 @@ class SweepAndPruneTracker final : public PairTracker<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracker(int axis) {
-  return std::make_unique<SweepAndPruneTracker<D>>(axis);
+std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(int axis) {
+  return std::make_unique<SweepAndPruneFollower<D>>(axis);
 }
 
-template std::unique_ptr<PairTracker<2>> make_sweep_and_prune_tracker(int);
-template std::unique_ptr<PairTracker<3>> make_sweep_and_prune_tracker(int);
+template std::unique_ptr<Follower<2>> make_sweep_and_prune_follower(int);
+template std::unique_ptr<Follower<3>> make_sweep_and_prune_follower(int);
 
 }  // namespace broadside::algorithm

@@ -1,47 +1,44 @@
-// The grid's tracker: moves boxes from cell to cell and searches for what the moved ones overlap.
+// GridFollower: moves boxes from cell to cell and searches for what the moved ones overlap.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "broadside/tracker.hpp"
+#include "broadside/follower.hpp"
 
 #include "algorithms/grid/cells.hpp"
 #include "core/moved_box.hpp"
 #include "core/parallel.hpp"
-#include "interface/candidate_tracker.hpp"
 
 namespace broadside::algorithm {
 
 /// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
 /// longer suit the boxes, and their searches have cost that much more than usual.
 template <int D>
-class GridTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
+class GridFollower final : public Follower<D> {
  public:
-  explicit GridTracker(std::optional<double> cell) : cells_(cell) {}
+  explicit GridFollower(std::optional<double> cell) : cells_(cell) {}
 
-  core::CandidateTracker<D>* candidate_tracker() override { return this; }
-  Statistics candidates(const Change<D>& change, PairSink& pairs) override;
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override;
+  std::size_t bytes() const noexcept override;
 
  private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override;
-  std::size_t algorithm_bytes() const noexcept override;
-
   /// What each of several threads moves and finds.
   struct Part {
     std::vector<core::MovedBox<D>> boxes;
     std::vector<Pair> begun;
     std::vector<Pair> ended;
     core::ChangeWork work;
+    std::uint64_t candidates = 0;  // pairs looked at in both frames
   };
 
-  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair);
   void settle(const Change<D>& change);
-  void move(const Change<D>& change, std::span<const BoxId> ids, bool every_pair);
-  void search(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair);
+  void move(const Change<D>& change, std::span<const BoxId> ids);
+  void search(const Change<D>& change, PairSink& begun, PairSink& ended);
   bool needs_rebuild(const Change<D>& change) const;
   void build(const Change<D>& change);
   void weigh(const core::ChangeWork& work, std::size_t queries);
@@ -59,5 +56,9 @@ class GridTracker final : public PairTracker<D>, public core::CandidateTracker<D
   std::uint64_t first_queries_ = 0;
   double excess_ = 0;  // blocks looked at beyond what is usual
 };
+
+/// With cells of this size, or of sizes that suit the boxes.
+template <int D>
+std::unique_ptr<Follower<D>> make_grid_follower(std::optional<double> cell);
 
 }  // namespace broadside::algorithm

@@ -1,21 +1,17 @@
-// A dynamic bounding volume hierarchy as a tracker: boxes that moved are looked up in it and moved, and some
-// that left the bounds of their leaf are inserted anew.
+// BvhFollower: boxes that moved are looked up in a dynamic bounding volume hierarchy and moved, and some that
+// left the bounds of their leaf are inserted anew.
 //
 // Boxes move one after the other: each is compared with all others as these stand at its turn. So a pair of
 // boxes that both moved may be seen to begin and to end again; only such pairs are tested twice. When the
 // boxes that moved are compared with far more others than after the last build, the tree is built anew.
-#include "algorithms/bvh/tracker.hpp"
+#include "algorithms/bvh/bvh_follower.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
-
 #include "algorithms/bvh/index.hpp"
-#include "interface/candidate_tracker.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/bvh_follow.hpp"
 
@@ -33,24 +29,23 @@ constexpr std::uint64_t movers_to_judge = 512;
 /// Boxes that are moved in one call of the kernel, so that they stay in the cache.
 constexpr std::size_t moves_at_once = 2048;
 
-/// Takes the pairs that begin, or end, at one box's turn. Where the caller judges `every_pair`, all are
-/// written to `begun` as they are found.
+/// Takes the pairs that begin, or end, at one box's turn. Where the change wants candidates, all are written
+/// to `begun` as they are found.
 template <int D>
-class Toggled final : public PairSink {
+class ToggleSink final : public PairSink {
  public:
-  Toggled(const Change<D>& change, bool begins, PairSink& begun, PairSink& ended, bool every_pair)
+  ToggleSink(const Change<D>& change, bool begins, PairSink& begun, PairSink& ended)
       : change_(change),
         is_exact_(change.filters_now.empty()),
-        every_pair_(every_pair),
         begins_(begins),
         begun_(begun),
         ended_(ended) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    if (every_pair_) return begun_.put(pairs);
+    if (change_.wants_candidates) return begun_.put(pairs);
     for (const Pair pair : pairs) {
-      if (is_exact_ && (change_.flags[index(pair.first)] & change_.flags[index(pair.second)]) == 0)
+      if (is_exact_ && (change_.flags[pair.first] & change_.flags[pair.second]) == 0)
         (begins_ ? begun_ : ended_).add(pair.first, pair.second);
       else
         change_.report(pair.first, pair.second, begun_, ended_);
@@ -59,41 +54,25 @@ class Toggled final : public PairSink {
 
   const Change<D>& change_;
   bool is_exact_;
-  bool every_pair_;
   bool begins_;
   PairSink& begun_;
   PairSink& ended_;
 };
 
 template <int D>
-class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
+class BvhFollower final : public Follower<D> {
  public:
-  core::CandidateTracker<D>* candidate_tracker() override { return this; }
-  Statistics candidates(const Change<D>& change, PairSink& pairs) override {
-    return follow(change, pairs, pairs, true);
-  }
-
- private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
-    this->count(follow(change, begun, ended, false));
-    // The caller's frame may have dropped its filters, and places at its end with theirs.
-    const bool has_filters = change.frame != nullptr && !change.frame->filters.empty();
-    index_.take_filters(has_filters ? change.filters_now.first(change.frame->filters.size())
-                                    : std::span<const Filter>());
-  }
-
-  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || needs_rebuild(change)) build(change);
-    Toggled<D> begins(change, true, begun, ended, every_pair);
-    Toggled<D> ends(change, false, begun, ended, every_pair);
-    Checkpoint checkpoint(this->workers().checkpoint);
+    ToggleSink<D> begins(change, true, begun, ended);
+    ToggleSink<D> ends(change, false, begun, ended);
+    Checkpoint checkpoint(change.workers.checkpoint);
     std::uint64_t tests = 0;
     std::size_t movers = 0;
     for (std::size_t at = 0; at < change.changed.size(); at += moves_at_once) {
       moved_.clear();
-      core::append_moved(change,
-                         change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)),
-                         moved_, every_pair);
+      core::append_moved(
+          change, change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)), moved_);
       if (moved_.empty()) continue;
       insert_arrivals();
       calls_for_.resize(std::max(calls_for_.size(), moved_.size()));
@@ -107,16 +86,26 @@ class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D>
     begins.flush();
     ends.flush();
     judge(tests, movers);
-    return {.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
+    // The state's own filters, which stay until the next frame.
+    index_.take_filters(change.filters_now);
+    return Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
   }
 
+  const BoxIndex<D, float>* index() const noexcept override { return &index_; }
+
+  std::size_t bytes() const noexcept override {
+    return index_.bytes() + moved_.capacity() * sizeof(kernels::MovedBox<D>) +
+           packed_.capacity() * sizeof(Box<D>) + calls_for_.capacity();
+  }
+
+ private:
   /// Builds the tree anew from the boxes as they were, with new ones where they are now.
   void build(const Change<D>& change) {
     packed_.assign(change.before.begin(), change.before.end());
     for (const BoxId id : change.changed) {
-      if (!is_present(packed_[index(id)])) packed_[index(id)] = change.now[index(id)];
+      if (!is_present(packed_[id])) packed_[id] = change.now[id];
     }
-    tree_.build(packed_, this->workers());
+    tree_.build(packed_, change.workers);
     judged_tests_ = judged_movers_ = usual_tests_ = usual_movers_ = moves_ = 0;
     is_worse_ = false;
   }
@@ -165,18 +154,10 @@ class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D>
   bool needs_rebuild(const Change<D>& change) const {
     std::size_t arrivals = 0;
     for (const BoxId id : change.changed)
-      arrivals += static_cast<std::size_t>(is_present(change.now[index(id)]) &&
-                                           !is_present(change.before[index(id)]));
+      arrivals += static_cast<std::size_t>(is_present(change.now[id]) && !is_present(change.before[id]));
     if (arrivals > tree_.size() / 4 + 16) return true;
     return moves_ >= tree_.size() &&
            (is_worse_ || tree_.nodes() * kernels::fan_out > 4 * tree_.size() + 4096);
-  }
-
-  const BoxIndex<D, float>* algorithm_index() const noexcept override { return &index_; }
-
-  std::size_t algorithm_bytes() const noexcept override {
-    return index_.bytes() + moved_.capacity() * sizeof(kernels::MovedBox<D>) +
-           packed_.capacity() * sizeof(Box<D>) + calls_for_.capacity();
   }
 
   BvhIndex<D, float> index_;
@@ -197,11 +178,11 @@ class BvhTracker final : public PairTracker<D>, public core::CandidateTracker<D>
 }  // namespace
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_bvh_tracker() {
-  return std::make_unique<BvhTracker<D>>();
+std::unique_ptr<Follower<D>> make_bvh_follower() {
+  return std::make_unique<BvhFollower<D>>();
 }
 
-template std::unique_ptr<PairTracker<2>> make_bvh_tracker();
-template std::unique_ptr<PairTracker<3>> make_bvh_tracker();
+template std::unique_ptr<Follower<2>> make_bvh_follower();
+template std::unique_ptr<Follower<3>> make_bvh_follower();
 
 }  // namespace broadside::algorithm

@@ -1,4 +1,4 @@
-// The tracker of the quadtree, in 3D an octree: it stays from frame to frame.
+// QuadtreeFollower: the quadtree, in 3D an octree, stays from frame to frame.
 //
 // Sections VI-A and VI-D of the paper, in the fastest of their ways: a box that moves is looked for relative
 // to where it was, from its node up through parents until a node contains its old and its new place, and from
@@ -7,7 +7,7 @@
 //
 // A frame has three parts. Movers are inserted wherever they go, as bounds of the old and the new box; then
 // all of them are compared; then they leave where they were. So two movers find each other.
-#include "algorithms/quadtree/tracker.hpp"
+#include "algorithms/quadtree/quadtree_follower.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "algorithms/quadtree/nodes.hpp"
-#include "interface/candidate_tracker.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
@@ -25,15 +24,43 @@ namespace broadside::algorithm {
 namespace {
 
 template <int D>
-class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTracker<D> {
+class QuadtreeFollower final : public Follower<D> {
   using Nodes = QuadtreeNodes<D>;
 
  public:
-  explicit QuadtreeTracker(std::uint32_t capacity) : tree_(capacity) {}
+  explicit QuadtreeFollower(std::uint32_t capacity) : tree_(capacity) {}
 
-  core::CandidateTracker<D>* candidate_tracker() override { return this; }
-  Statistics candidates(const Change<D>& change, PairSink& pairs) override {
-    return follow(change, pairs, pairs, true);
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    movers_.clear();
+    core::append_moved(change, change.changed, movers_);
+    const std::size_t boxes = change.now.size();
+    moved_since_build_ += movers_.size();
+    if (change.rebuild || (tree_.needs_rebuild() && moved_since_build_ > boxes)) {
+      tree_.build(change.before);
+      moved_since_build_ = 0;
+    }
+    tree_.resize(boxes);
+    Checkpoint checkpoint(change.workers.checkpoint);
+    checkpoint_ = &checkpoint;
+    core::EventSinks<D> events(change, begun, ended, &checkpoint);
+    std::uint64_t tests = 0;
+    // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
+    // once would be compared with each other.
+    constexpr std::uint32_t first_few = 256;
+    const auto count = static_cast<std::uint32_t>(movers_.size());
+    std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
+    for (std::uint32_t begin = 0; begin < end; begin = std::exchange(end, std::min(2 * end, count)))
+      tests += take(begin, end, events, change);
+    return Statistics{.tests = tests,
+                      .references = tree_.references(),
+                      .cells = tree_.node_count(),
+                      .hits = events.candidates()};
+  }
+
+  std::size_t bytes() const noexcept override {
+    return tree_.bytes() + movers_.capacity() * sizeof(core::MovedBox<D>) +
+           entries_.capacity() * sizeof(Entry) + (looks_.capacity() + above_.capacity()) * sizeof(Look) +
+           tasks_.capacity() * sizeof(kernels::BlockTask);
   }
 
  private:
@@ -58,34 +85,6 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
     std::uint32_t mover;
     std::uint32_t stays;
   };
-
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
-    this->count(follow(change, begun, ended, false));
-  }
-
-  Statistics follow(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
-    movers_.clear();
-    core::append_moved(change, change.changed, movers_, every_pair);
-    const std::size_t boxes = change.now.size();
-    moved_since_build_ += movers_.size();
-    if (change.rebuild || (tree_.needs_rebuild() && moved_since_build_ > boxes)) {
-      tree_.build(change.before);
-      moved_since_build_ = 0;
-    }
-    tree_.resize(boxes);
-    Checkpoint checkpoint(this->workers().checkpoint);
-    checkpoint_ = &checkpoint;
-    core::EventSinks<D> events(change, begun, ended, every_pair, &checkpoint);
-    std::uint64_t tests = 0;
-    // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
-    // once would be compared with each other.
-    constexpr std::uint32_t first_few = 256;
-    const auto count = static_cast<std::uint32_t>(movers_.size());
-    std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
-    for (std::uint32_t begin = 0; begin < end; begin = std::exchange(end, std::min(2 * end, count)))
-      tests += take(begin, end, events, change);
-    return {.tests = tests, .references = tree_.references(), .cells = tree_.node_count()};
-  }
 
   /// Takes some of the movers, by their numbers. Returns how many boxes they were compared with.
   std::uint64_t take(std::uint32_t begin, std::uint32_t end, core::EventSinks<D>& events,
@@ -199,12 +198,6 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
     }
   }
 
-  std::size_t algorithm_bytes() const noexcept override {
-    return tree_.bytes() + movers_.capacity() * sizeof(core::MovedBox<D>) +
-           entries_.capacity() * sizeof(Entry) + (looks_.capacity() + above_.capacity()) * sizeof(Look) +
-           tasks_.capacity() * sizeof(kernels::BlockTask);
-  }
-
   QuadtreeNodes<D> tree_;
   std::size_t moved_since_build_ = 0;
   std::vector<core::MovedBox<D>> movers_;
@@ -222,11 +215,11 @@ class QuadtreeTracker final : public PairTracker<D>, public core::CandidateTrack
 }  // namespace
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_quadtree_tracker(std::uint32_t capacity) {
-  return std::make_unique<QuadtreeTracker<D>>(capacity);
+std::unique_ptr<Follower<D>> make_quadtree_follower(std::uint32_t capacity) {
+  return std::make_unique<QuadtreeFollower<D>>(capacity);
 }
 
-template std::unique_ptr<PairTracker<2>> make_quadtree_tracker(std::uint32_t);
-template std::unique_ptr<PairTracker<3>> make_quadtree_tracker(std::uint32_t);
+template std::unique_ptr<Follower<2>> make_quadtree_follower(std::uint32_t);
+template std::unique_ptr<Follower<3>> make_quadtree_follower(std::uint32_t);
 
 }  // namespace broadside::algorithm

@@ -1,11 +1,11 @@
-// The grid's tracker.
+// GridFollower.
 //
 // Boxes are taken batch after batch: each is moved to its new cell, its entry made to cover where it was and
 // where it is, and then compared with what is near. So of two that move, the later one sees all of the
 // earlier one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and
 // only a difference is written. Several threads share a batch: first they move its boxes, then they search
 // for them, so that no entry changes while it is read.
-#include "algorithms/grid/tracker.hpp"
+#include "algorithms/grid/grid_follower.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -13,7 +13,6 @@
 #include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
-#include "core/lean.hpp"
 #include "interface/event_sinks.hpp"
 #include "interface/moved_boxes.hpp"
 
@@ -48,42 +47,34 @@ void prefetch_ahead(const HierarchicalCells<D>& cells, const Boxes& boxes, std::
 }  // namespace
 
 template <int D>
-void GridTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  this->count(follow(change, begun, ended, false));
-}
-
-template <int D>
-Statistics GridTracker<D>::candidates(const Change<D>& change, PairSink& pairs) {
-  return follow(change, pairs, pairs, true);
-}
-
-template <int D>
-Statistics GridTracker<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended,
-                                  bool every_pair) {
+std::optional<Statistics> GridFollower<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended) {
   if (change.rebuild || needs_rebuild(change)) build(change);
   cells_.reserve(change.now.size());
-  parallel_.start(this->workers(), change.changed.size() * boxes_a_mover);
+  parallel_.start(change.workers, change.changed.size() * boxes_a_mover);
   if (parts_.size() < parallel_.range_count()) parts_.resize(parallel_.range_count());
   settle(change);
   core::ChangeWork work;
+  std::uint64_t candidates = 0;
   std::size_t queries = 0;
   for (std::size_t at = 0; at < change.changed.size(); at += batch) {
-    move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)), every_pair);
-    search(change, begun, ended, every_pair);
+    move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)));
+    search(change, begun, ended);
     for (const Part& part : parts()) {
       work += part.work;
+      candidates += part.candidates;
       queries += part.boxes.size();
     }
   }
   cells_.drop_stale();
   std::swap(moved_, moving_);
   weigh(work, queries);
-  return {.tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells()};
+  return Statistics{
+      .tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells(), .hits = candidates};
 }
 
 /// Sets the boxes that moved before and do not now to where they are at rest.
 template <int D>
-void GridTracker<D>::settle(const Change<D>& change) {
+void GridFollower<D>::settle(const Change<D>& change) {
   parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const BoxId id = moved_[i];
@@ -98,11 +89,11 @@ void GridTracker<D>::settle(const Change<D>& change) {
 /// Lists these boxes in parts_ and moves them, each to its cell: several threads those that stay in theirs,
 /// and then one the others.
 template <int D>
-void GridTracker<D>::move(const Change<D>& change, std::span<const BoxId> ids, bool every_pair) {
+void GridFollower<D>::move(const Change<D>& change, std::span<const BoxId> ids) {
   parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
     std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
     boxes.clear();
-    core::append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes, every_pair);
+    core::append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes);
     if (parallel_.workers() == 1) return;
     for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
   });
@@ -118,12 +109,13 @@ void GridTracker<D>::move(const Change<D>& change, std::span<const BoxId> ids, b
 
 /// Finds what the boxes in parts_ meet.
 template <int D>
-void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended, bool every_pair) {
+void GridFollower<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended) {
   const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
-    core::EventSinks<D> events(change, its_begun, its_ended, every_pair, parallel_.checkpoint(worker));
+    core::EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
     part.work =
         kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
     events.flush();
+    part.candidates = events.candidates();
   };
   if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
   // A sink with a limit must count while threads search, not after they have filled their lists.
@@ -149,7 +141,7 @@ void GridTracker<D>::search(const Change<D>& change, PairSink& begun, PairSink& 
 
 /// Whether the cells were laid out for far more or fewer boxes than there are, or are found to be slow.
 template <int D>
-bool GridTracker<D>::needs_rebuild(const Change<D>& change) const {
+bool GridFollower<D>::needs_rebuild(const Change<D>& change) const {
   std::size_t boxes = cells_.boxes();
   // Arrivals and departures are counted only where enough boxes changed to matter.
   if (change.changed.size() > boxes / 4) {
@@ -165,7 +157,7 @@ bool GridTracker<D>::needs_rebuild(const Change<D>& change) const {
 }
 
 template <int D>
-void GridTracker<D>::build(const Change<D>& change) {
+void GridFollower<D>::build(const Change<D>& change) {
   cells_.build(change.before, change.now);
   built_for_ = static_cast<std::size_t>(std::ranges::count_if(change.now, is_present<D, float>));
   moved_.clear();
@@ -175,7 +167,7 @@ void GridTracker<D>::build(const Change<D>& change) {
 }
 
 template <int D>
-void GridTracker<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
+void GridFollower<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
   const auto blocks = static_cast<double>(work.blocks);
   const auto count = static_cast<double>(queries);
   if (first_queries_ < telling_queries) {
@@ -188,8 +180,7 @@ void GridTracker<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
 }
 
 template <int D>
-std::size_t GridTracker<D>::algorithm_bytes() const noexcept {
-  if constexpr (core::is_lean) return 0;
+std::size_t GridFollower<D>::bytes() const noexcept {
   std::size_t bytes = cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId);
   for (const Part& part : parts_)
     bytes += part.boxes.capacity() * sizeof(core::MovedBox<D>) +
@@ -197,7 +188,14 @@ std::size_t GridTracker<D>::algorithm_bytes() const noexcept {
   return bytes;
 }
 
-template class GridTracker<2>;
-template class GridTracker<3>;
+template <int D>
+std::unique_ptr<Follower<D>> make_grid_follower(std::optional<double> cell) {
+  return std::make_unique<GridFollower<D>>(cell);
+}
+
+template class GridFollower<2>;
+template class GridFollower<3>;
+template std::unique_ptr<Follower<2>> make_grid_follower(std::optional<double>);
+template std::unique_ptr<Follower<3>> make_grid_follower(std::optional<double>);
 
 }  // namespace broadside::algorithm

@@ -1,0 +1,13 @@
+// BruteForceFollower: compares each changed box with all others.
+#pragma once
+
+#include <memory>
+
+#include "broadside/follower.hpp"
+
+namespace broadside::algorithm {
+
+template <int D>
+std::unique_ptr<Follower<D>> make_brute_force_follower();
+
+}  // namespace broadside::algorithm

@@ -1,0 +1,13 @@
+// BvhFollower: follows boxes in a dynamic bounding volume hierarchy.
+#pragma once
+
+#include <memory>
+
+#include "broadside/follower.hpp"
+
+namespace broadside::algorithm {
+
+template <int D>
+std::unique_ptr<Follower<D>> make_bvh_follower();
+
+}  // namespace broadside::algorithm
