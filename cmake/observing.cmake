@@ -1,7 +1,7 @@
 # The sources of an observing build, which write down what searches compare: src/kernels/observed_tests.hpp. A program
 # compiles them for itself with BROADSIDE_OBSERVE; they stand before the libraries and take the place of theirs.
 set(broadside_observing_sources
-  ${PROJECT_SOURCE_DIR}/src/interface/finder.cpp
+  ${PROJECT_SOURCE_DIR}/src/find/search.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bvh_join.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/sweep.cpp
   ${PROJECT_SOURCE_DIR}/paper/listings/brute_force.cpp

@@ -126,11 +126,12 @@ struct Algorithm {
   MakeSearcher<3> searcher_3d{};
 
   /// The structures that follow boxes; empty where a Tracker finds all pairs anew in each frame. With the
-  /// tunable `update` a Tracker also finds anew, by `find_costs` and FollowCosts;
+  /// tunable `update` a Tracker also finds anew, by FindCosts and FollowCosts;
   /// without it, it always follows, by the first.
   detail::Vector<FollowerChoice<2>> followers_2d{};
   detail::Vector<FollowerChoice<3>> followers_3d{};
-  FindCosts find_costs{};
+  FindCosts find_costs_2d{};
+  FindCosts find_costs_3d{};
 
   /// What a search would lay over boxes, to be drawn: see debug/outline.hpp. Empty where there is nothing.
   MakeOutline<2> outline_2d{};
@@ -149,6 +150,33 @@ struct Algorithm {
 
   /// Whether it takes memory otherwise than through operator new, so that the lab cannot count it.
   bool own_allocator = false;
+
+  /// The same by dimension.
+  template <int D>
+  const MakeSearcher<D>& searcher() const noexcept {
+    if constexpr (D == 2)
+      return searcher_2d;
+    else
+      return searcher_3d;
+  }
+  template <int D>
+  std::span<const FollowerChoice<D>> followers() const noexcept {
+    if constexpr (D == 2)
+      return followers_2d;
+    else
+      return followers_3d;
+  }
+  template <int D>
+  const FindCosts& find_costs() const noexcept {
+    return D == 2 ? find_costs_2d : find_costs_3d;
+  }
+  template <int D>
+  const MakeOutline<D>& outline() const noexcept {
+    if constexpr (D == 2)
+      return outline_2d;
+    else
+      return outline_3d;
+  }
 
   /// Whether it does `dimension`.
   bool has_dimension(int dimension) const {

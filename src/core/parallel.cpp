@@ -107,15 +107,6 @@ Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexce
 
 }  // namespace
 
-Tunable threads_tunable() {
-  return {.name = "threads",
-          .summary = unless_lean("most threads of a search; 0: as many as there are"),
-          .standard = "1",
-          .type = Tunable::Type::integer,
-          .least = 0,
-          .most = 1024};
-}
-
 /// The exceptions of tasks that run at the same time: the first in the tasks' order is kept.
 class Parallel::Errors {
  public:

@@ -7,19 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "broadside/algorithm.hpp"
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "core/lean.hpp"
 #include "core/pair_blocks.hpp"
 
 namespace broadside::core {
-
-/// The tunable `threads`, which every algorithm has that uses several; make_finder() hands it to the finder.
-Tunable threads_tunable();
 
 /// A half-open range of indices.
 struct Range {
@@ -84,7 +79,7 @@ class Parallel {
   /// unless it can be cloned, then each worker fills a clone. Returns the sum of what was done.
   ///
   /// Keeps at most 64 MiB of pairs that wait for those before them. A worker that finds no room drops what it
-  /// found of its parts, and they are searched again: `search` must bear to be left by an exception of its
+  /// found of its parts, and they are searched again: `search` must be safe against exceptions of its
   /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {

@@ -18,6 +18,9 @@ inline constexpr FindCosts brute_force_finding = {.box = 40};
 inline constexpr FollowCosts brute_force_following = {
     .start = 1, .mover = 65, .mover_alone = 30, .test = 0.55, .further_test = 0.55};
 
+/// Up to this many boxes, comparing each mover with all others costs less than keeping cells.
+inline constexpr std::size_t boxes_for_brute_force = 320;
+
 /// Also what auto's own finding costs.
 template <int D>
 inline constexpr FindCosts grid_finding = {.box = D == 2 ? 40.0 : 65.0};

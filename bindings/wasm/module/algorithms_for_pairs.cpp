@@ -1,7 +1,11 @@
 // The algorithms of the smaller module, in place of those that CMake lists for the library: one for few
 // boxes, one for many.
-#include "algorithms/descriptions.hpp"
+#include "algorithms/registry.hpp"
 
 std::vector<broadside::Algorithm> broadside::algorithm::linked_algorithms() {
   return {brute_force(), grid()};
+}
+
+bool broadside::algorithm::is_linked(std::string_view name) noexcept {
+  return name == "brute_force" || name == "grid";
 }

@@ -6,33 +6,24 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
 #include "algorithms/auto/overlap_estimate.hpp"
-#include "algorithms/auto/segment_join.hpp"
+#include "algorithms/auto/segment_successor.hpp"
 #include "algorithms/auto/thresholds.hpp"
-#include "algorithms/descriptions.hpp"
-#include "core/dimensions.hpp"
+#include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/number_text.hpp"
-#include "core/parallel.hpp"
 #include "core/sample.hpp"
-#include "doubles/double_finder.hpp"
-#include "doubles/double_follower.hpp"
+#include "core/tunables.hpp"
 #include "interface/follow_costs.hpp"
-#include "interface/last_test.hpp"
-#include "interface/margin_tracker.hpp"
-#include "interface/yielding.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -50,13 +41,37 @@ const Algorithm& algorithm_of(Choice choice) {
   return chosen != nullptr ? *chosen : *find_algorithm("grid");
 }
 
+/// The settings of a choice: the default ones, but that a sweep uses one axis, since one in stripes cannot
+/// give up.
+Settings settings_of(const Algorithm& algorithm) {
+  Spec spec{algorithm.name, {}};
+  if (algorithm.name == "sweep_and_prune") spec.values.emplace_back("axes", "1");
+  return {spec, algorithm.tunables};
+}
+
+/// Chooses among searchers, which it keeps.
 template <int D>
-class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTest<D> {
+class AutoSearcher final : public Searcher<D> {
   using Limits = AutoThresholds<D>;
 
  public:
-  Outlined<D>* outlined() noexcept override { return this; }
-  core::LastTest<D>* last_test() noexcept override { return this; }
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    choose(input.boxes);
+    auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
+    if (!chosen) {
+      const Algorithm& algorithm = algorithm_of(choice_);
+      chosen = algorithm.searcher<D>()(settings_of(algorithm));
+    }
+    SegmentSuccessor<D> successor(input, pairs, segments_);
+    const SearchInput<D> its_input{input.boxes, input.left_count, input.doubles, &successor, input.workers};
+    std::optional<Statistics> statistics = chosen->search(its_input, pairs);
+    has_handed_over_ = successor.work().has_value();
+    if (has_handed_over_) {
+      statistics->tests += successor.work()->tests;
+      statistics->references += successor.work()->references;
+    }
+    return statistics;
+  }
 
   std::string explanation() const override {
     if constexpr (core::is_lean) return {};
@@ -66,6 +81,16 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
           "; it gave up, since its tests were far more than boxes and pairs account for, and a segment tree "
           "found what was left";
     return text;
+  }
+
+  Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers& workers) {
+    choose(boxes);
+    const Algorithm& algorithm = algorithm_of(choice_);
+    Outline<D> outline;
+    if (const MakeOutline<D>& make = algorithm.outline<D>())
+      outline = make(boxes, workers, settings_of(algorithm));
+    outline.caption.insert(0, algorithm.name + (outline.caption.empty() ? "" : ": "));
+    return outline;
   }
 
  private:
@@ -98,50 +123,12 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
     return text;
   }
 
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    has_handed_over_ = false;
-    PairFinder<D>& finder = chosen_for(boxes);
-    finder.last_test()->set_doubles(this->doubles());
-    this->search_with(finder, boxes, pairs);
-    const core::Yielding<D>* const search = finder.yielding();
-    if (search == nullptr || !search->has_yielded()) return;
-    has_handed_over_ = true;
-    Statistics statistics = this->statistics().value_or(Statistics{});
-    if (!segments_) segments_ = std::make_unique<SegmentJoin<D>>();
-    core::LeftSink<D> left(*search, boxes, pairs);
-    Checkpoint checkpoint(this->workers().checkpoint);
-    const Statistics more = segments_->join(boxes, this->left_count(), this->doubles(), checkpoint, left);
-    left.flush();
-    statistics.tests += more.tests;
-    statistics.references += more.references;
-    this->count(statistics);
-  }
-
-  PairFinder<D>& chosen_for(std::span<const Box<D>> boxes) {
+  void choose(std::span<const Box<D>> boxes) {
     count_ = boxes.size();
-    choice_ = choose(boxes);
-    auto& finder = finders_[static_cast<std::size_t>(choice_)];
-    if (!finder) {
-      const Algorithm& algorithm = algorithm_of(choice_);
-      Spec spec{algorithm.name, {}};
-      // A sweep in stripes cannot give up, so ask for one axis.
-      if (algorithm.name == "sweep_and_prune") spec.values.emplace_back("axes", "1");
-      finder = make_finder<D>(algorithm, spec);
-      if (core::Yielding<D>* const search = finder->yielding()) search->let_yield(true);
-    }
-    return *finder;
+    choice_ = choice_for(boxes);
   }
 
-  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
-    if constexpr (core::is_lean) return {};
-    PairFinder<D>& chosen = chosen_for(boxes);
-    chosen.set_workers(this->workers());
-    Outline<D> outline = broadside::outline(chosen, boxes);
-    outline.caption.insert(0, algorithm_of(choice_).name + (outline.caption.empty() ? "" : ": "));
-    return outline;
-  }
-
-  Choice choose(std::span<const Box<D>> boxes) {
+  Choice choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return Choice::few;
     if (boxes.size() <= Limits::boxes_for_cells) return choose_by_estimate(boxes);
     sample_.take(boxes, Limits::most_compared);
@@ -200,7 +187,7 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
 
   core::OverlapEstimate<D> estimate_;
   core::Sample<D> sample_;
-  std::array<std::unique_ptr<PairFinder<D>>, chosen_algorithm.size()> finders_;
+  std::array<std::unique_ptr<Searcher<D>>, chosen_algorithm.size()> searchers_;  // null until chosen
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
   Choice choice_ = Choice::few;
   std::size_t count_ = 0;
@@ -211,44 +198,35 @@ class Auto final : public PairFinder<D>, public Outlined<D>, public core::LastTe
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_auto(const Settings&) {
-  return std::make_unique<Auto<D>>();
+std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
+  return std::make_unique<AutoSearcher<D>>();
 }
 
-/// What follows boxes in an algorithm's structure. Boxes of doubles are followed by their floats.
-template <int D, typename Real>
-std::unique_ptr<PairTracker<D, Real>> make_follower(std::string_view spec) {
-  if constexpr (std::is_same_v<Real, float>)
-    return make_tracker<D>(spec);
-  else
-    return std::make_unique<DoubleFollower<D>>(make_tracker<D>(spec));
-}
-
-/// Those that this build has. The later ones take over where the first makes too many tests.
-template <int D, typename Real>
-std::vector<core::Follower<D, Real>> followers() {
-  std::vector<core::Follower<D, Real>> followers = {
-      {"grid", [] { return make_follower<D, Real>("grid:update=follow"); }, core::grid_following<D>},
-      {"quadtree", [] { return make_follower<D, Real>("quadtree:update=follow"); },
-       core::quadtree_following_for_auto},
-      {"bvh", [] { return make_follower<D, Real>("bvh:update=follow"); }, core::bvh_following_for_auto},
+/// The follower of an algorithm with its default settings, at costs of its own.
+template <int D>
+FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, std::size_t max_boxes = 0) {
+  const auto make = [name](const Settings&) -> std::unique_ptr<Follower<D>> {
+    const Algorithm& algorithm = *find_algorithm(name);
+    return algorithm.followers<D>()[0].make(settings_of(algorithm));
   };
-  std::erase_if(followers, [](const auto& follower) { return find_algorithm(follower.name) == nullptr; });
+  return {std::string(name), make, costs, max_boxes};
+}
+
+/// The later ones take over where the grid's cells make too many tests. A build may lack some.
+template <int D>
+detail::Vector<FollowerChoice<D>> followers() {
+  detail::Vector<FollowerChoice<D>> followers = {
+      follower_of<D>("brute_force", core::brute_force_following, core::boxes_for_brute_force),
+      follower_of<D>("grid", core::grid_following<D>),
+      follower_of<D>("quadtree", core::quadtree_following_for_auto),
+      follower_of<D>("bvh", core::bvh_following_for_auto)};
+  std::erase_if(followers, [](const auto& follower) { return !is_linked(follower.name); });
   return followers;
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_auto_tracker(const Settings& settings) {
-  return core::adaptive_tracker<D, float>(core::update_of(settings), std::make_unique<Auto<D>>(),
-                                          core::grid_finding<D>, followers<D, float>(),
-                                          make_tracker<D>("brute_force"));
-}
-
-template <int D>
-std::unique_ptr<PairTracker<D, double>> make_auto_double_tracker(const Settings& settings) {
-  return core::adaptive_tracker<D, double>(
-      core::update_of(settings), std::make_unique<core::DoubleFinder<D>>(std::make_unique<Auto<D>>()),
-      core::grid_finding<D>, followers<D, double>());
+Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
+  return AutoSearcher<D>().lay_out(boxes, workers);
 }
 
 }  // namespace
@@ -260,12 +238,16 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame"),
       .source = core::unless_lean("Broadside's measurements"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .finder_2d = core::in_dimension<2>(make_auto<2>),
-      .finder_3d = core::in_dimension<3>(make_auto<3>),
-      .tracker_2d = core::in_dimension<2>(make_auto_tracker<2>),
-      .tracker_3d = core::in_dimension<3>(make_auto_tracker<3>),
-      .double_tracker_2d = core::is_lean ? nullptr : make_auto_double_tracker<2>,
-      .double_tracker_3d = core::is_lean ? nullptr : make_auto_double_tracker<3>,
+      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .find_costs_2d = core::grid_finding<2>,
+      .find_costs_3d = core::grid_finding<3>,
+      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .tests_doubles = true,
+      .gives_candidates = true,
   };
 }
 

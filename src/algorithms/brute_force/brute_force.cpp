@@ -2,17 +2,14 @@
 #include <algorithm>
 #include <memory>
 
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/algorithm.hpp"
 
-#include "algorithms/brute_force/tracker.hpp"
-#include "algorithms/descriptions.hpp"
-#include "core/dimensions.hpp"
+#include "algorithms/brute_force/brute_force_follower.hpp"
+#include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
-#include "interface/adaptive_tracker.hpp"
+#include "core/tunables.hpp"
 #include "interface/follow_costs.hpp"
-#include "interface/last_test.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::algorithm {
@@ -25,19 +22,17 @@ constexpr std::size_t tests_per_box = 128;
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>
-class BruteForce final : public PairFinder<D>, public core::LastTest<D> {
+class BruteForceSearcher final : public Searcher<D> {
  public:
-  core::LastTest<D>* last_test() noexcept override { return this; }
-
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    const std::size_t left = this->left_count();
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
+    const std::size_t left = input.left_count;
     gather(boxes, left, boxes.size(), run_);
     gather(boxes, 0, left, left_run_);
-    const kernels::Run<D> run = run_.view(this->doubles());
-    const kernels::Run<D> left_run = left_run_.view(this->doubles());
+    const kernels::Run<D> run = run_.view(input.doubles);
+    const kernels::Run<D> left_run = left_run_.view(input.doubles);
     const std::size_t rows = left == 0 ? run.size : left;
-    parallel_.start(this->workers(), rows * run.size / tests_per_box);
+    parallel_.start(input.workers, rows * run.size / tests_per_box);
     const auto compare = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * rows_at_once;
       const std::size_t end = std::min(some.end * rows_at_once, rows);
@@ -49,9 +44,10 @@ class BruteForce final : public PairFinder<D>, public core::LastTest<D> {
     };
     Statistics statistics = parallel_.search((rows + rows_at_once - 1) / rows_at_once, pairs, compare);
     statistics.references = boxes.size();
-    this->count(statistics);
+    return statistics;
   }
 
+ private:
   static void gather(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end,
                      kernels::RunBuffer<D>& run) {
     run.clear();
@@ -65,16 +61,14 @@ class BruteForce final : public PairFinder<D>, public core::LastTest<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_brute_force(const Settings&) {
-  return std::make_unique<BruteForce<D>>();
+std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
+  return std::make_unique<BruteForceSearcher<D>>();
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_brute_force_tracking(const Settings& settings) {
-  return std::make_unique<core::AdaptiveTracker<D>>(
-      core::update_of(settings), make_brute_force<D>(settings), core::brute_force_finding,
-      std::vector<core::Follower<D, float>>{
-          {"brute_force", make_brute_force_tracker<D>, core::brute_force_following}});
+detail::Vector<FollowerChoice<D>> followers() {
+  return {{"brute_force", [](const Settings&) { return make_brute_force_follower<D>(); },
+           core::brute_force_following}};
 }
 
 }  // namespace
@@ -85,10 +79,14 @@ Algorithm brute_force() {
       .summary = core::unless_lean("every box against every other, over a structure of arrays"),
       .source = core::unless_lean("paper.md, sections II and VI-A"),
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .finder_2d = core::in_dimension<2>(make_brute_force<2>),
-      .finder_3d = core::in_dimension<3>(make_brute_force<3>),
-      .tracker_2d = core::in_dimension<2>(make_brute_force_tracking<2>),
-      .tracker_3d = core::in_dimension<3>(make_brute_force_tracking<3>),
+      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .find_costs_2d = core::brute_force_finding,
+      .find_costs_3d = core::brute_force_finding,
+      .tests_doubles = true,
+      .gives_candidates = true,
   };
 }
 

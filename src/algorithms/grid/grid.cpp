@@ -16,25 +16,21 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
-#include "algorithms/descriptions.hpp"
+#include "algorithms/grid/grid_follower.hpp"
 #include "algorithms/grid/layout.hpp"
 #include "algorithms/grid/sweep.hpp"
-#include "algorithms/grid/tracker.hpp"
-#include "core/dimensions.hpp"
+#include "algorithms/registry.hpp"
 #include "core/large_array.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
+#include "core/tunables.hpp"
 #include "interface/follow_costs.hpp"
-#include "interface/last_test.hpp"
-#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
-#include "interface/yielding.hpp"
 #include "kernels/run.hpp"
 #include "kernels/waste.hpp"
 
@@ -42,70 +38,45 @@ namespace broadside::algorithm {
 namespace {
 
 template <int D>
-class Grid final : public PairFinder<D>,
-                   public Outlined<D>,
-                   public core::Yielding<D>,
-                   public core::LastTest<D> {
+class GridSearcher final : public Searcher<D> {
  public:
-  Outlined<D>* outlined() noexcept override { return this; }
-  core::Yielding<D>* yielding() noexcept override { return this; }
-  core::LastTest<D>* last_test() noexcept override { return this; }
+  explicit GridSearcher(std::optional<double> cell) : cell_(cell) {}
 
-  explicit Grid(std::optional<double> cell) : cell_(cell) {}
-
-  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
-  bool is_left(const Box<D>& a, BoxId, const Box<D>& b, BoxId) const override {
-    Box<D> corner = a;
-    for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
-    const std::size_t row = layout_.row_of(corner);
-    const std::size_t cell = row * layout_.row_length() + layout_.column_of(corner);
-    return cell >= swept_to_[layout_.slab_of(row)];
-  }
-
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    parallel_.start(this->workers(), boxes.size());
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::size_t boxes = input.boxes.size();
+    parallel_.start(input.workers, boxes);
     sweeps_.resize(std::max(sweeps_.size(), parallel_.workers()));
-    choose_cells(boxes);
-    count_boxes(boxes);
-    scatter(boxes);
+    choose_cells(input.boxes);
+    count_boxes(input.boxes);
+    scatter(input);
     swept_to_.resize(layout_.slabs());
+    const bool may_give_up = input.successor != nullptr;
     const auto sweep = [&](core::Range slabs, std::size_t worker, PairSink& sink) {
       Statistics statistics;
       for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const BoxesByCell<D> cells{entries_, begin_, this->doubles(), parallel_.checkpoint(worker)};
+        const BoxesByCell<D> cells{entries_, begin_, input.doubles, parallel_.checkpoint(worker)};
+        const std::uint64_t max_tests =
+            may_give_up ? max_tests_of(slab, boxes) : std::numeric_limits<std::uint64_t>::max();
         const Statistics of_slab =
-            sweeps_[worker].sweep(layout_, swept_range(), cells, slab, most_tests(slab, boxes.size()), sink);
+            sweeps_[worker].sweep(layout_, swept_range(), cells, slab, max_tests, sink);
         swept_to_[slab] = sweeps_[worker].swept_to();
         statistics.tests += of_slab.tests;
         statistics.references += of_slab.references;
       }
       return statistics;
     };
-    this->count(parallel_.search(layout_.slabs(), pairs, sweep));
-    bool has_yielded = false;
+    const Statistics statistics = parallel_.search(layout_.slabs(), pairs, sweep);
+    bool gave_up = false;
     for (std::size_t slab = 0; slab < layout_.slabs(); ++slab)
-      has_yielded |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
-    this->set_yielded(has_yielded);
+      gave_up |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
+    if (gave_up) {
+      input.successor->finish(
+          [this](const Box<D>& a, BoxId, const Box<D>& b, BoxId) { return is_left(a, b); });
+    }
+    return statistics;
   }
 
-  /// The slab's share of the tests for all boxes, by the boxes inserted into it.
-  std::uint64_t most_tests(std::size_t slab, std::size_t boxes) const {
-    if (!this->may_yield()) return std::numeric_limits<std::uint64_t>::max();
-    const std::size_t length = layout_.row_length();
-    const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
-                                              begin_[layout_.slab_begin(slab) * length]);
-    const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
-    return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
-  }
-
-  void choose_cells(std::span<const Box<D>> boxes) {
-    sample_.take(boxes);
-    layout_.choose(sample_, boxes.size(), cell_);
-  }
-
-  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
-    if constexpr (core::is_lean) return {};
+  Outline<D> lay_out(std::span<const Box<D>> boxes) {
     choose_cells(boxes);
     const std::array<int, D>& axes = layout_.axes();
     Outline<D> outline;
@@ -133,6 +104,30 @@ class Grid final : public PairFinder<D>,
     }
     outline.caption = caption();
     return outline;
+  }
+
+ private:
+  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
+  bool is_left(const Box<D>& a, const Box<D>& b) const {
+    Box<D> corner = a;
+    for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
+    const std::size_t row = layout_.row_of(corner);
+    const std::size_t cell = row * layout_.row_length() + layout_.column_of(corner);
+    return cell >= swept_to_[layout_.slab_of(row)];
+  }
+
+  /// The slab's share of the tests for all boxes, by the boxes inserted into it.
+  std::uint64_t max_tests_of(std::size_t slab, std::size_t boxes) const {
+    const std::size_t length = layout_.row_length();
+    const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
+                                              begin_[layout_.slab_begin(slab) * length]);
+    const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
+    return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
+  }
+
+  void choose_cells(std::span<const Box<D>> boxes) {
+    sample_.take(boxes);
+    layout_.choose(sample_, boxes.size(), cell_);
   }
 
   /// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
@@ -207,7 +202,8 @@ class Grid final : public PairFinder<D>,
 
   /// Copies the boxes to the cells that were counted. It does not compute the cells again, because another
   /// thread may have changed the caller's array since.
-  void scatter(std::span<const Box<D>> boxes) {
+  void scatter(const SearchInput<D>& input) {
+    const std::span<const Box<D>> boxes = input.boxes;
     core::renew(entries_, begin_.back());
     parallel_.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
       std::uint64_t* const next = next_.data() + number * layout_.cells();
@@ -215,7 +211,7 @@ class Grid final : public PairFinder<D>,
       for (std::size_t i = range.begin; i < range.end; ++i) {
         const Box<D>& box = boxes[i];
         const auto id = static_cast<BoxId>(i);
-        const std::uint32_t side = kernels::side_bit(id, this->left_count());
+        const std::uint32_t side = kernels::side_bit(id, input.left_count);
         for_each_place(places_[i], [&](std::size_t cell, std::uint32_t dedup_mask) {
           entries[next[cell]++] = {box, id, side | dedup_mask};
         });
@@ -242,17 +238,19 @@ std::optional<double> cell_edge(const Settings& settings) {
 }
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_grid(const Settings& settings) {
-  return std::make_unique<Grid<D>>(cell_edge(settings));
+std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+  return std::make_unique<GridSearcher<D>>(cell_edge(settings));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_grid_tracking(const Settings& settings) {
-  const std::optional<double> cell = cell_edge(settings);
-  return core::adaptive_tracker<D, float>(
-      core::update_of(settings), make_grid<D>(settings), core::grid_finding<D>,
-      std::vector<core::Follower<D, float>>{
-          {"grid", [cell] { return std::make_unique<GridTracker<D>>(cell); }, core::grid_following<D>}});
+detail::Vector<FollowerChoice<D>> followers() {
+  return {{"grid", [](const Settings& settings) { return make_grid_follower<D>(cell_edge(settings)); },
+           core::grid_following<D>}};
+}
+
+template <int D>
+Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+  return GridSearcher<D>(cell_edge(settings)).lay_out(boxes);
 }
 
 }  // namespace
@@ -275,10 +273,16 @@ Algorithm grid() {
                     .least = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = core::in_dimension<2>(make_grid<2>),
-      .finder_3d = core::in_dimension<3>(make_grid<3>),
-      .tracker_2d = core::in_dimension<2>(make_grid_tracking<2>),
-      .tracker_3d = core::in_dimension<3>(make_grid_tracking<3>),
+      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .find_costs_2d = core::grid_finding<2>,
+      .find_costs_3d = core::grid_finding<3>,
+      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .tests_doubles = true,
+      .gives_candidates = true,
   };
 }
 

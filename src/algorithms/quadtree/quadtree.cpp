@@ -19,21 +19,18 @@
 #include <string>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
-#include "algorithms/descriptions.hpp"
+#include "algorithms/quadtree/quadtree_follower.hpp"
 #include "algorithms/quadtree/split.hpp"
-#include "algorithms/quadtree/tracker.hpp"
-#include "core/dimensions.hpp"
+#include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "core/tunables.hpp"
 #include "interface/follow_costs.hpp"
-#include "interface/last_test.hpp"
-#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
@@ -51,34 +48,14 @@ template <int D>
 constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
 
 template <int D>
-class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::LastTest<D> {
+class QuadtreeSearcher final : public Searcher<D> {
  public:
-  Outlined<D>* outlined() noexcept override { return this; }
-  core::LastTest<D>* last_test() noexcept override { return this; }
+  explicit QuadtreeSearcher(std::size_t capacity) : capacity_(capacity) {}
 
-  explicit Quadtree(std::size_t capacity) : capacity_(capacity) {}
-
- private:
-  using Split = QuadtreeSplit<D>;
-
-  /// The memory of one thread.
-  struct Worker {
-    QuadtreeStack<D> stack;
-    kernels::RunBuffer<D> run;
-    kernels::RunBuffer<D> kept_run;
-    Statistics statistics;
-    Checkpoint* checkpoint;
-  };
-
-  /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
-  /// which come first, and its others.
-  struct Part {
-    std::size_t end;  // among the references of all parts
-    std::size_t kept_count;
-  };
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    parallel_.start(this->workers(), boxes.size());
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
+    doubles_ = input.doubles;
+    parallel_.start(input.workers, boxes.size());
     workers_.resize(std::max(workers_.size(), parallel_.workers()));
     sample_.take(boxes);
     sorted_boxes_ = sorted_.sort(boxes, sample_.axes_by_overlap(), parallel_);
@@ -88,16 +65,15 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     first.statistics = {};
     first.stack.references.clear();
     for (std::uint32_t i = 0; i < sorted_boxes_.size(); ++i)
-      first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, this->left_count())});
-    if (parallel_.workers() == 1 && !this->workers().checkpoint) {
-      search(first, 0, first.stack.references.size(), pairs);
-      this->count(first.statistics);
-      return;
+      first.stack.references.push_back({i, kernels::side_bit(sorted_boxes_[i].id, input.left_count)});
+    if (parallel_.workers() == 1 && !input.workers.checkpoint) {
+      search_node(first, 0, first.stack.references.size(), pairs);
+      return first.statistics;
     }
     parts_.clear();
     part_references_.clear();
     std::size_t most_in_part = boxes.size() / (parts_per_worker * parallel_.workers());
-    if (this->workers().checkpoint) most_in_part = std::min(most_in_part, most_between_checkpoints);
+    if (input.workers.checkpoint) most_in_part = std::min(most_in_part, most_between_checkpoints);
     expand(first, 0, first.stack.references.size(), most_in_part);
     const auto search_parts = [&](core::Range parts, std::size_t worker, PairSink& sink) {
       workers_[worker].statistics = {};
@@ -105,12 +81,11 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
         search_part(workers_[worker], part, sink);
       return workers_[worker].statistics;
     };
-    this->count(parallel_.search(parts_.size(), pairs, search_parts));
+    return parallel_.search(parts_.size(), pairs, search_parts);
   }
 
-  /// Splits the nodes as search() does, and keeps their regions.
-  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
-    if constexpr (core::is_lean) return {};
+  /// Splits the nodes as search_node() does, and keeps their regions.
+  Outline<D> lay_out(std::span<const Box<D>> boxes) {
     sample_.take(boxes);
     const std::array<int, D> axes = sample_.axes_by_overlap();
     sorted_boxes_ = sorted_.sort(boxes, axes);
@@ -131,6 +106,25 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
                       ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
     return outline;
   }
+
+ private:
+  using Split = QuadtreeSplit<D>;
+
+  /// The memory of one thread.
+  struct Worker {
+    QuadtreeStack<D> stack;
+    kernels::RunBuffer<D> run;
+    kernels::RunBuffer<D> kept_run;
+    Statistics statistics;
+    Checkpoint* checkpoint;
+  };
+
+  /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
+  /// which come first, and its others.
+  struct Part {
+    std::size_t end;  // among the references of all parts
+    std::size_t kept_count;
+  };
 
   /// A node's region, by the caller's axes; axis a of the sorted boxes is axes[a] of these.
   struct Region {
@@ -163,7 +157,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     return leaves;
   }
 
-  /// Makes parts of the node and those below it, in the order in which search() would meet them.
+  /// Makes parts of the node and those below it, in the order in which search_node() would meet them.
   void expand(Worker& worker, std::size_t begin, std::size_t end, std::size_t largest) {
     const std::size_t count = end - begin;
     if (count < 2) return;
@@ -202,7 +196,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
         std::span(part_references_).subspan(begin, parts_[number].end - begin);
     worker.stack.references.assign(references.begin(), references.end());
     if (parts_[number].kept_count == 0) {
-      search(worker, 0, references.size(), pairs);
+      search_node(worker, 0, references.size(), pairs);
       return;
     }
     worker.stack.children.assign(references.size(), 1);
@@ -212,7 +206,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
 
   /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
   /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
-  void search(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
+  void search_node(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
     const std::size_t count = end - begin;
     if (count < 2) return;
     Split split;
@@ -227,7 +221,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
     worker.stack.push_children(sorted_boxes_, begin, end, split);
     std::size_t child = top;
     for (const std::size_t size : split.sizes) {
-      search(worker, child, child + size, pairs);
+      search_node(worker, child, child + size, pairs);
       child += size;
     }
     worker.stack.references.resize(top);
@@ -246,7 +240,7 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
   }
 
   kernels::Run<D> view(const Worker& worker, kernels::RunBuffer<D>& buffer) const {
-    kernels::Run<D> run = buffer.view(this->doubles());
+    kernels::Run<D> run = buffer.view(doubles_);
     run.checkpoint = worker.checkpoint;
     return run;
   }
@@ -273,25 +267,33 @@ class Quadtree final : public PairFinder<D>, public Outlined<D>, public core::La
   std::vector<Worker> workers_;
   std::vector<Part> parts_;
   std::vector<QuadtreeReference> part_references_;
+  const Box<D, double>* doubles_ = nullptr;  // those of the search that runs
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_quadtree(const Settings& settings) {
-  return std::make_unique<Quadtree<D>>(settings.is_auto("capacity")
-                                           ? standard_capacity<D>
-                                           : static_cast<std::size_t>(settings.integer("capacity")));
+std::size_t capacity_of(const Settings& settings) {
+  return settings.is_auto("capacity") ? standard_capacity<D>
+                                      : static_cast<std::size_t>(settings.integer("capacity"));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_quadtree_tracking(const Settings& settings) {
-  const auto capacity = settings.is_auto("capacity")
-                            ? tracking_capacity
-                            : static_cast<std::uint32_t>(settings.integer("capacity"));
-  return core::adaptive_tracker<D, float>(
-      core::update_of(settings), make_quadtree<D>(settings), core::tree_finding<D>,
-      std::vector<core::Follower<D, float>>{{"quadtree",
-                                             [capacity] { return make_quadtree_tracker<D>(capacity); },
-                                             core::quadtree_following<D>}});
+std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+  return std::make_unique<QuadtreeSearcher<D>>(capacity_of<D>(settings));
+}
+
+template <int D>
+detail::Vector<FollowerChoice<D>> followers() {
+  const auto make = [](const Settings& settings) {
+    return make_quadtree_follower<D>(settings.is_auto("capacity")
+                                         ? following_capacity
+                                         : static_cast<std::uint32_t>(settings.integer("capacity")));
+  };
+  return {{"quadtree", make, core::quadtree_following<D>}};
+}
+
+template <int D>
+Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+  return QuadtreeSearcher<D>(capacity_of<D>(settings)).lay_out(boxes);
 }
 
 }  // namespace
@@ -310,10 +312,16 @@ Algorithm quadtree() {
                     .most = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = core::in_dimension<2>(make_quadtree<2>),
-      .finder_3d = core::in_dimension<3>(make_quadtree<3>),
-      .tracker_2d = core::in_dimension<2>(make_quadtree_tracking<2>),
-      .tracker_3d = core::in_dimension<3>(make_quadtree_tracking<3>),
+      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .find_costs_2d = core::tree_finding<2>,
+      .find_costs_3d = core::tree_finding<3>,
+      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .tests_doubles = true,
+      .gives_candidates = true,
   };
 }
 

@@ -14,24 +14,20 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
 
-#include "algorithms/descriptions.hpp"
-#include "algorithms/sweep_and_prune/tracker.hpp"
+#include "algorithms/registry.hpp"
+#include "algorithms/sweep_and_prune/sweep_and_prune_follower.hpp"
 #include "core/cell_lists.hpp"
-#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
+#include "core/tunables.hpp"
 #include "interface/follow_costs.hpp"
-#include "interface/last_test.hpp"
-#include "interface/margin_tracker.hpp"
 #include "interface/outline_text.hpp"
-#include "interface/yielding.hpp"
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
@@ -46,52 +42,28 @@ constexpr std::size_t most_stripes = 256;
 /// Boxes that one thread sweeps at a time, where there are no stripes.
 constexpr std::size_t swept_at_once = 64;
 
-template <int D>
-class SweepAndPrune final : public PairFinder<D>,
-                            public Outlined<D>,
-                            public core::Yielding<D>,
-                            public core::LastTest<D> {
- public:
-  Outlined<D>* outlined() noexcept override { return this; }
-  core::Yielding<D>* yielding() noexcept override { return this; }
-  core::LastTest<D>* last_test() noexcept override { return this; }
+/// The axis to sweep along; -1: to be chosen.
+int axis_of(const Settings& settings) {
+  return settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
+}
 
-  explicit SweepAndPrune(const Settings& settings) {
-    if (!settings.is_auto("axis")) axis_ = settings.text("axis")[0] - 'x';
+template <int D>
+class SweepAndPruneSearcher final : public Searcher<D> {
+ public:
+  explicit SweepAndPruneSearcher(const Settings& settings) : axis_(axis_of(settings)) {
     if (!settings.is_auto("axes")) axes_ = static_cast<int>(settings.text("axes")[0] - '0');
     if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
   }
 
-  /// It gives up before the search starts, and only along one axis, not in stripes.
-  bool is_left(const Box<D>&, BoxId, const Box<D>&, BoxId) const override { return true; }
-
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    this->set_yielded(false);
-    parallel_.start(this->workers(), boxes.size());
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    parallel_.start(input.workers, input.boxes.size());
     runs_.resize(std::max(runs_.size(), parallel_.workers()));
-    const std::array<int, D> axes = choose_axes(boxes);
-    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(boxes, axes, parallel_);
-    if (borders_.empty())
-      sweep_all(sorted, pairs);
-    else
-      sweep_stripes(sorted, pairs);
+    const std::array<int, D> axes = choose_axes(input.boxes);
+    const std::span<const core::SortedBox<D>> sorted = sorted_.sort(input.boxes, axes, parallel_);
+    return borders_.empty() ? sweep_all(input, sorted, pairs) : sweep_stripes(input, sorted, pairs);
   }
 
-  /// Chooses the swept axis, the striped one and so on, and the stripes.
-  std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
-    sample_.take(boxes);
-    std::array<int, D> axes = sample_.axes_by_overlap();
-    for (int i = D - 1; i > 0; --i) {
-      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
-    }
-    borders_.clear();
-    choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
-    return axes;
-  }
-
-  Outline<D> lay_out(std::span<const Box<D>> boxes) override {
-    if constexpr (core::is_lean) return {};
+  Outline<D> lay_out(std::span<const Box<D>> boxes) {
     const std::array<int, D> axes = choose_axes(boxes);
     Outline<D> outline;
     outline.swept_axis = axes[0];
@@ -110,6 +82,19 @@ class SweepAndPrune final : public PairFinder<D>,
       outline.levels[0].push_back(stripe);
     }
     return outline;
+  }
+
+ private:
+  /// Chooses the swept axis, the striped one and so on, and the stripes.
+  std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
+    sample_.take(boxes);
+    std::array<int, D> axes = sample_.axes_by_overlap();
+    for (int i = D - 1; i > 0; --i) {
+      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
+    }
+    borders_.clear();
+    choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
+    return axes;
   }
 
   /// Sets the borders between stripes, none if one axis is enough.
@@ -133,17 +118,18 @@ class SweepAndPrune final : public PairFinder<D>,
     borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
   }
 
-  void sweep_all(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+  /// May give up before it starts.
+  Statistics sweep_all(const SearchInput<D>& input, std::span<const core::SortedBox<D>> sorted,
+                       PairSink& pairs) {
     kernels::RunBuffer<D>& buffer = runs_[0];
     buffer.clear();
     buffer.reserve(sorted.size());
     for (const core::SortedBox<D>& box : sorted)
-      buffer.append(box.box, box.id, kernels::side_bit(box.id, this->left_count()));
-    const kernels::Run<D> run = buffer.view(this->doubles());
-    if (this->may_yield() && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
-      this->set_yielded(true);
-      this->count({.references = run.size});
-      return;
+      buffer.append(box.box, box.id, kernels::side_bit(box.id, input.left_count));
+    const kernels::Run<D> run = buffer.view(input.doubles);
+    if (input.successor != nullptr && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
+      input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
+      return {.references = run.size};
     }
     const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * swept_at_once;
@@ -154,10 +140,12 @@ class SweepAndPrune final : public PairFinder<D>,
     };
     Statistics statistics = parallel_.search((run.size + swept_at_once - 1) / swept_at_once, pairs, sweep);
     statistics.references = run.size;
-    this->count(statistics);
+    return statistics;
   }
 
-  void sweep_stripes(std::span<const core::SortedBox<D>> sorted, PairSink& pairs) {
+  /// Never gives up.
+  Statistics sweep_stripes(const SearchInput<D>& input, std::span<const core::SortedBox<D>> sorted,
+                           PairSink& pairs) {
     const auto stripe_of = [this](float coordinate) {
       return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
     };
@@ -186,17 +174,16 @@ class SweepAndPrune final : public PairFinder<D>,
         run.reserve(list.size());
         for (const std::uint32_t i : list) {
           const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
-          run.append(sorted[i].box, sorted[i].id,
-                     before | kernels::side_bit(sorted[i].id, this->left_count()));
+          run.append(sorted[i].box, sorted[i].id, before | kernels::side_bit(sorted[i].id, input.left_count));
         }
-        kernels::Run<D> view = run.view(this->doubles());
+        kernels::Run<D> view = run.view(input.doubles);
         view.checkpoint = parallel_.checkpoint(worker);
         statistics.tests += kernels::sweep(view, sink);
         statistics.references += list.size();
       }
       return statistics;
     };
-    this->count(parallel_.search(borders_.size() + 1, pairs, sweep));
+    return parallel_.search(borders_.size() + 1, pairs, sweep);
   }
 
   /// The stripes in which a box begins and ends.
@@ -205,8 +192,8 @@ class SweepAndPrune final : public PairFinder<D>,
     std::uint16_t last;
   };
 
-  int axis_ = -1;  // the axis to sweep along; -1: to be chosen
-  int axes_ = 0;   // 1: no stripes; 2: stripes; 0: to be chosen
+  int axis_;      // the axis to sweep along; -1: to be chosen
+  int axes_ = 0;  // 1: no stripes; 2: stripes; 0: to be chosen
 
   core::Sample<D> sample_;
   core::SortedBoxes<D> sorted_;
@@ -218,18 +205,20 @@ class SweepAndPrune final : public PairFinder<D>,
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_sweep_and_prune(const Settings& settings) {
-  return std::make_unique<SweepAndPrune<D>>(settings);
+std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+  return std::make_unique<SweepAndPruneSearcher<D>>(settings);
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_sweep_and_prune_tracking(const Settings& settings) {
-  const int axis = settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
-  return core::adaptive_tracker<D, float>(
-      core::update_of(settings), make_sweep_and_prune<D>(settings), core::sweep_finding<D>,
-      std::vector<core::Follower<D, float>>{{"sweep_and_prune",
-                                             [axis] { return make_sweep_and_prune_tracker<D>(axis); },
-                                             core::sweep_following<D>}});
+detail::Vector<FollowerChoice<D>> followers() {
+  return {{"sweep_and_prune",
+           [](const Settings& settings) { return make_sweep_and_prune_follower<D>(axis_of(settings)); },
+           core::sweep_following<D>}};
+}
+
+template <int D>
+Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+  return SweepAndPruneSearcher<D>(settings).lay_out(boxes);
 }
 
 }  // namespace
@@ -253,10 +242,16 @@ Algorithm sweep_and_prune() {
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .finder_2d = core::in_dimension<2>(make_sweep_and_prune<2>),
-      .finder_3d = core::in_dimension<3>(make_sweep_and_prune<3>),
-      .tracker_2d = core::in_dimension<2>(make_sweep_and_prune_tracking<2>),
-      .tracker_3d = core::in_dimension<3>(make_sweep_and_prune_tracking<3>),
+      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .find_costs_2d = core::sweep_finding<2>,
+      .find_costs_3d = core::sweep_finding<3>,
+      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .tests_doubles = true,
+      .gives_candidates = true,
   };
 }
 

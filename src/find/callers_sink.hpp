@@ -8,7 +8,7 @@
 
 #include "core/float_environment.hpp"
 
-namespace broadside::core {
+namespace broadside::find {
 
 /// Stands between a search and its caller's sink, which no filter may look through.
 class CallersSink final : public PairSink {
@@ -17,19 +17,19 @@ class CallersSink final : public PairSink {
   explicit CallersSink(std::unique_ptr<PairSink> owned) : target_(owned.get()), owned_(std::move(owned)) {}
 
   std::unique_ptr<PairSink> empty_clone() const override {
-    const CallersEnvironment environment;
+    const core::CallersEnvironment environment;
     std::unique_ptr<PairSink> clone = target_->empty_clone();
     return clone == nullptr ? nullptr : std::make_unique<CallersSink>(std::move(clone));
   }
 
   void merge(PairSink& clone) override {
-    const CallersEnvironment environment;
+    const core::CallersEnvironment environment;
     target_->merge(*static_cast<CallersSink&>(clone).target_);
   }
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    const CallersEnvironment environment;
+    const core::CallersEnvironment environment;
     target_->put(pairs);
   }
 
@@ -37,18 +37,22 @@ class CallersSink final : public PairSink {
   std::unique_ptr<PairSink> owned_;
 };
 
-/// Calls search(sink) with a sink that stands for `pairs`, and flushes `pairs`.
+/// Calls search(sink) in the library's floating-point environment. If the caller's is another one, its sink
+/// is called in the caller's, and flushed. Returns what the search returns.
 template <typename Search>
-void search_for_caller(PairSink& pairs, const Search& search) {
+auto in_default_environment(PairSink& pairs, const Search& search) {
+  const core::DefaultEnvironment environment;
+  if (!environment.is_foreign()) return search(pairs);
   CallersSink sink(pairs);
   try {
-    search(sink);
-    const CallersEnvironment environment;
+    const auto result = search(sink);
+    const core::CallersEnvironment callers;
     pairs.flush();
+    return result;
   } catch (...) {
     pairs.discard();
     throw;
   }
 }
 
-}  // namespace broadside::core
+}  // namespace broadside::find

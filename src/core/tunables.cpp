@@ -1,0 +1,29 @@
+// The tunables that several algorithms have.
+#include "core/tunables.hpp"
+
+namespace broadside::core {
+
+Tunable threads_tunable() {
+  return {.name = "threads",
+          .summary = unless_lean("most threads of a search; 0: as many as there are"),
+          .standard = "1",
+          .type = Tunable::Type::integer,
+          .least = 0,
+          .most = 1024};
+}
+
+Tunable update_tunable() {
+  return {.name = "update",
+          .summary = unless_lean(
+              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
+          .standard = "auto",
+          .type = Tunable::Type::choice,
+          .choices = {"follow", "rebuild"}};
+}
+
+Update update_of(const Settings& settings) {
+  if (settings.is_auto("update")) return Update::automatic;
+  return settings.text("update") == "follow" ? Update::follow : Update::rebuild;
+}
+
+}  // namespace broadside::core

@@ -1,0 +1,234 @@
+// Finder: checks boxes before anything is searched, and delivers the pairs.
+#include "broadside/finder.hpp"
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
+
+#include "algorithms/registry.hpp"
+#include "core/float_environment.hpp"
+#include "core/lean.hpp"
+#include "core/message.hpp"
+#include "core/parallel.hpp"
+#include "find/callers_sink.hpp"
+#include "find/search.hpp"
+#include "interface/input_check.hpp"
+
+namespace broadside {
+namespace {
+
+void check_filters(std::span<const Filter> filters, std::size_t boxes, const char* set) {
+  if (filters.empty() || filters.size() == boxes) return;
+  throw InvalidFrame(core::message(
+      {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
+}
+
+void check_filters(const PairFilters& filters, std::size_t left, std::size_t right) {
+  if (filters.ignored != nullptr && !filters.ignored->empty())
+    throw InvalidFrame("ignored pairs for a search between two sets; expected none");
+  check_filters(filters.filters, left, " left");
+  check_filters(filters.right_filters, right, " right");
+}
+
+/// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
+template <typename SearchInto>
+std::optional<Statistics> deliver(PairSink& pairs, const SearchInto& search) {
+  try {
+    const std::optional<Statistics> statistics = search();
+    pairs.flush();
+    return statistics;
+  } catch (...) {
+    pairs.discard();
+    throw;
+  }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+class BROADSIDE_HIDDEN Finder<D, Real>::State {
+ public:
+  State(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles, std::size_t threads)
+      : workers{.threads = threads}, search_(std::move(searcher), tests_doubles) {}
+
+  std::optional<Statistics> find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {
+    core::check_count(view.size());
+    if (!filters.right_filters.empty())
+      throw InvalidFrame("filters of a right set for a search in one set; expected none");
+    check_filters(filters.filters, view.size(), "");
+    const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
+    const std::size_t absent = check(boxes);
+    return deliver(pairs, [&] { return search_.find(boxes, {filters, workers, nullptr, absent}, pairs); });
+  }
+
+  std::optional<Statistics> find_between(BoxView<D, Real> left_view, BoxView<D, Real> right_view,
+                                         PairSink& pairs, const PairFilters& filters) {
+    core::check_count(left_view.size() + right_view.size());
+    check_filters(filters, left_view.size(), right_view.size());
+    const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
+    const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
+    const std::size_t absent = check(left, right);
+    return deliver(pairs, [&] {
+      return search_.find_between(left, right, {filters, workers, nullptr, absent}, pairs);
+    });
+  }
+
+  std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                        PairSink& pairs) {
+    core::check_count(boxes.size());
+    if (left_count > boxes.size()) {
+      throw InvalidFrame(core::message({"a left set of ", left_count, " boxes in an array of ", boxes.size(),
+                                        "; expected no more than there are"}));
+    }
+    const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
+    return deliver(pairs, [&] {
+      return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, pairs);
+    });
+  }
+
+  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+  std::string explanation() const { return search_.explanation(); }
+
+  BadInput bad_input = BadInput::reject;
+  Workers workers;
+
+ private:
+  /// The boxes as an array: the caller's array, or a copy in `gathered`.
+  static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& gathered) {
+    if (boxes.is_array()) return {boxes.array(), boxes.size()};
+    gathered.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) gathered[i] = boxes[i];
+    return gathered;
+  }
+
+  std::size_t check(std::span<const Box<D, Real>> boxes) {
+    const std::size_t absent = count_absent(boxes, "");
+    quarantined_.clear();
+    if (absent > 0) list_invalid(boxes, 0);
+    return absent;
+  }
+
+  std::size_t check(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right) {
+    const std::size_t absent_left = count_absent(left, "left ");
+    const std::size_t absent_right = count_absent(right, "right ");
+    quarantined_.clear();
+    if (absent_left > 0) list_invalid(left, 0);
+    if (absent_right > 0) list_invalid(right, left.size());
+    return absent_left + absent_right;
+  }
+
+  /// Checks the boxes, and returns how many are absent or quarantined. Each range that throws names its first
+  /// box at fault; the first such range's exception is the one thrown.
+  std::size_t count_absent(std::span<const Box<D, Real>> boxes, const char* which) const {
+    core::Parallel parallel;
+    parallel.start(workers, boxes.size());
+    std::atomic<std::size_t> absent = 0;
+    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+      absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input, which),
+                       std::memory_order_relaxed);
+    });
+    return absent;
+  }
+
+  /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
+  void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
+    if (core::is_lean || bad_input == BadInput::reject) return;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
+    }
+  }
+
+  find::Search<D, Real> search_;
+  std::array<std::vector<Box<D, Real>>, 2> gathered_;  // boxes that were not given as an array
+  std::vector<BoxId> quarantined_;
+};
+
+template <int D, typename Real>
+Finder<D, Real>::Finder(const Algorithm& algorithm, const Spec& spec) {
+  const Settings settings = algorithm::settings_of(algorithm, spec);
+  state_ = std::make_unique<State>(algorithm::searcher<D>(algorithm, settings), algorithm.tests_doubles,
+                                   algorithm::threads_of(algorithm, settings));
+}
+
+template <int D, typename Real>
+Finder<D, Real>::Finder(std::string_view spec) {
+  const Spec parsed = Spec::parse(spec);
+  *this = Finder(algorithm::require_algorithm(parsed.name), parsed);
+}
+
+template <int D, typename Real>
+Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
+  if (searcher == nullptr) throw std::invalid_argument("Finder was given a null searcher; expected one");
+  state_ = std::make_unique<State>(std::move(searcher), false, 1);
+}
+
+template <int D, typename Real>
+Finder<D, Real>::Finder(Finder&& other) noexcept = default;
+template <int D, typename Real>
+Finder<D, Real>& Finder<D, Real>::operator=(Finder&& other) noexcept = default;
+template <int D, typename Real>
+Finder<D, Real>::~Finder() = default;
+
+template <int D, typename Real>
+std::optional<Statistics> Finder<D, Real>::find(BoxView<D, Real> boxes, PairSink& pairs,
+                                                const PairFilters& filters) {
+  return find::in_default_environment(pairs,
+                                      [&](PairSink& sink) { return state_->find(boxes, sink, filters); });
+}
+
+template <int D, typename Real>
+std::optional<Statistics> Finder<D, Real>::find_between(BoxView<D, Real> left, BoxView<D, Real> right,
+                                                        PairSink& pairs, const PairFilters& filters) {
+  return find::in_default_environment(
+      pairs, [&](PairSink& sink) { return state_->find_between(left, right, sink, filters); });
+}
+
+template <int D, typename Real>
+std::optional<Statistics> Finder<D, Real>::find_across(std::span<const Box<D, Real>> boxes,
+                                                       std::size_t left_count, PairSink& pairs) {
+  return find::in_default_environment(
+      pairs, [&](PairSink& sink) { return state_->find_across(boxes, left_count, sink); });
+}
+
+template <int D, typename Real>
+BadInput Finder<D, Real>::bad_input() const noexcept {
+  return state_->bad_input;
+}
+
+template <int D, typename Real>
+void Finder<D, Real>::set_bad_input(BadInput bad_input) noexcept {
+  state_->bad_input = bad_input;
+}
+
+template <int D, typename Real>
+std::span<const BoxId> Finder<D, Real>::quarantined() const noexcept {
+  return state_->quarantined();
+}
+
+template <int D, typename Real>
+const Workers& Finder<D, Real>::workers() const noexcept {
+  return state_->workers;
+}
+
+template <int D, typename Real>
+void Finder<D, Real>::set_workers(const Workers& workers) {
+  state_->workers = workers;
+}
+
+template <int D, typename Real>
+std::string Finder<D, Real>::explanation() const {
+  return state_->explanation();
+}
+
+template class Finder<2, float>;
+template class Finder<2, double>;
+template class Finder<3, float>;
+template class Finder<3, double>;
+
+}  // namespace broadside

@@ -1,0 +1,71 @@
+// Search: a Searcher and what surrounds it except the check of the input: absent boxes, doubles, filters.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/searcher.hpp"
+
+#include "core/large_array.hpp"
+#include "find/double_search.hpp"
+
+namespace broadside::find {
+
+/// How one search is made.
+template <int D>
+struct SearchOptions {
+  PairFilters filters{};
+  const Workers& workers = default_workers;
+  Successor<D>* successor = nullptr;  ///< as in SearchInput
+
+  /// The number of boxes that are not present, if it is known.
+  std::optional<std::size_t> absent{};
+};
+
+/// Finds pairs of boxes of which some may be absent. Boxes that are not present pair with nothing. Filters
+/// are one for each box, or none. Flushes no sink of the caller's. Keeps its memory.
+template <int D, typename Real>
+class Search {
+ public:
+  /// `tests_doubles`: as in Algorithm.
+  Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles);
+
+  /// Every pair of one set.
+  std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
+                                 PairSink& pairs);
+
+  /// Every pair of a box of `left` and one of `right`, as places in the two.
+  std::optional<Statistics> find_between(std::span<const Box<D, Real>> left,
+                                         std::span<const Box<D, Real>> right, const SearchOptions<D>& options,
+                                         PairSink& pairs);
+
+  /// The same for two sets in one array; without a copy if no box is absent.
+  std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                        const SearchOptions<D>& options, PairSink& pairs);
+
+  std::string explanation() const { return searcher_->explanation(); }
+
+ private:
+  std::optional<Statistics> find_unfiltered(std::span<const Box<D, Real>> boxes,
+                                            const SearchOptions<D>& options, PairSink& pairs);
+  std::optional<Statistics> find_across_unfiltered(std::span<const Box<D, Real>> boxes,
+                                                   std::size_t left_count, const SearchOptions<D>& options,
+                                                   PairSink& pairs);
+  std::optional<Statistics> search_present(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                           const SearchOptions<D>& options, PairSink& pairs);
+  void take_present(std::span<const Box<D, Real>> boxes);
+
+  std::unique_ptr<Searcher<D>> searcher_;
+  DoubleSearch<D> doubles_;
+  std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused if there are none
+  std::vector<BoxId> ids_;             // their places in the caller's array
+};
+
+}  // namespace broadside::find
