@@ -11,6 +11,7 @@
 
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/world.hpp"
 
@@ -106,10 +107,10 @@ TEST_P(CallBack, OfASinkIsInTheCallersEnvironment) {
     WitnessSink sink(witness);
     find_pairs(boxes, sink);
     find_pairs(boxes, boxes, sink);
-    const auto finder = make_finder<2>("grid");
-    finder->find_between(boxes, 1500, sink);
-    const auto tracker = make_tracker<2>("grid");
-    tracker->update({.boxes = boxes, .changed = {}}, sink, sink);
+    Finder<2> finder("grid");
+    finder.find_across(boxes, 1500, sink);
+    Tracker<2> tracker("grid");
+    tracker.update({.boxes = boxes, .changed = {}}, sink, sink);
     EXPECT_TRUE(witness.is_content());
   }
 }
@@ -119,16 +120,16 @@ TEST_P(CallBack, OfASinkByThreadsIsInTheCallersEnvironment) {
   const InEnvironment in(GetParam());
   Witness witness;
   WitnessExecutor executor(witness);
-  const auto finder = make_finder<2>("grid");
+  Finder<2> finder("grid");
   for (Executor* const workers : {static_cast<Executor*>(nullptr), static_cast<Executor*>(&executor)}) {
     for (const std::size_t threads : {0, 3}) {
-      finder->set_workers({.threads = threads, .executor = workers, .boxes_per_thread = 1});
+      finder.set_workers({.threads = threads, .executor = workers, .boxes_per_thread = 1});
       WitnessSink sink(witness);
-      finder->find(boxes, sink);
+      finder.find(boxes, sink);
     }
   }
   ClonedSink cloned(witness);
-  finder->find(boxes, cloned);
+  finder.find(boxes, cloned);
   EXPECT_TRUE(witness.is_content());
 }
 
@@ -166,8 +167,8 @@ TEST_P(CallBack, LeavesTheCallersEnvironmentWhereItThrows) {
   LimitedCollector full(0);
   EXPECT_THROW(find_pairs(boxes, full), SinkIsFull);
   witness.look();
-  const auto tracker = make_tracker<2>("quadtree");
-  EXPECT_THROW(tracker->update({.boxes = boxes, .changed = {}}, full, full), SinkIsFull);
+  Tracker<2> tracker("quadtree");
+  EXPECT_THROW(tracker.update({.boxes = boxes, .changed = {}}, full, full), SinkIsFull);
   witness.look();
   boxes[9].min[0] = 100;
   EXPECT_THROW(find_pairs(boxes), InvalidInput);

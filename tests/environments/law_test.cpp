@@ -22,6 +22,7 @@
 #include "tests/laws/law_case.hpp"
 #include "tests/support/found.hpp"
 #include "tests/support/instruction_sets.hpp"
+#include "tests/support/searchers.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -63,20 +64,20 @@ TEST_P(EnvironmentLaw, FindsTheSamePairsInTheSameOrder) {
   in_dimension([&]<int D>() {
     for_hard_inputs<D>(
         algorithm(), [&]<typename Real>(const std::string& name, const std::vector<Box<D, Real>>& boxes) {
-          const auto finder = make_finder<D, Real>(algorithm(), spec());
-          const std::vector<Pair> expected = found(*finder, boxes);
-          const std::vector<Pair> between = found(*finder, boxes, boxes.size() / 3);
+          Finder<D, Real> finder(algorithm(), spec());
+          const std::vector<Pair> expected = found(finder, boxes);
+          const std::vector<Pair> between = found(finder, boxes, boxes.size() / 3);
           for (const Environment& environment : environments()) {
             const InEnvironment in(environment);
-            EXPECT_EQ(found(*finder, boxes), expected) << name << ", " << environment.name;
-            EXPECT_EQ(found(*finder, boxes, boxes.size() / 3), between) << name << ", " << environment.name;
+            EXPECT_EQ(found(finder, boxes), expected) << name << ", " << environment.name;
+            EXPECT_EQ(found(finder, boxes, boxes.size() / 3), between) << name << ", " << environment.name;
           }
           // On each of the other instruction sets another environment in turn.
           for (std::size_t i = 1; i < sets.size(); ++i) {
             const Environment& environment = environments()[++turn % environments().size()];
             const OnInstructionSet on(sets[i]);
             const InEnvironment in(environment);
-            EXPECT_EQ(found(*finder, boxes), expected) << name << ", " << environment.name << ", " << sets[i];
+            EXPECT_EQ(found(finder, boxes), expected) << name << ", " << environment.name << ", " << sets[i];
           }
         });
   });
@@ -95,10 +96,9 @@ std::vector<std::vector<Box<D, Real>>> frames_of(const std::vector<Box<D, Real>>
 
 /// What a tracker tells of frames whose boxes may all have changed, or of which only some are listed.
 template <int D, typename Real>
-class Follower {
+class Followed {
  public:
-  explicit Follower(const Algorithm& algorithm, const Spec& spec)
-      : tracker_(make_tracker<D, Real>(algorithm, spec)) {}
+  explicit Followed(const Algorithm& algorithm, const Spec& spec) : tracker_(algorithm, spec) {}
 
   std::vector<Pair> events(const std::vector<Box<D, Real>>& boxes) {
     std::vector<BoxId> changed;
@@ -109,7 +109,7 @@ class Follower {
     std::vector<Pair> events;
     PairCollector begun(events);
     PairCollector ended(events);
-    tracker_->update({.boxes = boxes, .changed = changed}, begun, ended);
+    tracker_.update({.boxes = boxes, .changed = changed}, begun, ended);
     return events;
   }
 
@@ -120,7 +120,7 @@ class Follower {
         std::array<std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>, 2 * D>>(box);
   }
 
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  Tracker<D, Real> tracker_;
   std::vector<Box<D, Real>> last_;
 };
 
@@ -130,15 +130,15 @@ TEST_P(EnvironmentLaw, TracksTheSamePairs) {
   in_dimension([&]<int D>() {
     const auto expect_same = [&]<typename Real>(const std::string& name,
                                                 const std::vector<std::vector<Box<D, Real>>>& frames) {
-      Follower<D, Real> alone(algorithm(), spec());
+      Followed<D, Real> alone(algorithm(), spec());
       std::vector<std::vector<Pair>> expected;
       for (const std::vector<Box<D, Real>>& boxes : frames) expected.push_back(alone.events(boxes));
       // The one with most in it, and another in turn.
       for (const Environment* environment : {&environments()[++turn % environments().size()], &hardest()}) {
         const InEnvironment in(*environment);
-        Follower<D, Real> follower(algorithm(), spec());
+        Followed<D, Real> followed(algorithm(), spec());
         for (std::size_t i = 0; i < frames.size(); ++i) {
-          ASSERT_EQ(follower.events(frames[i]), expected[i])
+          ASSERT_EQ(followed.events(frames[i]), expected[i])
               << name << ", frame " << i << ", " << environment->name;
         }
       }
@@ -180,23 +180,22 @@ TEST_P(ThreadedEnvironmentLaw, FindsTheSamePairsByThreadsOfOtherEnvironments) {
     for_hard_inputs<D>(algorithm(), [&]<typename Real>(const std::string& name,
                                                        const std::vector<Box<D, Real>>& boxes) {
       if (++turn % 16 != 0) return;
-      const auto finder = make_finder<D, Real>(algorithm(), spec());
-      const std::vector<Pair> expected = found(*finder, boxes);
-      finder->set_workers({.threads = environments().size(), .executor = &executor, .boxes_per_thread = 1});
-      EXPECT_EQ(found(*finder, boxes), expected) << name;
+      Finder<D, Real> finder(algorithm(), spec());
+      const std::vector<Pair> expected = found(finder, boxes);
+      finder.set_workers({.threads = environments().size(), .executor = &executor, .boxes_per_thread = 1});
+      EXPECT_EQ(found(finder, boxes), expected) << name;
     });
   });
 }
 
 TEST_P(EnvironmentLaw, DrawsTheSameOutline) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
     for (const Input<D>& input : hard_inputs<D>(algorithm(), 100)) {
-      const Outline<D> expected = outline(*finder, input.boxes);
+      const Outline<D> expected = outline<D, float>(algorithm(), spec(), input.boxes);
       for (const Environment& environment : environments()) {
         const auto drawn = [&] {
           const InEnvironment in(environment);
-          return outline(*finder, input.boxes);
+          return outline<D, float>(algorithm(), spec(), input.boxes);
         }();
         EXPECT_EQ(drawn.caption, expected.caption) << input.name << ", " << environment.name;
         EXPECT_EQ(drawn.levels, expected.levels) << input.name << ", " << environment.name;
@@ -209,16 +208,16 @@ TEST(SpecInEnvironments, NamesTheSameNumber) {
   double seen = 0;
   Algorithm algorithm;
   algorithm.tunables = {{.name = "size", .summary = "", .standard = "1"}};
-  algorithm.finder_2d = [&seen](const Settings& settings) {
+  algorithm.searcher_2d = [&seen](const Settings& settings) {
     seen = settings.number("size");
-    return make_finder<2>("grid");
+    return library_searcher<2>("grid");
   };
   const Spec spec = {"any", {{"size", "0.0007873178702928792"}}};
-  static_cast<void>(make_finder<2>(algorithm, spec));
+  static_cast<void>(Finder<2>(algorithm, spec));
   const double expected = seen;
   for (const Environment& environment : environments()) {
     const InEnvironment in(environment);
-    static_cast<void>(make_finder<2>(algorithm, spec));
+    static_cast<void>(Finder<2>(algorithm, spec));
     EXPECT_EQ(std::bit_cast<std::uint64_t>(seen), std::bit_cast<std::uint64_t>(expected)) << environment.name;
   }
 }

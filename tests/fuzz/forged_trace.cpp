@@ -280,7 +280,7 @@ void apply(const typename Forgery<D, Real>::ForgedFrame& frame, std::vector<Box<
 }
 
 template <int D, typename Real>
-void check_followed(PairTracker<D, Real>& tracker, const std::vector<Box<D, Real>>& boxes,
+void check_followed(Tracker<D, Real>& tracker, const std::vector<Box<D, Real>>& boxes,
                     std::span<const BoxId> changed, std::set<Pair>& pairs) {
   std::vector<Pair> begun;
   std::vector<Pair> ended;
@@ -308,7 +308,7 @@ void check(Bytes& bytes, bool has_pairs) {
   for (std::size_t i = bytes.below(4); i > 0; --i) forgery.mutate(bytes);
 
   constexpr std::array<const char*, 4> specs = {"auto", "quadtree", "grid", "brute_force"};
-  const auto tracker = make_tracker<D, Real>(specs[bytes.below(specs.size())]);
+  Tracker<D, Real> tracker(specs[bytes.below(specs.size())]);
   std::set<Pair> pairs;
   std::istringstream stream(forgery.encoded());
   std::unique_ptr<lab::TraceReader> reader;
@@ -345,7 +345,7 @@ void check(Bytes& bytes, bool has_pairs) {
       expect(std::ranges::equal(recorded.reported(), state.pairs[0]), "the reported pairs read are wrong");
       expect(std::ranges::equal(recorded.ignored(), state.pairs[1]), "the ignored pairs read are wrong");
     }
-    check_followed(*tracker, boxes, reader->changed(), pairs);
+    check_followed(tracker, boxes, reader->changed(), pairs);
   }
   expect(!reader->next_frame() && reader->warning().empty(), "a whole trace was read as another one");
 }

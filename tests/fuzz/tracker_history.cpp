@@ -30,8 +30,8 @@ struct Specs {
 
 bool is_accepted(const Algorithm& algorithm, const Spec& spec) {
   try {
-    make_tracker<2>(algorithm, spec);
-    make_tracker<3>(algorithm, spec);
+    Tracker<2>(algorithm, spec);
+    Tracker<3>(algorithm, spec);
     return true;
   } catch (const std::exception&) {
     return false;
@@ -209,9 +209,9 @@ class History {
 
 template <int D>
 void play(const Algorithm& algorithm, const Spec& spec, Bytes bytes) {
-  const auto tracker = make_tracker<D>(algorithm, spec);
+  Tracker<D> tracker(algorithm, spec);
   const std::vector<laws::WholeFrame<D>> frames = History<D>(bytes).frames();
-  const std::string divergence = laws::divergence<D, float>(*tracker, frames);
+  const std::string divergence = laws::divergence<D, float>(tracker, frames);
   expect(divergence.empty(), spec.text() + " in " + std::to_string(D) + "D: " + divergence);
 }
 

@@ -114,31 +114,31 @@ class BadInputLaw : public Law {
 
 TEST_P(BadInputLaw, AFinderPairsNothingWithWhatItQuarantines) {
   in_dimension_and_precision([&]<int D, typename Real>() {
-    const auto finder = make_finder<D, Real>(algorithm(), spec());
-    finder->set_bad_input(BadInput::quarantine);
+    Finder<D, Real> finder(algorithm(), spec());
+    finder.set_bad_input(BadInput::quarantine);
     Rng rng(31);
     for (const std::size_t count : {0, 1, 5, 60, 400}) {
       const auto boxes = some_boxes<D, Real>(rng, count);
       std::vector<Pair> pairs;
       PairCollector collector(pairs);
-      finder->find(boxes, collector);
+      finder.find(boxes, collector);
       EXPECT_FALSE(lab::compare_pairs(pairs, lab::reference_pairs<D, Real>(without_wrong<D, Real>(boxes))));
-      EXPECT_EQ(listed(finder->quarantined()), (wrong_places<D, Real>(boxes)));
+      EXPECT_EQ(listed(finder.quarantined()), (wrong_places<D, Real>(boxes)));
     }
     const Boxes<D, Real> right(3);
     PairCounter counter;
-    finder->find(right, counter);
-    EXPECT_TRUE(finder->quarantined().empty());
+    finder.find(right, counter);
+    EXPECT_TRUE(finder.quarantined().empty());
     const Boxes<D, Real> wrong = {wrong_box<D, Real>(rng)};
-    finder->set_bad_input(BadInput::reject);
-    EXPECT_THROW(finder->find(wrong, counter), InvalidInput);
+    finder.set_bad_input(BadInput::reject);
+    EXPECT_THROW(finder.find(wrong, counter), InvalidInput);
   });
 }
 
 TEST_P(BadInputLaw, AJoinPairsNothingWithWhatItQuarantines) {
   in_dimension_and_precision([&]<int D, typename Real>() {
-    const auto finder = make_finder<D, Real>(algorithm(), spec());
-    finder->set_bad_input(BadInput::quarantine);
+    Finder<D, Real> finder(algorithm(), spec());
+    finder.set_bad_input(BadInput::quarantine);
     Rng rng(32);
     const auto boxes = some_boxes<D, Real>(rng, 120);
     std::vector<Pair> expected;
@@ -148,16 +148,16 @@ TEST_P(BadInputLaw, AJoinPairsNothingWithWhatItQuarantines) {
     }
     std::vector<Pair> pairs;
     PairCollector collector(pairs);
-    finder->find_between(boxes, 50, collector);
+    finder.find_across(boxes, 50, collector);
     EXPECT_FALSE(lab::compare_pairs(pairs, expected));
-    EXPECT_EQ(listed(finder->quarantined()), (wrong_places<D, Real>(boxes)));
+    EXPECT_EQ(listed(finder.quarantined()), (wrong_places<D, Real>(boxes)));
   });
 }
 
 TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
   in_dimension_and_precision([&]<int D, typename Real>() {
-    const auto tracker = make_tracker<D, Real>(algorithm(), spec());
-    tracker->set_bad_input(BadInput::quarantine);
+    Tracker<D, Real> tracker(algorithm(), spec());
+    tracker.set_bad_input(BadInput::quarantine);
     Rng rng(33);
     Boxes<D, Real> boxes = some_boxes<D, Real>(rng, 80);
     std::vector<Pair> held;
@@ -172,12 +172,12 @@ TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
       if (rng.one_in(5)) {
         FailingSink failing;
         try {
-          tracker->update({boxes, changed}, failing, failing);
+          tracker.update({boxes, changed}, failing, failing);
         } catch (const std::runtime_error&) {
           taken = false;
         }
       } else {
-        tracker->update({boxes, changed}, begun_pairs, ended_pairs);
+        tracker.update({boxes, changed}, begun_pairs, ended_pairs);
       }
       if (taken) {
         std::vector<Pair> now = lab::reference_pairs<D, Real>(without_wrong<D, Real>(boxes));
@@ -187,7 +187,7 @@ TEST_P(BadInputLaw, ATrackerHoldsWhatItQuarantinesForAbsent) {
         held = std::move(now);
         quarantined = wrong_places<D, Real>(boxes);
       }
-      ASSERT_EQ(listed(tracker->quarantined()), quarantined) << "frame " << frame;
+      ASSERT_EQ(listed(tracker.quarantined()), quarantined) << "frame " << frame;
 
       changed.clear();
       const std::size_t known = boxes.size();

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
@@ -29,7 +30,7 @@ std::vector<Pair> reference(const std::vector<Box<D>>& left, const std::vector<B
 }
 
 template <int D>
-std::vector<Pair> found(PairFinder<D>& finder, const std::vector<Box<D>>& left,
+std::vector<Pair> found(Finder<D>& finder, const std::vector<Box<D>>& left,
                         const std::vector<Box<D>>& right) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
@@ -43,13 +44,13 @@ class BetweenLaw : public Law {};
 TEST_P(BetweenLaw, FindsEachPairAcrossOnceAndNoneWithin) {
   in_dimension([&]<int D>() {
     Rng rng(11);
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     for (const Input<D>& input : hard_inputs<D>(algorithm())) {
       std::vector<Box<D>> left;
       std::vector<Box<D>> right;
       for (const Box<D>& box : input.boxes) (rng.one_in(3) ? left : right).push_back(box);
-      EXPECT_EQ(found<D>(*finder, left, right), reference<D>(left, right)) << input.name;
-      EXPECT_EQ(found<D>(*finder, input.boxes, input.boxes), reference<D>(input.boxes, input.boxes))
+      EXPECT_EQ(found<D>(finder, left, right), reference<D>(left, right)) << input.name;
+      EXPECT_EQ(found<D>(finder, input.boxes, input.boxes), reference<D>(input.boxes, input.boxes))
           << input.name << ", against itself";
     }
   });
@@ -57,13 +58,13 @@ TEST_P(BetweenLaw, FindsEachPairAcrossOnceAndNoneWithin) {
 
 TEST_P(BetweenLaw, FindsTheSamePairsOfTwoSetsInOneArray) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     for (const Input<D>& input : hard_inputs<D>(algorithm())) {
       const std::span<const Box<D>> boxes = input.boxes;
       for (const std::size_t left_count : {std::size_t{0}, boxes.size() / 3, boxes.size()}) {
         std::vector<Pair> pairs;
         PairCollector collector(pairs);
-        finder->find_between(boxes, left_count, collector);
+        finder.find_across(boxes, left_count, collector);
         std::ranges::sort(pairs);
         const std::span<const Box<D>> left = boxes.first(left_count);
         const std::span<const Box<D>> right = boxes.subspan(left_count);
@@ -77,14 +78,14 @@ TEST_P(BetweenLaw, FindsTheSamePairsOfTwoSetsInOneArray) {
 TEST_P(BetweenLaw, LeavesNoTraceInLaterSearches) {
   in_dimension([&]<int D>() {
     const Input<D> input = hard_inputs<D>(algorithm()).front();
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     std::vector<Pair> before;
     PairCollector first(before);
-    finder->find(input.boxes, first);
-    found<D>(*finder, input.boxes, input.boxes);
+    finder.find(input.boxes, first);
+    found<D>(finder, input.boxes, input.boxes);
     std::vector<Pair> after;
     PairCollector second(after);
-    finder->find(input.boxes, second);
+    finder.find(input.boxes, second);
     if (algorithm().kind == AlgorithmKind::peer) {  // promises no order
       std::ranges::sort(before);
       std::ranges::sort(after);

@@ -58,7 +58,7 @@ void expect_agreement(const lab::Scene& scene) {
       if (law_case.dimension != D || is_fast != is_large) continue;
       std::vector<Pair> found;
       PairCollector collector(found);
-      make_finder<D>(*law_case.algorithm, {law_case.algorithm->name, {}})->find(history.boxes, collector);
+      Finder<D>(*law_case.algorithm, {law_case.algorithm->name, {}}).find(history.boxes, collector);
       const auto divergence = lab::compare_pairs(std::move(found), expected);
       EXPECT_FALSE(divergence) << scene.name << ", " << name(law_case) << ": " << divergence->text;
     }

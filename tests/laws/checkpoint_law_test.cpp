@@ -85,11 +85,11 @@ TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneCellAskFor) {
   in_dimension([&]<int D>() {
     const std::vector<Box<D>> boxes = boxes_in_one_place<D>(boxes_of_a_search);
     const std::uint64_t tests = std::uint64_t{boxes.size()} * (boxes.size() - 1) / 2;
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     Calls calls;
-    ask(*finder, calls);
+    ask(finder, calls);
     PairCounter counter;
-    finder->find(boxes, counter);
+    finder.find(boxes, counter);
     EXPECT_EQ(counter.count(), tests);
     EXPECT_GE(calls.count, least_calls(tests, boxes.size()));
   });
@@ -100,15 +100,15 @@ TEST_P(CheckpointLaw, EndsASearchInOneCellBeforeManyMoreTests) {
     const std::vector<Box<D>> boxes = boxes_in_one_place<D>(boxes_of_a_search);
     const std::uint64_t tests = std::uint64_t{boxes.size()} * (boxes.size() - 1) / 2;
     if (least_calls(tests, boxes.size()) < 2) GTEST_SKIP() << "too few boxes under a sanitizer";
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     Calls calls{.count = 0, .last = 2};
-    ask(*finder, calls);
+    ask(finder, calls);
     PairCounter counter;
-    EXPECT_THROW(finder->find(boxes, counter), Enough);
+    EXPECT_THROW(finder.find(boxes, counter), Enough);
     EXPECT_LE(counter.count(), 2 * (Checkpoint::max_tests + 64 * boxes.size()));
     calls.last = 0;
     PairCounter whole;
-    finder->find(boxes, whole);
+    finder.find(boxes, whole);
     EXPECT_EQ(whole.count(), tests);
   });
 }
@@ -116,19 +116,20 @@ TEST_P(CheckpointLaw, EndsASearchInOneCellBeforeManyMoreTests) {
 TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneFrameAskFor) {
   in_dimension([&]<int D>() {
     const std::size_t count = boxes_of_a_frame;
-    const auto tracker = make_tracker<D>(algorithm(), following());
+    Tracker<D> tracker(algorithm(), following());
     Calls calls;
-    ask(*tracker, calls);
+    ask(tracker, calls);
     std::vector<BoxId> all;
     for (std::size_t i = 0; i < count; ++i) all.push_back(BoxId(i));
     PairCounter events;
-    tracker->update({.boxes = boxes_in_one_place<D>(count)}, events, events);
+    tracker.update({.boxes = boxes_in_one_place<D>(count)}, events, events);
     calls.count = 0;
-    tracker->update({.boxes = boxes_in_one_place<D>(count, 0.25F), .changed = all}, events, events);
+    const auto statistics =
+        tracker.update({.boxes = boxes_in_one_place<D>(count, 0.25F), .changed = all}, events, events);
     const std::uint64_t pairs = std::uint64_t{count} * (count - 1) / 2;
     EXPECT_EQ(events.count(), pairs);
     // Some keep ends in order, and test nothing where the order stays; these count nothing either.
-    const std::uint64_t tests = tracker->statistics() ? tracker->statistics()->tests : 0;
+    const std::uint64_t tests = statistics ? statistics->tests : 0;
     if (is_own(GetParam())) {
       EXPECT_GE(tests, pairs);
     }
@@ -136,12 +137,12 @@ TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneFrameAskFor) {
     calls = {.count = 0, .last = 1};
     if (least_calls(tests, count) > 0) {
       EXPECT_THROW(
-          tracker->update({.boxes = boxes_in_one_place<D>(count, 0.5F), .changed = all}, events, events),
+          tracker.update({.boxes = boxes_in_one_place<D>(count, 0.5F), .changed = all}, events, events),
           Enough);
     }
     calls.last = 0;
     PairCounter none;
-    tracker->update({.boxes = boxes_in_one_place<D>(count, 0.75F), .changed = all}, none, none);
+    tracker.update({.boxes = boxes_in_one_place<D>(count, 0.75F), .changed = all}, none, none);
     EXPECT_EQ(none.count(), 0u);
   });
 }

@@ -65,10 +65,9 @@ DoubleBoxes<D> nested() {
 
 template <int D, typename Real>
 std::uint64_t tests(const std::string& algorithm, std::span<const Box<D, Real>> boxes) {
-  const auto finder = make_finder<D, Real>(algorithm);
+  Finder<D, Real> finder(algorithm);
   PairCounter counter;
-  finder->find(boxes, counter);
-  return finder->statistics()->tests;
+  return finder.find(boxes, counter)->tests;
 }
 
 template <int D>
@@ -125,8 +124,8 @@ TEST(Quantiles, LeaveTheOrderOfPairsToTheBoxesAlone) {
   std::vector<Pair> of_three;
   PairCollector first(of_one);
   PairCollector second(of_three);
-  make_finder<2, double>("grid:threads=1")->find(boxes, first);
-  make_finder<2, double>("grid:threads=3")->find(boxes, second);
+  Finder<2, double>("grid:threads=1").find(boxes, first);
+  Finder<2, double>("grid:threads=3").find(boxes, second);
   EXPECT_GT(of_one.size(), 100u);
   EXPECT_EQ(of_one, of_three);
 }
@@ -150,10 +149,10 @@ TEST(DoubleCost, IsLowWhereASampleAtKnownPlacesIsFooled) {
 template <int D>
 std::uint64_t tests_of_frames(double unit) {
   DoubleBoxes<D> boxes = uniform<D>({unit, unit, unit});
-  const auto tracker = make_tracker<D, double>("auto");
+  Tracker<D, double> tracker("auto");
   PairCounter begun;
   PairCounter ended;
-  tracker->update({boxes, {}}, begun, ended);
+  tracker.update({boxes, {}}, begun, ended);
   std::uint64_t tests = 0;
   Rng rng(4);
   for (int frame = 0; frame < 4; ++frame) {
@@ -166,8 +165,7 @@ std::uint64_t tests_of_frames(double unit) {
         boxes[i].max[axis] += step;
       }
     }
-    tracker->update({boxes, changed}, begun, ended);
-    tests += tracker->statistics()->tests;
+    tests += tracker.update({boxes, changed}, begun, ended)->tests;
   }
   return tests;
 }
@@ -186,10 +184,10 @@ TEST(DoubleCost, OfAFrameIsTheSameAtEveryScale) {
 TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
   DoubleBoxes<2> boxes = uniform<2>({1, 1, 1});
   const DoubleBoxes<2> others = uniform<2>({1e80, 1e80, 1e80});
-  const auto tracker = make_tracker<2, double>("auto:update=follow");
+  Tracker<2, double> tracker("auto:update=follow");
   PairCounter begun;
   PairCounter ended;
-  tracker->update({boxes, {}}, begun, ended);
+  tracker.update({boxes, {}}, begun, ended);
   std::uint64_t candidates = 0;
   for (std::size_t frame = 0; frame < 200; ++frame) {
     std::vector<BoxId> changed;
@@ -197,8 +195,7 @@ TEST(DoubleCost, OfAFrameIsLowWhereBoxesComeFromAfar) {
       changed.push_back(BoxId(i));
       boxes[i] = others[i];
     }
-    tracker->update({boxes, changed}, begun, ended);
-    candidates += tracker->statistics()->hits;
+    candidates += tracker.update({boxes, changed}, begun, ended)->hits;
   }
   EXPECT_LE(candidates, 60 * box_count);
 }

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
@@ -192,11 +193,11 @@ class DoubleLaw : public Law {};
 
 TEST_P(DoubleLaw, FindsThePairsOfBruteForceInDouble) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D, double>(algorithm(), spec());
+    Finder<D, double> finder(algorithm(), spec());
     for (const DoubleInput<D>& input : double_inputs<D>(algorithm())) {
       std::vector<Pair> pairs;
       PairCollector collector(pairs);
-      finder->find(input.boxes, collector);
+      finder.find(input.boxes, collector);
       std::ranges::sort(pairs);
       EXPECT_EQ(pairs, reference<D>(input.boxes)) << input.name;
     }
@@ -205,13 +206,13 @@ TEST_P(DoubleLaw, FindsThePairsOfBruteForceInDouble) {
 
 TEST_P(DoubleLaw, FindsThePairsBetweenTwoSetsOfDoubles) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D, double>(algorithm(), spec());
+    Finder<D, double> finder(algorithm(), spec());
     for (const DoubleInput<D>& input : double_inputs<D>(algorithm())) {
       const std::size_t half = input.boxes.size() / 2;
       const std::span<const Box<D, double>> boxes = input.boxes;
       std::vector<Pair> pairs;
       PairCollector collector(pairs);
-      finder->find_between(boxes.first(half), boxes.subspan(half), collector);
+      finder.find_between(boxes.first(half), boxes.subspan(half), collector);
       std::ranges::sort(pairs);
       std::vector<Pair> expected;
       for (const Pair pair : reference<D>(input.boxes)) {
@@ -225,7 +226,7 @@ TEST_P(DoubleLaw, FindsThePairsBetweenTwoSetsOfDoubles) {
 
 /// Lets the tracker take a frame, and applies its events to the pairs that it told of before.
 template <int D>
-void take_frame(PairTracker<D, double>& tracker, const DoubleBoxes<D>& boxes, std::span<const BoxId> changed,
+void take_frame(Tracker<D, double>& tracker, const DoubleBoxes<D>& boxes, std::span<const BoxId> changed,
                 std::vector<Pair>& current) {
   std::vector<Pair> begun;
   std::vector<Pair> ended;
@@ -242,7 +243,7 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
   in_dimension([&]<int D>() {
     Rng rng(22);
     DoubleBoxes<D> boxes = boxes_at<D>(rng, 200, {5e6}, 0.02, 1e-3);
-    const auto tracker = make_tracker<D, double>(algorithm(), spec());
+    Tracker<D, double> tracker(algorithm(), spec());
     std::vector<Pair> current;
     for (int frame = 0; frame < 10; ++frame) {
       std::vector<BoxId> changed;
@@ -254,7 +255,7 @@ TEST_P(DoubleLaw, TracksMovesSmallerThanAFloatCanTell) {
           boxes[i].max[axis] += step;
         }
       }
-      take_frame<D>(*tracker, boxes, changed, current);
+      take_frame<D>(tracker, boxes, changed, current);
       EXPECT_EQ(current, reference<D>(boxes)) << "frame " << frame;
     }
   });
@@ -267,7 +268,7 @@ void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double w
   Rng rng(24);
   DoubleBoxes<D> boxes = scaled<D>(boxes_at<D>(rng, 300, {where}, 0.05, 1e-3), {unit, unit, unit});
   const DoubleBoxes<D> first = boxes;
-  const auto tracker = make_tracker<D, double>(algorithm, spec);
+  Tracker<D, double> tracker(algorithm, spec);
   std::vector<Pair> current;
   for (int frame = 0; frame < 30; ++frame) {
     std::vector<BoxId> changed;
@@ -285,7 +286,7 @@ void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double w
       if (kind > 0.95) boxes[i] = absent_box<D, double>();
       if (kind < 0.02 && algorithm.infinite_boxes) boxes[i].max.fill(std::numeric_limits<double>::infinity());
     }
-    take_frame<D>(*tracker, boxes, changed, current);
+    take_frame<D>(tracker, boxes, changed, current);
     ASSERT_EQ(current, reference<D>(boxes))
         << spec.text() << ", frame " << frame << ", at " << where << ", in " << unit;
   }
@@ -311,12 +312,12 @@ TEST(Doubles, TakeFewTestsWhereFloatsAboutOneOriginAllTouch) {
   Rng rng(23);
   const std::size_t count = 20'000;
   const DoubleBoxes<2> boxes = boxes_at<2>(rng, count, {500'000, 600'000}, 0.1, 0.5e-3);
-  const auto finder = make_finder<2, double>("grid");
+  Finder<2, double> finder("grid");
   PairCounter counter;
-  finder->find(boxes, counter);
+  const auto statistics = finder.find(boxes, counter);
   EXPECT_GT(counter.count(), 0u);
-  ASSERT_TRUE(finder->statistics().has_value());
-  EXPECT_LT(finder->statistics()->tests, 20 * count);
+  ASSERT_TRUE(statistics.has_value());
+  EXPECT_LT(statistics->tests, 20 * count);
 }
 
 TEST(Doubles, AreToldApartWhereFloatsAreEqual) {

@@ -72,7 +72,7 @@ class FailureLaw : public Law {};
 
 TEST_P(FailureLaw, AFinderRefusesAWrongBoxAndCanBeUsedAfter) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(50);
     for (const Box<D>& wrong : wrong_boxes<D>()) {
       for (const std::size_t place : {0, 20, 49}) {
@@ -80,25 +80,25 @@ TEST_P(FailureLaw, AFinderRefusesAWrongBoxAndCanBeUsedAfter) {
         with_wrong[place] = wrong;
         std::vector<Pair> pairs;
         PairCollector collector(pairs);
-        EXPECT_EQ(refused_index([&] { finder->find(with_wrong, collector); }), std::ptrdiff_t(place));
+        EXPECT_EQ(refused_index([&] { finder.find(with_wrong, collector); }), std::ptrdiff_t(place));
         collector.flush();
         EXPECT_TRUE(pairs.empty());
       }
     }
-    const auto divergence = lab::check_finder<D>(*finder, boxes, algorithm().name);
+    const auto divergence = lab::check_finder<D>(finder, boxes, algorithm().name);
     EXPECT_FALSE(divergence) << divergence->text;
   });
 }
 
 TEST_P(FailureLaw, AFinderCanBeUsedAfterItsSinkThrew) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> crowd(200, scattered_boxes<D>(1)[0]);  // 19,900 pairs: some twenty chunks
     for (const std::size_t chunks : {0, 1, 5, 15}) {
       ChunkCollector sink(chunks);
-      EXPECT_THROW(finder->find(crowd, sink), SinkIsFull);
+      EXPECT_THROW(finder.find(crowd, sink), SinkIsFull);
       for (const std::size_t count : {0, 30, 200}) {
-        const auto divergence = lab::check_finder<D>(*finder, scattered_boxes<D>(count), algorithm().name);
+        const auto divergence = lab::check_finder<D>(finder, scattered_boxes<D>(count), algorithm().name);
         EXPECT_FALSE(divergence) << divergence->text;
       }
     }
@@ -109,9 +109,9 @@ TEST_P(FailureLaw, AFinderCanBeUsedAfterItsSinkThrew) {
 template <int D>
 class Tracked {
  public:
-  explicit Tracked(const Algorithm& algorithm) : tracker_(make_tracker<D>(algorithm, {algorithm.name, {}})) {}
+  explicit Tracked(const Algorithm& algorithm) : tracker_(algorithm, {algorithm.name, {}}) {}
 
-  PairTracker<D>& tracker() { return *tracker_; }
+  Tracker<D>& tracker() { return tracker_; }
 
   /// Updates into sinks that take so many chunks. What differs between the events and those that lead from
   /// the pairs of the last whole update to these boxes' pairs; empty if nothing does. Throws what the tracker
@@ -120,7 +120,7 @@ class Tracked {
                          std::size_t begun_chunks = no_limit, std::size_t ended_chunks = no_limit) {
     ChunkCollector begun(begun_chunks);
     ChunkCollector ended(ended_chunks);
-    tracker_->update({boxes, changed}, begun, ended);
+    tracker_.update({boxes, changed}, begun, ended);
     std::vector<Pair> now = lab::reference_pairs<D>(boxes);
     std::vector<Pair> expected_begun;
     std::vector<Pair> expected_ended;
@@ -135,7 +135,7 @@ class Tracked {
   }
 
  private:
-  std::unique_ptr<PairTracker<D>> tracker_;
+  Tracker<D> tracker_;
   std::vector<Pair> pairs_;
 };
 

@@ -15,7 +15,7 @@ namespace broadside::laws {
 namespace {
 
 template <int D>
-std::vector<Pair> pairs_of(PairFinder<D>& finder, std::span<const Box<D>> boxes) {
+std::vector<Pair> pairs_of(Finder<D>& finder, std::span<const Box<D>> boxes) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
   finder.find(boxes, collector);
@@ -40,12 +40,12 @@ TEST_P(FinderLaw, FindsEachOverlappingPairOnce) {
 
 TEST_P(FinderLaw, HasNoMemoryThatShows) {
   in_dimension([&]<int D>() {
-    const auto used = make_finder<D>(algorithm(), spec());
+    Finder<D> used(algorithm(), spec());
     std::vector<Input<D>> inputs = hard_inputs<D>(algorithm());
     for (int round = 0; round < 2; ++round) {
       for (const Input<D>& input : inputs) {
-        const auto fresh = make_finder<D>(algorithm(), spec());
-        EXPECT_EQ(compared(pairs_of<D>(*used, input.boxes)), compared(pairs_of<D>(*fresh, input.boxes)))
+        Finder<D> fresh(algorithm(), spec());
+        EXPECT_EQ(compared(pairs_of<D>(used, input.boxes)), compared(pairs_of<D>(fresh, input.boxes)))
             << input.name;
       }
       Rng(1).shuffle(inputs);

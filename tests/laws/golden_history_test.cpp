@@ -68,12 +68,12 @@ TEST_P(GoldenHistories, HaveTheSameEventsInTheSameOrder) {
       if (golden.dimension != D) continue;
       const History<D> history = moving_history<D>(golden.has_filters);
       for (const std::size_t threads : {1, 2, 8}) {
-        const auto tracker = make_tracker<D>(algorithm(), spec());
-        tracker->set_workers({.threads = threads, .executor = nullptr, .boxes_per_thread = 1});
+        Tracker<D> tracker(algorithm(), spec());
+        tracker.set_workers({.threads = threads, .executor = nullptr, .boxes_per_thread = 1});
         OrderHasher events;
         Replay<D> replay(history);
-        tracker->update(replay.frame(), events, events);
-        for (const Step<D>& step : history.steps) tracker->update(replay.next(step), events, events);
+        tracker.update(replay.frame(), events, events);
+        for (const Step<D>& step : history.steps) tracker.update(replay.next(step), events, events);
         EXPECT_EQ(events.count, golden.events) << D << "D, filters " << golden.has_filters;
         EXPECT_EQ(events.hash, golden.hash) << std::hex << "0x" << events.hash;
       }

@@ -75,7 +75,7 @@ TEST_P(GoldenHashes, OfPairsAreTheSame) {
       if (golden.dimension != D) continue;
       const lab::History<D> history = history_of<D>(golden.scene);
       PairHasher hasher;
-      make_finder<D>(algorithm(), spec())->find(history.boxes, hasher);
+      Finder<D>(algorithm(), spec()).find(history.boxes, hasher);
       EXPECT_EQ(hasher.count(), golden.pairs) << golden.scene;
       EXPECT_EQ(hasher.hash(), golden.hash) << golden.scene;
     }
@@ -87,12 +87,12 @@ TEST_P(GoldenHashes, OfEventsAreTheSame) {
     for (const GoldenScene& golden : golden_scenes) {
       if (golden.dimension != D) continue;
       lab::History<D> history = history_of<D>(golden.scene);
-      const auto tracker = make_tracker<D>(algorithm(), spec());
+      Tracker<D> tracker(algorithm(), spec());
       OrderHasher hasher;  // events come sorted, so that their order is golden as well
-      tracker->update({history.boxes, {}}, hasher, hasher);
+      tracker.update({history.boxes, {}}, hasher, hasher);
       for (const lab::Step<D>& step : history.steps) {
         lab::apply(step, history.boxes);
-        tracker->update({history.boxes, step.changed}, hasher, hasher);
+        tracker.update({history.boxes, step.changed}, hasher, hasher);
       }
       EXPECT_EQ(hasher.hash, golden.events) << golden.scene;
     }
@@ -104,7 +104,7 @@ class GoldenOrders : public Law {};
 TEST_P(GoldenOrders, AreTheSame) {
   in_dimension([&]<int D>() {
     OrderHasher hasher;
-    make_finder<D>(algorithm(), spec())->find(history_of<D>("integers").boxes, hasher);
+    Finder<D>(algorithm(), spec()).find(history_of<D>("integers").boxes, hasher);
     const auto golden = std::ranges::find_if(golden_orders, [&](const GoldenOrder& order) {
       return order.algorithm == algorithm().name && order.dimension == D;
     });

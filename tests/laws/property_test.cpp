@@ -81,8 +81,8 @@ class Property : public Law {
       keep_to_limits(boxes);
       const Spec strained = *rc::gen::elementOf(specs());
       for (const Spec& tried : {spec(), strained}) {
-        const auto finder = make_finder<D>(algorithm(), tried);
-        if (const auto divergence = lab::check_finder<D>(*finder, boxes, tried.text()))
+        Finder<D> finder(algorithm(), tried);
+        if (const auto divergence = lab::check_finder<D>(finder, boxes, tried.text()))
           RC_FAIL(divergence->text);
       }
     });
@@ -95,11 +95,12 @@ class Property : public Law {
       const auto seed = *rc::gen::arbitrary<std::uint8_t>().as("the filters' seed");
       const Spec strained = *rc::gen::elementOf(specs());
       for (const Spec& tried : {spec(), strained}) {
-        const auto divergence =
-            lab::check_tracker<D>(*make_tracker<D>(algorithm(), tried), history_of(frames), tried.text());
+        Tracker<D> tracker(algorithm(), tried);
+        const auto divergence = lab::check_tracker<D>(tracker, history_of(frames), tried.text());
         if (divergence) RC_FAIL(divergence->text);
         const auto filtered = with_filters(whole_frames(history_of(frames)), seed);
-        const std::string text = laws::divergence<D, float>(*make_tracker<D>(algorithm(), tried), filtered);
+        Tracker<D> filtered_tracker(algorithm(), tried);
+        const std::string text = laws::divergence<D, float>(filtered_tracker, filtered);
         if (!text.empty()) RC_FAIL(tried.text() + ", with filters: " + text);
       }
     });

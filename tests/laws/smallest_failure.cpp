@@ -34,8 +34,10 @@ testing::AssertionResult finds_the_pairs(const Algorithm& algorithm, const Spec&
                                          std::vector<Box<D>> boxes) {
   Failure failure;
   const auto fails = [&](std::span<const Box<D>> some) {
-    const Failure found =
-        failure_of([&] { return lab::check_finder<D>(*make_finder<D>(algorithm, spec), some, spec.text()); });
+    const Failure found = failure_of([&] {
+      Finder<D> finder(algorithm, spec);
+      return lab::check_finder<D>(finder, some, spec.text());
+    });
     if (!found.empty()) failure = found;
     return !found.empty();
   };
@@ -49,8 +51,10 @@ testing::AssertionResult tracks_the_pairs(const Algorithm& algorithm, const Spec
                                           lab::History<D> history) {
   Failure failure;
   const auto fails = [&](const lab::History<D>& some) {
-    const Failure found = failure_of(
-        [&] { return lab::check_tracker<D>(*make_tracker<D>(algorithm, spec), some, spec.text()); });
+    const Failure found = failure_of([&] {
+      Tracker<D> tracker(algorithm, spec);
+      return lab::check_tracker<D>(tracker, some, spec.text());
+    });
     if (!found.empty()) failure = found;
     return !found.empty();
   };

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -29,9 +30,9 @@ std::vector<std::string> straining_values(const Tunable& tunable) {
 bool is_accepted(const LawCase& law_case, const Spec& spec) {
   try {
     if (law_case.dimension == 2)
-      make_finder<2>(*law_case.algorithm, spec);
+      Finder<2>(*law_case.algorithm, spec);
     else
-      make_finder<3>(*law_case.algorithm, spec);
+      Finder<3>(*law_case.algorithm, spec);
     return true;
   } catch (const InvalidSpec&) {
     return false;

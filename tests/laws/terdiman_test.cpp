@@ -17,7 +17,7 @@ std::uint64_t pairs_of(const Algorithm& algorithm, std::size_t boxes) {
   const lab::NamedScene terdiman = lab::find_scene("terdiman");
   const auto history = lab::make_history<3>(terdiman.scene, terdiman.spec, {.boxes = boxes});
   PairCounter counter;
-  make_finder<3>(algorithm, {algorithm.name, {}})->find(history.boxes, counter);
+  Finder<3>(algorithm, {algorithm.name, {}}).find(history.boxes, counter);
   return counter.count();
 }
 

@@ -79,7 +79,7 @@ TEST_P(OwnTrackerLaw, GivesEachEventOnceOfThousandsOfBoxes) {
 TEST_P(OwnTrackerLaw, DoesNotGrowWhileHistoriesRepeatThemselves) {
   in_dimension([&]<int D>() {
     for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
-      const auto tracker = make_tracker<D>(algorithm(), spec());
+      Tracker<D> tracker(algorithm(), spec());
       std::vector<BoxId> all(named.frames.front().boxes.size());
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = BoxId(i);
       const auto play = [&] {
@@ -88,9 +88,9 @@ TEST_P(OwnTrackerLaw, DoesNotGrowWhileHistoriesRepeatThemselves) {
           all.resize(std::max(all.size(), frame.boxes.size()));
           for (std::size_t i = 0; i < all.size(); ++i) all[i] = BoxId(i);
           const auto count = std::min(all.size(), frame.boxes.size());
-          tracker->update({frame.boxes, std::span(all).first(count)}, counter, counter);
+          tracker.update({frame.boxes, std::span(all).first(count)}, counter, counter);
         }
-        return tracker->bytes();
+        return tracker.bytes();
       };
       // What is kept for coming and going settles in some ten plays, and by then trackers that choose have
       // chosen.

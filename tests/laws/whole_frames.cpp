@@ -80,7 +80,7 @@ std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame) {
 }
 
 template <int D, typename Real>
-std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
+std::string divergence(Tracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
                        const RunUpdate& run) {
   WholeFrame<D, Real> last{};  // the one handed in before, whether taken or not
   std::vector<Pair> held;      // after the last whole update
@@ -130,10 +130,10 @@ template std::vector<Pair> pairs_of(const WholeFrame<2>&);
 template std::vector<Pair> pairs_of(const WholeFrame<3>&);
 template std::vector<Pair> pairs_of(const WholeFrame<2, double>&);
 template std::vector<Pair> pairs_of(const WholeFrame<3, double>&);
-template std::string divergence(PairTracker<2>&, std::span<const WholeFrame<2>>, const RunUpdate&);
-template std::string divergence(PairTracker<3>&, std::span<const WholeFrame<3>>, const RunUpdate&);
-template std::string divergence(PairTracker<2, double>&, std::span<const WholeFrame<2, double>>,
+template std::string divergence(Tracker<2>&, std::span<const WholeFrame<2>>, const RunUpdate&);
+template std::string divergence(Tracker<3>&, std::span<const WholeFrame<3>>, const RunUpdate&);
+template std::string divergence(Tracker<2, double>&, std::span<const WholeFrame<2, double>>,
                                 const RunUpdate&);
-template std::string divergence(PairTracker<3, double>&, std::span<const WholeFrame<3, double>>,
+template std::string divergence(Tracker<3, double>&, std::span<const WholeFrame<3, double>>,
                                 const RunUpdate&);
 }  // namespace broadside::laws

@@ -38,7 +38,7 @@ using RunUpdate = std::function<bool(const std::function<void()>& update)>;
 /// lead from each whole update's pairs to the next one's; empty if nothing does. Throws what the tracker
 /// throws, but for what sinks threw. `run` makes updates fail in other ways.
 template <int D, typename Real>
-std::string divergence(PairTracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
+std::string divergence(Tracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
                        const RunUpdate& run = {});
 
 }  // namespace broadside::laws

@@ -97,7 +97,7 @@ rc::Gen<Command<D>> command(const rc::Gen<Box<D>>& box) {
 template <int D>
 class Model {
  public:
-  Model(std::unique_ptr<PairTracker<D>> tracker, WorldKind kind)
+  Model(Tracker<D> tracker, WorldKind kind)
       : options_(kind.options()), world_(std::move(tracker), options_), has_predicate_(kind.has_predicate) {
     if (has_predicate_)
       world_.set_predicate([this](Handle first, Handle second) { return accepts_now(first, second); });
@@ -397,7 +397,7 @@ class WorldProperty : public Law {
       const WorldKind kind{*rc::gen::inRange<std::uint32_t>(0, 16).as("margins"),
                            *rc::gen::arbitrary<bool>().as("predicate")};
       const auto commands = *rc::gen::container<std::vector<Command<D>>>(command(box)).as("commands");
-      Model<D> model(make_tracker<D>(algorithm(), spec()), kind);
+      Model<D> model(Tracker<D>(algorithm(), spec()), kind);
       for (const Command<D>& command : commands) {
         model.run(command);
         model.check();

@@ -33,8 +33,8 @@ struct SinkFailed {};
 TEST(Search, PutsAwayPairsThatWaitWithoutMemory) {
   const std::vector<Box2> boxes(2000, Box2{{0, 0}, {1, 1}});
   LastExecutor executor;
-  const auto finder = make_finder<2>("brute_force");
-  finder->set_workers({.threads = 2, .executor = &executor, .boxes_per_thread = 1});
+  Finder<2> finder("brute_force");
+  finder.set_workers({.threads = 2, .executor = &executor, .boxes_per_thread = 1});
   std::optional<FailingAllocation> no_memory;
   PairFunction full([&no_memory](std::span<const Pair>) {
     no_memory.emplace(0, FailureKind::from_then_on);
@@ -42,7 +42,7 @@ TEST(Search, PutsAwayPairsThatWaitWithoutMemory) {
   });
   bool threw = false;
   try {
-    finder->find(boxes, full);
+    finder.find(boxes, full);
   } catch (const SinkFailed&) {
     threw = true;
   }
@@ -50,7 +50,7 @@ TEST(Search, PutsAwayPairsThatWaitWithoutMemory) {
   EXPECT_TRUE(threw);
   std::size_t count = 0;
   PairFunction counted([&count](std::span<const Pair> chunk) { count += chunk.size(); });
-  finder->find(boxes, counted);
+  finder.find(boxes, counted);
   EXPECT_EQ(count, boxes.size() * (boxes.size() - 1) / 2);
 }
 

@@ -1,11 +1,12 @@
 // Finders that run out of memory: the search throws std::bad_alloc, and the next one finds all pairs again.
 #include <algorithm>
 #include <array>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "injection.hpp"
@@ -31,11 +32,11 @@ struct Search {
     }
   }
 
-  void run(PairFinder<D, Real>& finder, PairSink& sink) const {
+  void run(Finder<D, Real>& finder, PairSink& sink) const {
     if (left_count == 0)
       finder.find(boxes, sink);
     else
-      finder.find_between(boxes, left_count, sink);
+      finder.find_across(boxes, left_count, sink);
   }
 
   std::vector<Box<D, Real>> boxes;
@@ -45,7 +46,7 @@ struct Search {
 
 /// What is wrong with what the finder finds; empty if nothing is.
 template <int D, typename Real>
-std::string fault(PairFinder<D, Real>& finder, const Search<D, Real>& search) {
+std::string fault(Finder<D, Real>& finder, const Search<D, Real>& search) {
   std::vector<Pair> found;
   PairCollector collector(found);
   search.run(finder, collector);
@@ -60,22 +61,23 @@ std::string fault(PairFinder<D, Real>& finder, const Search<D, Real>& search) {
 template <int D, typename Real>
 std::string play(const MemoryCase& memory_case, const Spec& spec, const Workers& workers,
                  const std::vector<Search<D, Real>>& searches, Injector& injector) {
-  std::unique_ptr<PairFinder<D, Real>> finder;
-  while (!injector.attempt([&] { finder = make_finder<D, Real>(*memory_case.algorithm, spec); })) {
+  std::optional<Finder<D, Real>> made;
+  while (!injector.attempt([&] { made.emplace(*memory_case.algorithm, spec); })) {
   }
-  finder->set_workers(workers);
+  Finder<D, Real>& finder = *made;
+  finder.set_workers(workers);
   for (const Search<D, Real>& search : searches) {
     std::vector<Pair> found;
     PairCollector collector(found);
     PairCounter counter;
     const bool counts = search.boxes.size() % 2 != 0;
     const bool is_done =
-        injector.attempt([&] { counts ? search.run(*finder, counter) : search.run(*finder, collector); });
+        injector.attempt([&] { counts ? search.run(finder, counter) : search.run(finder, collector); });
     std::ranges::sort(found);
     if (is_done && (counts ? counter.count() != search.pairs.size() : found != search.pairs))
       return "a search that did not throw has not found all pairs";
     if (!is_done) {
-      const std::string text = fault(*finder, search);
+      const std::string text = fault(finder, search);
       if (!text.empty()) return "after a search that failed, " + text;
     }
   }

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "broadside/error.hpp"
+#include "broadside/tracker.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -12,9 +13,9 @@ namespace {
 bool is_accepted(const MemoryCase& memory_case, const Spec& spec) {
   try {
     if (memory_case.dimension == 2)
-      make_tracker<2>(*memory_case.algorithm, spec);
+      Tracker<2>(*memory_case.algorithm, spec);
     else
-      make_tracker<3>(*memory_case.algorithm, spec);
+      Tracker<3>(*memory_case.algorithm, spec);
     return true;
   } catch (const InvalidSpec&) {
     return false;

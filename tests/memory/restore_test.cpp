@@ -49,7 +49,7 @@ World2 world_of(const Kind& kind) {
   options.algorithm = kind.algorithm;
   options.margin = kind.margin;
   options.keep_pairs = kind.keep_pairs;
-  World2 world = kind.has_own_tracker ? World2(options) : World2(make_tracker<2>(kind.algorithm), options);
+  World2 world = kind.has_own_tracker ? World2(options) : World2(Tracker<2>(kind.algorithm), options);
   if (kind.has_predicate) world.set_predicate([](Handle a, Handle b) { return (a.slot + b.slot) % 3 != 0; });
   return world;
 }

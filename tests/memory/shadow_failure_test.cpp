@@ -14,13 +14,13 @@ namespace broadside::laws {
 namespace {
 
 /// Never tells of any event.
-class SilentTracker final : public PairTracker<2> {
- private:
-  void update_valid(const Change<2>&, PairSink&, PairSink&) override {}
+class SilentFollower final : public Follower<2> {
+ public:
+  std::optional<Statistics> follow(const Change<2>&, PairSink&, PairSink&) override { return std::nullopt; }
 };
 
 /// Whether an update has told a fault; nothing if memory ran out.
-std::optional<Pair> told(PairTracker<2>& tracker, const std::vector<Box2>& boxes, Injector& injector) {
+std::optional<Pair> told(ShadowTracker<2>& tracker, const std::vector<Box2>& boxes, Injector& injector) {
   std::optional<Pair> pair;
   PairCounter events;
   injector.attempt([&] {
@@ -38,7 +38,7 @@ std::optional<Pair> told(PairTracker<2>& tracker, const std::vector<Box2>& boxes
 TEST(ShadowFailure, TellsAFaultAsSoonAsThereIsMemory) {
   const std::vector<Box2> boxes(2, Box2{{0, 0}, {1, 1}});
   for (std::uint64_t k = 0, failures = 1; failures > 0; ++k) {
-    ShadowTracker<2> shadow([] { return std::make_unique<SilentTracker>(); });
+    ShadowTracker<2> shadow([] { return Tracker<2>(std::make_unique<SilentFollower>()); });
     Injector injector(k, FailureKind::once);
     std::optional<Pair> pair = told(shadow, boxes, injector);
     failures = injector.failures();

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -87,20 +87,21 @@ std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t mo
 template <int D, typename Real>
 std::string play(const MemoryCase& memory_case, const Spec& spec, const Workers& workers,
                  std::span<const WholeFrame<D, Real>> frames, Injector& injector) {
-  std::unique_ptr<PairTracker<D, Real>> tracker;
-  while (!injector.attempt([&] { tracker = make_tracker<D, Real>(*memory_case.algorithm, spec); })) {
+  std::optional<Tracker<D, Real>> made;
+  while (!injector.attempt([&] { made.emplace(*memory_case.algorithm, spec); })) {
   }
-  tracker->set_workers(workers);
+  Tracker<D, Real>& tracker = *made;
+  tracker.set_workers(workers);
   std::string wrong;
   const auto run = [&](const std::function<void()>& update) {
-    const std::size_t size = tracker->last_frame().boxes.size();
+    const std::size_t size = tracker.last_frame().boxes.size();
     if (injector.attempt(update)) return true;
-    const Frame<D, Real> last = tracker->last_frame();
+    const Frame<D, Real> last = tracker.last_frame();
     if (last.boxes.size() != size || (!last.filters.empty() && last.filters.size() != size))
       wrong = "after an update that failed, the last frame is not the one before";
     return false;
   };
-  const std::string text = divergence<D, Real>(*tracker, frames, run);
+  const std::string text = divergence<D, Real>(tracker, frames, run);
   return wrong.empty() ? text : wrong;
 }
 

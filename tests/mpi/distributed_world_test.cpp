@@ -3,6 +3,8 @@
 #include "broadside/distributed_world.hpp"
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -11,7 +13,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/finder.hpp"
 
 #include "tests/mpi/ranks.hpp"
 #include "tests/support/model.hpp"
@@ -157,23 +159,23 @@ TEST(DistributedWorld, TellsWhatChanges) {
 
 bool is_to_fail = false;
 
-/// A tracker that fails when it is told to.
-class FailingTracker final : public PairTracker<2> {
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+/// Brute force that fails when it is told to.
+class FailingSearcher final : public Searcher<2> {
+ public:
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
     if (is_to_fail) throw std::domain_error("told to fail");
-    update_with(*tracker_, change, begun, ended);
+    return finder_.find(input.boxes, pairs);
   }
 
-  std::unique_ptr<PairTracker<2>> tracker_ = make_tracker<2>("brute_force");
+ private:
+  Finder<2> finder_{"brute_force"};
 };
 
 TEST(DistributedWorld, TellsAllThatChangedOnceAnUpdateHasFailedOnARank) {
-  register_algorithm({.name = "failing",
-                      .summary = "fails",
-                      .source = "this test",
-                      .finder_2d = [](const Settings&) { return make_finder<2>("brute_force"); },
-                      .tracker_2d = [](const Settings&) { return std::make_unique<FailingTracker>(); }});
+  register_algorithm(
+      {.name = "failing", .summary = "fails", .source = "this test", .searcher_2d = [](const Settings&) {
+         return std::make_unique<FailingSearcher>();
+       }});
   History<2, float> history(4, {.algorithm = "failing"});
   for (int frame = 0; frame < 12; ++frame) {
     for (int i = 0; i < 20; ++i) history.add(drawn<2, float>(history.rng()));

@@ -3,37 +3,40 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <mpi.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/mpi.hpp"
 
 namespace broadside {
 namespace {
 
 /// Kills the last rank as it searches.
-class DyingFinder final : public PairFinder<2> {
- private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+class DyingSearcher final : public Searcher<2> {
+ public:
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
     int rank = 0;
     int ranks = 1;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (rank == ranks - 1) std::raise(SIGKILL);
-    search_with(*finder_, boxes, pairs);
+    return finder_.find(input.boxes, pairs);
   }
 
-  std::unique_ptr<PairFinder<2>> finder_ = make_finder<2>("brute_force");
+ private:
+  Finder<2> finder_{"brute_force"};
 };
 
 void join() {
   register_algorithm({.name = "dying",
                       .summary = "kills the last rank",
                       .source = "this test",
-                      .finder_2d = [](const Settings&) { return std::make_unique<DyingFinder>(); }});
+                      .searcher_2d = [](const Settings&) { return std::make_unique<DyingSearcher>(); }});
   const std::vector<Box2> boxes(3);
   mpi::find_pairs(
       MPI_COMM_WORLD, boxes, [](std::span<const LargePair>) { std::puts("was given pairs"); },

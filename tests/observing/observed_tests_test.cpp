@@ -30,17 +30,14 @@ struct Observed {
 };
 
 template <int D>
-Observed observe(PairFinder<D>& finder, const std::vector<Box<D>>& boxes, std::size_t left_count = 0) {
+Observed observe(Finder<D>& finder, const std::vector<Box<D>>& boxes, std::size_t left_count = 0) {
   observed_tests().clear();
   Observed observed;
   observed.pairs = sorted_pairs([&](PairSink& sink) {
-    if (left_count == 0)
-      finder.find(boxes, sink);
-    else
-      finder.find_between(boxes, left_count, sink);
+    observed.statistics =
+        (left_count == 0 ? finder.find(boxes, sink) : finder.find_across(boxes, left_count, sink)).value();
   });
   observed.tests = observed_tests();
-  observed.statistics = finder.statistics().value();
   return observed;
 }
 
@@ -89,10 +86,10 @@ void with_each_finder(Body body) {
   const std::vector<std::vector<Box<D>>> all = scenes<D>();
   for (const std::string& spec : specs) {
     if (!find_algorithm(Spec::parse(spec).name)->has_dimension(D)) continue;
-    const auto finder = make_finder<D>(spec);
+    Finder<D> finder(spec);
     for (std::size_t scene = 0; scene < all.size(); ++scene) {
       SCOPED_TRACE(testing::Message() << spec << " in " << D << "D, scene " << scene);
-      body(*finder, all[scene]);
+      body(finder, all[scene]);
       if (testing::Test::HasFailure()) return;
     }
   }
@@ -100,7 +97,7 @@ void with_each_finder(Body body) {
 
 TEST(ObservedTests, AreThoseThatTheSearchCounts) {
   on_each_instruction_set([]<int D>() {
-    with_each_finder<D>([](PairFinder<D>& finder, const std::vector<Box<D>>& boxes) {
+    with_each_finder<D>([](Finder<D>& finder, const std::vector<Box<D>>& boxes) {
       const Observed observed = observe(finder, boxes);
       EXPECT_EQ(observed.tests.size(), observed.statistics.tests);
       EXPECT_EQ(observed.pairs, overlapping_pairs(boxes));
@@ -111,7 +108,7 @@ TEST(ObservedTests, AreThoseThatTheSearchCounts) {
 
 TEST(ObservedTests, OfTwoSetsAreThoseThatTheSearchCounts) {
   in_each_dimension([]<int D>() {
-    with_each_finder<D>([](PairFinder<D>& finder, const std::vector<Box<D>>& boxes) {
+    with_each_finder<D>([](Finder<D>& finder, const std::vector<Box<D>>& boxes) {
       if (boxes.size() < 2) return;
       const std::size_t left_count = boxes.size() / 3 + 1;
       const Observed observed = observe(finder, boxes, left_count);
@@ -125,7 +122,7 @@ TEST(ObservedTests, OfTwoSetsAreThoseThatTheSearchCounts) {
 
 TEST(ObservedTests, NameBoxesByTheirPlacesAmongAbsentOnes) {
   in_each_dimension([]<int D>() {
-    with_each_finder<D>([](PairFinder<D>& finder, const std::vector<Box<D>>& present) {
+    with_each_finder<D>([](Finder<D>& finder, const std::vector<Box<D>>& present) {
       std::vector<Box<D>> boxes;
       for (const Box<D>& box : present) {
         boxes.push_back(box);
@@ -145,7 +142,8 @@ TEST(ObservedTests, CompareEachPairOnceByBruteForce) {
   Rng rng(9);
   const std::vector<Box2> boxes = random_boxes<2>(rng, 100);
   for (const std::string_view spec : {"brute_force", "paper_brute_force"}) {
-    std::vector<Pair> tests = observe(*make_finder<2>(spec), boxes).tests;
+    Finder<2> finder(spec);
+    std::vector<Pair> tests = observe(finder, boxes).tests;
     std::ranges::sort(tests);
     std::vector<Pair> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -166,9 +164,9 @@ TEST(ObservedTests, GoOnWhereAutoHandsASearchOver) {
       box.max[axis] = box.min[axis] + (axis == along ? 900.0F : 0.0F);
     }
   }
-  const auto finder = make_finder<3>("auto");
-  const Observed observed = observe(*finder, boxes);
-  ASSERT_NE(finder->explanation().find("gave up"), std::string::npos) << finder->explanation();
+  Finder<3> finder("auto");
+  const Observed observed = observe(finder, boxes);
+  ASSERT_NE(finder.explanation().find("gave up"), std::string::npos) << finder.explanation();
   EXPECT_EQ(observed.tests.size(), observed.statistics.tests);
   EXPECT_EQ(hits_of(observed.tests, boxes), observed.pairs);
 }

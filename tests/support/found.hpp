@@ -11,14 +11,14 @@ namespace broadside::laws {
 
 /// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
 template <int D, typename Real>
-std::vector<Pair> found(PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+std::vector<Pair> found(Finder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
                         std::size_t left_count = 0) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
   if (left_count == 0)
     finder.find(boxes, collector);
   else
-    finder.find_between(boxes, left_count, collector);
+    finder.find_across(boxes, left_count, collector);
   return pairs;
 }
 

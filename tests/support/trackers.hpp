@@ -2,10 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "broadside/follower.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
@@ -21,7 +25,9 @@ struct PairEvents {
   friend bool operator==(const PairEvents&, const PairEvents&) = default;
 };
 
-inline PairEvents update(PairTracker<2>& tracker, const Frame<2>& frame) {
+/// Of a Tracker or a ShadowTracker.
+template <typename AnyTracker>
+PairEvents update(AnyTracker& tracker, const Frame<2>& frame) {
   PairEvents events;
   PairCollector begun(events.begun);
   PairCollector ended(events.ended);
@@ -29,24 +35,30 @@ inline PairEvents update(PairTracker<2>& tracker, const Frame<2>& frame) {
   return events;
 }
 
-inline PairEvents update(PairTracker<2>& tracker, const std::vector<Box2>& boxes, const Ids& changed) {
-  return update(tracker, {boxes, changed});
+template <typename AnyTracker>
+PairEvents update(AnyTracker& tracker, const std::vector<Box2>& boxes, const Ids& changed) {
+  return update(tracker, Frame<2>{boxes, changed});
 }
 
-/// Calls a function with the change that an algorithm gets to see.
-class StubTracker final : public PairTracker<2> {
+/// Calls a function with the change that a follower gets to see.
+class StubFollower final : public Follower<2> {
  public:
-  using Update = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
+  using Follow = std::function<void(const Change<2>&, PairSink&, PairSink&)>;
 
-  explicit StubTracker(Update update) : update_(std::move(update)) {}
+  explicit StubFollower(Follow follow) : follow_(std::move(follow)) {}
 
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
-    update_(change, begun, ended);
+  std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    follow_(change, begun, ended);
+    return std::nullopt;
   }
 
-  Update update_;
+ private:
+  Follow follow_;
 };
+
+inline Tracker<2> stub_tracker(StubFollower::Follow follow) {
+  return Tracker<2>(std::make_unique<StubFollower>(std::move(follow)));
+}
 
 class FailingSink final : public PairSink {
  private:

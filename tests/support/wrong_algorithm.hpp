@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 namespace broadside::lab {
@@ -18,19 +20,20 @@ using Spoil = std::function<void(std::vector<Pair>&, std::size_t searches)>;
 
 /// Brute force, spoilt.
 template <int D>
-class SpoiltFinder final : public PairFinder<D> {
+class SpoiltSearcher final : public Searcher<D> {
  public:
-  explicit SpoiltFinder(Spoil spoil) : spoil_(std::move(spoil)) {}
+  explicit SpoiltSearcher(Spoil spoil) : spoil_(std::move(spoil)) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& sink) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& sink) override {
     std::vector<Pair> pairs;
     PairCollector collector(pairs);
-    make_finder<D>("brute_force")->find(boxes, collector);
+    Finder<D>("brute_force").find(input.boxes, collector);
     if (!pairs.empty()) spoil_(pairs, searches_++);
     for (const Pair pair : pairs) sink.add(pair.first, pair.second);
+    return std::nullopt;
   }
 
+ private:
   Spoil spoil_;
   std::size_t searches_ = 0;
 };
@@ -39,8 +42,8 @@ class SpoiltFinder final : public PairFinder<D> {
 inline Algorithm spoilt(std::string name, const Spoil& spoil) {
   Algorithm algorithm;
   algorithm.name = std::move(name);
-  algorithm.finder_2d = [spoil](const Settings&) { return std::make_unique<SpoiltFinder<2>>(spoil); };
-  algorithm.finder_3d = [spoil](const Settings&) { return std::make_unique<SpoiltFinder<3>>(spoil); };
+  algorithm.searcher_2d = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<2>>(spoil); };
+  algorithm.searcher_3d = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<3>>(spoil); };
   return algorithm;
 }
 

@@ -167,15 +167,15 @@ bool all_hold() {
     const std::vector<Pair> expected_between = crossing(expected, left_count);
     for (const broadside::Algorithm& algorithm : broadside::algorithms()) {
       if (algorithm.kind != broadside::AlgorithmKind::own) continue;
-      const auto finder = broadside::make_finder<D>(algorithm.name);
+      broadside::Finder<D> finder(algorithm.name);
       const std::string what = std::string(algorithm.name) + ", " + std::to_string(D) + "D, " + input.name +
                                ", " + std::to_string(boxes.size()) + " boxes";
       std::vector<Pair> pairs;
       broadside::PairCollector collector(pairs);
-      finder->find(boxes, collector);
+      finder.find(boxes, collector);
       if (!holds(what, pairs, expected)) return false;
       pairs.clear();
-      finder->find_between(boxes.first(left_count), boxes.subspan(left_count), collector);
+      finder.find_between(boxes.first(left_count), boxes.subspan(left_count), collector);
       if (!holds(what + ", between", pairs, expected_between)) return false;
     }
   }

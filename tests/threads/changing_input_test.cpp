@@ -16,6 +16,7 @@
 
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/queries.hpp"
 #include "broadside/sinks.hpp"
@@ -127,7 +128,7 @@ class ChangingInput : public Law {
   /// Searches of all kinds, while the boxes change.
   template <int D, typename Real>
   void search(
-      PairFinder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
+      Finder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
       const std::function<void()>& begin = [] {}) {
     const std::span<const Box<D, Real>> all = boxes;
     begin();
@@ -138,14 +139,14 @@ class ChangingInput : public Law {
     begin();
     try_to([&] {
       PlacesSink sink(boxes.size());
-      finder.find_between(all, boxes.size() / 3, sink);
+      finder.find_across(all, boxes.size() / 3, sink);
     });
     begin();
-    try_to([&] { outline(finder, all); });
+    try_to([&] { outline<D, Real>(spec().text(), all, finder.workers()); });
   }
 
   template <int D, typename Real>
-  void follow(PairTracker<D, Real>& tracker, const std::vector<Box<D, Real>>& boxes,
+  void follow(Tracker<D, Real>& tracker, const std::vector<Box<D, Real>>& boxes,
               std::span<const BoxId> changed) {
     try_to([&] {
       PlacesSink begun(boxes.size());
@@ -160,10 +161,10 @@ class ChangingInput : public Law {
     std::vector<Box<D, Real>> boxes = valid_boxes<D, Real>(count, random);
     const std::vector<Box<D, Real>> before = boxes;
     ChangingExecutor<D, Real> executor(boxes);
-    const auto finder = make_finder<D, Real>(spec().text());
-    finder->set_workers(workers(3, &executor));
-    const auto tracker = make_tracker<D, Real>(spec().text());
-    tracker->set_workers(workers(3, &executor));
+    Finder<D, Real> finder(spec().text());
+    finder.set_workers(workers(3, &executor));
+    Tracker<D, Real> tracker(spec().text());
+    tracker.set_workers(workers(3, &executor));
     std::vector<BoxId> places;
     for (std::size_t i = 0; i < count; i += 3) places.push_back(BoxId(i));
     constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
@@ -172,12 +173,12 @@ class ChangingInput : public Law {
         boxes = before;
         executor.begin(first);
       };
-      search<D, Real>(*finder, boxes, begin);
+      search<D, Real>(finder, boxes, begin);
       begin();
-      follow(*tracker, boxes, places);
+      follow(tracker, boxes, places);
       boxes = before;
       executor.begin(never);
-      EXPECT_EQ(sorted(found(*finder, boxes)), sorted(find_pairs(boxes, "brute_force")));
+      EXPECT_EQ(sorted(found(finder, boxes)), sorted(find_pairs(boxes, "brute_force")));
     }
   }
 };
@@ -235,11 +236,11 @@ TEST_P(ChangingInput, SpoilsNothingButPairsWhereAnotherThreadWrites) {
     std::vector<Box<D>> boxes = valid_boxes<D, float>(2000, random);
     std::vector<BoxId> places;
     for (std::size_t i = 0; i < 500; ++i) places.push_back(BoxId(7 * i));
-    const auto finder = make_finder<D>(spec().text());
-    const auto tracker = make_tracker<D>(spec().text());
+    Finder<D> finder(spec().text());
+    Tracker<D> tracker(spec().text());
     race(boxes, places, [&] {
-      search(*finder, boxes);
-      follow(*tracker, boxes, places);
+      search(finder, boxes);
+      follow(tracker, boxes, places);
     });
   });
 }

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
@@ -32,12 +33,12 @@ std::vector<Box2> apart(std::size_t count) {
 
 class SearchCheckpoint : public testing::TestWithParam<std::size_t> {
  protected:
-  std::unique_ptr<PairFinder<2>> finder(std::string_view spec, std::function<void()> checkpoint) const {
-    auto made = make_finder<2>(spec);
-    made->set_workers({.threads = GetParam(),
-                       .executor = GetParam() == 1 ? nullptr : &executor_,
-                       .boxes_per_thread = 1,
-                       .checkpoint = std::move(checkpoint)});
+  Finder<2> finder(std::string_view spec, std::function<void()> checkpoint) const {
+    Finder<2> made(spec);
+    made.set_workers({.threads = GetParam(),
+                      .executor = GetParam() == 1 ? nullptr : &executor_,
+                      .boxes_per_thread = 1,
+                      .checkpoint = std::move(checkpoint)});
     return made;
   }
 
@@ -57,7 +58,7 @@ TEST_P(SearchCheckpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
     finder(spec, [&] {
       EXPECT_EQ(std::this_thread::get_id(), here);
       ++passed;
-    })->find(std::span<const Box2>(boxes), collector);
+    }).find(boxes, collector);
     EXPECT_GT(passed, 3) << spec;
     EXPECT_EQ(pairs, find_pairs(boxes, spec)) << spec;
   }
@@ -66,13 +67,13 @@ TEST_P(SearchCheckpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
 TEST_P(SearchCheckpoint, EndsASearchThatFindsNothing) {
   const std::vector<Box2> boxes = apart(20'000);
   int passed = 0;
-  const auto brute = finder("brute_force", [&] {
+  Finder<2> brute = finder("brute_force", [&] {
     if (++passed == 3) throw std::runtime_error("enough");
   });
   PairCounter counter;
-  EXPECT_THROW(brute->find(std::span<const Box2>(boxes), counter), std::runtime_error);
+  EXPECT_THROW(brute.find(boxes, counter), std::runtime_error);
   EXPECT_EQ(passed, 3);
-  brute->find(std::span<const Box2>(boxes), counter);
+  brute.find(boxes, counter);
   EXPECT_EQ(counter.count(), 0u);
 }
 
@@ -96,14 +97,12 @@ TEST(CheckpointOfAWaitingThread, EndsWhatAnotherThreadSearches) {
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].max[0] += static_cast<float>(i % 1000);
   LateCallersExecutor executor;
   for (const std::string_view spec : {"grid", "quadtree", "sweep_and_prune:axes=2"}) {
-    const auto finder = make_finder<2>(spec);
-    finder->set_workers({.threads = 2, .executor = &executor, .boxes_per_thread = 1, .checkpoint = [] {
-                           throw std::runtime_error("enough");
-                         }});
+    Finder<2> finder(spec);
+    finder.set_workers({.threads = 2, .executor = &executor, .boxes_per_thread = 1, .checkpoint = [] {
+                          throw std::runtime_error("enough");
+                        }});
     PairCounter counter;
-    EXPECT_THROW(finder->find_between(std::span<const Box2>(boxes), boxes.size() - 1, counter),
-                 std::runtime_error)
-        << spec;
+    EXPECT_THROW(finder.find_across(boxes, boxes.size() - 1, counter), std::runtime_error) << spec;
   }
 }
 

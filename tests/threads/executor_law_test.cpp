@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
@@ -44,17 +45,17 @@ void fail_each_run(const Search& search, const Check& check) {
 
 TEST_P(ExecutorLaw, FindsTheSamePairsAfterAnyRunThrewWhatIsNoException) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(2000, D == 2 ? 40 : 12);
-    const std::vector<Pair> expected = found(*finder, boxes);
+    const std::vector<Pair> expected = found(finder, boxes);
     fail_each_run(
         [&](Executor& executor) {
-          finder->set_workers(workers(3, &executor));
-          EXPECT_EQ(found(*finder, boxes), expected);
+          finder.set_workers(workers(3, &executor));
+          EXPECT_EQ(found(finder, boxes), expected);
         },
         [&] {
-          finder->set_workers(workers(2));
-          EXPECT_EQ(found(*finder, boxes), expected);
+          finder.set_workers(workers(2));
+          EXPECT_EQ(found(finder, boxes), expected);
         });
   });
 }
@@ -100,15 +101,15 @@ TEST_P(ExecutorLaw, LosesAndDoublesNoEventOfAWorldWhereAnyRunThrew) {
 
 TEST_P(ExecutorLaw, FindsTheSamePairsWhereTasksAndSearchesRunWithinTasks) {
   in_dimension([&]<int D>() {
-    const auto outer = make_finder<D>(algorithm(), spec());
-    const auto inner = make_finder<D>(algorithm(), spec());
+    Finder<D> outer(algorithm(), spec());
+    Finder<D> inner(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 40 : 12);
     const std::vector<Box<D>> others = scattered_boxes<D>(2000, D == 2 ? 40 : 12, 2);
-    const std::vector<Pair> expected = found(*outer, boxes);
-    const std::vector<Pair> expected_of_others = found(*outer, others);
+    const std::vector<Pair> expected = found(outer, boxes);
+    const std::vector<Pair> expected_of_others = found(outer, others);
     NestingExecutor nesting;
-    outer->set_workers(workers(7, &nesting));
-    inner->set_workers(workers(4, &nesting));
+    outer.set_workers(workers(7, &nesting));
+    inner.set_workers(workers(4, &nesting));
     std::vector<Pair> pairs;
     int inner_searches = 0;
     PairFunction sink([&](std::span<const Pair> chunk) {
@@ -121,10 +122,10 @@ TEST_P(ExecutorLaw, FindsTheSamePairsWhereTasksAndSearchesRunWithinTasks) {
         inner_pairs.insert(inner_pairs.end(), inner_chunk.begin(), inner_chunk.end());
         nesting.idle();
       });
-      inner->find(others, inner_sink);
+      inner.find(others, inner_sink);
       EXPECT_EQ(inner_pairs, expected_of_others);
     });
-    outer->find(boxes, sink);
+    outer.find(boxes, sink);
     EXPECT_EQ(pairs, expected);
     EXPECT_EQ(inner_searches, 3);
   });

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "broadside/debug/history.hpp"
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
@@ -54,17 +56,22 @@ class ThreadLaw : public Law {
 
 TEST_P(ThreadLaw, FindsTheSamePairsInTheSameOrder) {
   in_dimension([&]<int D>() {
-    const auto alone = make_finder<D>(algorithm(), spec());
-    const auto shared = make_finder<D>(algorithm(), spec());
+    Finder<D> alone(algorithm(), spec());
+    Finder<D> shared(algorithm(), spec());
     std::vector<Input<D>> inputs = hard_inputs<D>(algorithm(), reduced(1000));
     inputs.push_back({"scattered", scattered_boxes<D>(reduced(20'000, 1), D == 2 ? 300 : 50)});
     for (const Input<D>& input : inputs) {
-      const std::vector<Pair> expected = found(*alone, input.boxes);
+      std::vector<Pair> expected;
+      PairCollector expected_pairs(expected);
+      const std::optional<Statistics> expected_statistics = alone.find(input.boxes, expected_pairs);
       for (const Crew& crew : crews()) {
-        shared->set_workers(crew.workers);
-        EXPECT_EQ(found(*shared, input.boxes), expected) << input.name << ", " << crew.name;
-        EXPECT_EQ(shared->statistics()->tests, alone->statistics()->tests) << input.name;
-        EXPECT_EQ(shared->statistics()->references, alone->statistics()->references) << input.name;
+        shared.set_workers(crew.workers);
+        std::vector<Pair> pairs;
+        PairCollector collector(pairs);
+        const std::optional<Statistics> statistics = shared.find(input.boxes, collector);
+        EXPECT_EQ(pairs, expected) << input.name << ", " << crew.name;
+        EXPECT_EQ(statistics->tests, expected_statistics->tests) << input.name;
+        EXPECT_EQ(statistics->references, expected_statistics->references) << input.name;
       }
     }
   });
@@ -72,16 +79,16 @@ TEST_P(ThreadLaw, FindsTheSamePairsInTheSameOrder) {
 
 TEST_P(ThreadLaw, FindsTheSamePairsBetweenSetsInTheSameOrder) {
   in_dimension([&]<int D>() {
-    const auto alone = make_finder<D>(algorithm(), spec());
-    const auto shared = make_finder<D>(algorithm(), spec());
+    Finder<D> alone(algorithm(), spec());
+    Finder<D> shared(algorithm(), spec());
     std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
     for (const bool with_absent : {false, true}) {
       if (with_absent) boxes[700] = absent_box<D>();
       for (const std::size_t left_count : {1, 800, 2999}) {
-        const std::vector<Pair> expected = found(*alone, boxes, left_count);
+        const std::vector<Pair> expected = found(alone, boxes, left_count);
         for (const Crew& crew : crews()) {
-          shared->set_workers(crew.workers);
-          EXPECT_EQ(found(*shared, boxes, left_count), expected) << left_count << ", " << crew.name;
+          shared.set_workers(crew.workers);
+          EXPECT_EQ(found(shared, boxes, left_count), expected) << left_count << ", " << crew.name;
         }
       }
     }
@@ -90,8 +97,8 @@ TEST_P(ThreadLaw, FindsTheSamePairsBetweenSetsInTheSameOrder) {
 
 TEST_P(ThreadLaw, FindsTheSamePairsOfDoublesInTheSameOrder) {
   in_dimension([&]<int D>() {
-    const auto alone = make_finder<D, double>(algorithm(), spec());
-    const auto shared = make_finder<D, double>(algorithm(), spec());
+    Finder<D, double> alone(algorithm(), spec());
+    Finder<D, double> shared(algorithm(), spec());
     Rng rng(5);
     for (const double shift : {0.0, 1e9}) {
       std::vector<Box<D, double>> boxes(2000);
@@ -103,11 +110,11 @@ TEST_P(ThreadLaw, FindsTheSamePairsOfDoublesInTheSameOrder) {
       }
       boxes[3] = absent_box<D, double>();
       for (const std::size_t left_count : {0, 900}) {
-        const std::vector<Pair> expected = found(*alone, boxes, left_count);
+        const std::vector<Pair> expected = found(alone, boxes, left_count);
         EXPECT_FALSE(expected.empty());
         for (const Crew& crew : crews()) {
-          shared->set_workers(crew.workers);
-          EXPECT_EQ(found(*shared, boxes, left_count), expected) << left_count << ", " << crew.name;
+          shared.set_workers(crew.workers);
+          EXPECT_EQ(found(shared, boxes, left_count), expected) << left_count << ", " << crew.name;
         }
       }
     }
@@ -116,20 +123,20 @@ TEST_P(ThreadLaw, FindsTheSamePairsOfDoublesInTheSameOrder) {
 
 TEST_P(ThreadLaw, CountsAndHashesWithoutAnOrder) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 60 : 20);
     PairCounter count;
     PairHasher hash;
-    finder->find(boxes, count);
-    finder->find(boxes, hash);
+    finder.find(boxes, count);
+    finder.find(boxes, hash);
     ASSERT_GT(count.count(), 1000u);
     for (const Crew& crew : crews()) {
-      finder->set_workers(crew.workers);
+      finder.set_workers(crew.workers);
       PairCounter shared_count;
       PairHasher shared_hash;
       for (int round = 1; round <= 2; ++round) {  // a sink adds up what it gets
-        finder->find(boxes, shared_count);
-        finder->find(boxes, shared_hash);
+        finder.find(boxes, shared_count);
+        finder.find(boxes, shared_hash);
         EXPECT_EQ(shared_count.count(), round * count.count()) << crew.name;
         EXPECT_EQ(shared_hash.count(), round * hash.count()) << crew.name;
         EXPECT_EQ(shared_hash.hash(), round * hash.hash()) << crew.name;
@@ -140,16 +147,16 @@ TEST_P(ThreadLaw, CountsAndHashesWithoutAnOrder) {
 
 TEST_P(ThreadLaw, CallsASinkInTheCallersThreadAlone) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
     for (const Crew& crew : crews()) {
-      finder->set_workers(crew.workers);
+      finder.set_workers(crew.workers);
       std::size_t calls = 0;
       PairFunction function([&calls, caller = std::this_thread::get_id()](std::span<const Pair>) {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         ++calls;
       });
-      finder->find(boxes, function);
+      finder.find(boxes, function);
       EXPECT_GT(calls, 0u) << crew.name;
     }
   });
@@ -157,14 +164,14 @@ TEST_P(ThreadLaw, CallsASinkInTheCallersThreadAlone) {
 
 TEST_P(ThreadLaw, NamesTheFirstWrongBox) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     std::vector<Box<D>> boxes = scattered_boxes<D>(3000, 60);
     for (const std::size_t wrong : {2900, 1700, 31}) {
       boxes[wrong].max[0] = boxes[wrong].min[0] - 1;
       for (const Crew& crew : crews()) {
-        finder->set_workers(crew.workers);
+        finder.set_workers(crew.workers);
         try {
-          found(*finder, boxes);
+          found(finder, boxes);
           ADD_FAILURE() << "nothing was thrown by " << crew.name;
         } catch (const InvalidInput& error) {
           EXPECT_EQ(error.index(), wrong) << crew.name;
@@ -176,17 +183,17 @@ TEST_P(ThreadLaw, NamesTheFirstWrongBox) {
 
 TEST_P(ThreadLaw, LetsThroughWhatASinkThrowsAndCanBeUsedAfter) {
   in_dimension([&]<int D>() {
-    const auto finder = make_finder<D>(algorithm(), spec());
+    Finder<D> finder(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 30 : 12);
-    const std::vector<Pair> expected = found(*finder, boxes);
+    const std::vector<Pair> expected = found(finder, boxes);
     for (const Crew& crew : crews()) {
-      finder->set_workers(crew.workers);
+      finder.set_workers(crew.workers);
       for (const int chunks : {0, 1, 4}) {
         PairFunction function([left = chunks](std::span<const Pair>) mutable {
           if (left-- == 0) throw SinkIsFull();
         });
-        EXPECT_THROW(finder->find(boxes, function), SinkIsFull) << crew.name;
-        EXPECT_EQ(found(*finder, boxes), expected) << crew.name;
+        EXPECT_THROW(finder.find(boxes, function), SinkIsFull) << crew.name;
+        EXPECT_EQ(found(finder, boxes), expected) << crew.name;
       }
     }
   });
@@ -195,16 +202,16 @@ TEST_P(ThreadLaw, LetsThroughWhatASinkThrowsAndCanBeUsedAfter) {
 TEST_P(ThreadLaw, LetsThroughWhatAnExecutorThrowsAndATrackerDeliversThatFrameAfter) {
   in_dimension([&]<int D>() {
     ClosedExecutor closed;
-    const auto tracker = make_tracker<D>(algorithm(), spec());
+    Tracker<D> tracker(algorithm(), spec());
     const std::vector<Box<D>> boxes = scattered_boxes<D>(300, 10);
     std::vector<Pair> begun;
     PairCollector begun_pairs(begun);
     PairCounter ended;
-    tracker->set_workers(workers(2, &closed));
-    EXPECT_THROW(tracker->update({boxes, {}}, begun_pairs, ended), ExecutorIsClosed);
+    tracker.set_workers(workers(2, &closed));
+    EXPECT_THROW(tracker.update({boxes, {}}, begun_pairs, ended), ExecutorIsClosed);
     EXPECT_TRUE(begun.empty());
-    tracker->set_workers(workers(2));
-    tracker->update({boxes, {}}, begun_pairs, ended);
+    tracker.set_workers(workers(2));
+    tracker.update({boxes, {}}, begun_pairs, ended);
     EXPECT_EQ(begun, pairs_of(WholeFrame<D>{.boxes = boxes}));
     EXPECT_EQ(ended.count(), 0u);
   });
@@ -236,9 +243,9 @@ TEST_P(ThreadLaw, FollowsBoxesToTheSameEventsByTheSameTests) {
   in_dimension([&]<int D>() {
     const std::vector<Box<D>> first = scattered_boxes<D>(reduced(12'000, 1), D == 2 ? 200 : 40);
     for (const Crew& crew : crews()) {
-      const auto alone = make_tracker<D>(algorithm(), spec());
-      const auto shared = make_tracker<D>(algorithm(), spec());
-      shared->set_workers(crew.workers);
+      Tracker<D> alone(algorithm(), spec());
+      Tracker<D> shared(algorithm(), spec());
+      shared.set_workers(crew.workers);
       std::vector<Box<D>> boxes = first;
       const auto update = [&](std::span<const BoxId> changed) {
         std::array<std::vector<Pair>, 4> events;
@@ -246,12 +253,12 @@ TEST_P(ThreadLaw, FollowsBoxesToTheSameEventsByTheSameTests) {
         PairCollector ended(events[1]);
         PairCollector shared_begun(events[2]);
         PairCollector shared_ended(events[3]);
-        alone->update({boxes, changed}, begun, ended);
-        shared->update({boxes, changed}, shared_begun, shared_ended);
+        const auto expected = alone.update({boxes, changed}, begun, ended);
+        const auto statistics = shared.update({boxes, changed}, shared_begun, shared_ended);
         EXPECT_EQ(events[2], events[0]) << crew.name;
         EXPECT_EQ(events[3], events[1]) << crew.name;
-        EXPECT_EQ(shared->statistics()->tests, alone->statistics()->tests) << crew.name;
-        EXPECT_EQ(shared->explanation(), alone->explanation()) << crew.name;
+        EXPECT_EQ(statistics->tests, expected->tests) << crew.name;
+        EXPECT_EQ(shared.explanation(), alone.explanation()) << crew.name;
       };
       update({});
       for (const Step<D>& step : frames_of(first, first.size() / 6)) {
@@ -262,18 +269,15 @@ TEST_P(ThreadLaw, FollowsBoxesToTheSameEventsByTheSameTests) {
   });
 }
 
-TEST_P(ThreadLaw, LaysOutByTheWorkersOfNow) {
+TEST_P(ThreadLaw, LaysOutTheSameCells) {
   in_dimension([&]<int D>() {
     const std::vector<Box<D>> boxes = scattered_boxes<D>(2000, D == 2 ? 40 : 12);
-    const auto finder = make_finder<D>(algorithm(), spec());
-    if (finder->outlined() == nullptr) return;
-    ReverseExecutor executor;
-    finder->set_workers(workers(3, &executor));
-    found(*finder, boxes);
-    finder->set_workers({});
-    const std::size_t runs = executor.runs;
-    outline(*finder, std::span<const Box<D>>(boxes));
-    EXPECT_EQ(executor.runs, runs);
+    const Outline<D> expected = outline<D, float>(algorithm(), spec(), boxes);
+    for (const Crew& crew : crews()) {
+      const Outline<D> laid_out = outline<D, float>(algorithm(), spec(), boxes, crew.workers);
+      EXPECT_EQ(laid_out.caption, expected.caption) << crew.name;
+      EXPECT_EQ(laid_out.levels, expected.levels) << crew.name;
+    }
   });
 }
 
@@ -281,9 +285,9 @@ TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
   in_dimension([&]<int D>() {
     Spec threaded = spec();
     threaded.values.emplace_back("threads", "2");
-    EXPECT_EQ(make_finder<D>(algorithm(), threaded)->workers().threads, 2u);
-    EXPECT_EQ((make_finder<D, double>(algorithm(), threaded)->workers().threads), 2u);
-    EXPECT_EQ(make_tracker<D>(algorithm(), threaded)->workers().threads, 2u);
+    EXPECT_EQ(Finder<D>(algorithm(), threaded).workers().threads, 2u);
+    EXPECT_EQ((Finder<D, double>(algorithm(), threaded).workers().threads), 2u);
+    EXPECT_EQ(Tracker<D>(algorithm(), threaded).workers().threads, 2u);
     const std::string spec = threaded.text();
     World<D> world(spec);
     EXPECT_EQ(world.workers().threads, 2u);

@@ -72,12 +72,12 @@ TEST_P(PoolLaw, FindsThePairsOfOneThread) {
   in_dimension([&]<int D>() {
     ThreadPool pool(3);
     const std::vector<Box<D>> boxes = scattered_boxes<D>(3000, D == 2 ? 40 : 12);
-    const auto alone = make_finder<D>(algorithm(), spec());
-    const std::vector<Pair> expected = found(*alone, boxes);
+    Finder<D> alone(algorithm(), spec());
+    const std::vector<Pair> expected = found(alone, boxes);
     const auto search = [&] {
-      const auto finder = make_finder<D>(algorithm(), spec());
-      finder->set_workers(workers(3, &pool));
-      for (int i = 0; i < 5; ++i) EXPECT_EQ(found(*finder, boxes), expected);
+      Finder<D> finder(algorithm(), spec());
+      finder.set_workers(workers(3, &pool));
+      for (int i = 0; i < 5; ++i) EXPECT_EQ(found(finder, boxes), expected);
     };
     std::thread other(search);
     search();

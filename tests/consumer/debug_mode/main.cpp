@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -47,19 +48,21 @@ std::vector<Box<D, Real>> row(std::size_t count) {
 }
 
 /// An algorithm of the caller's.
-class EveryPair final : public PairFinder<2> {
+class EveryPair final : public Searcher<2> {
  public:
   explicit EveryPair(std::size_t stride) : stride_(stride) {}
 
- private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
+    const std::span<const Box2> boxes = input.boxes;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       for (std::size_t j = i + 1; j < boxes.size(); j += stride_) {
         if (overlap(boxes[i], boxes[j])) pairs.add(BoxId(i), BoxId(j));
       }
     }
+    return std::nullopt;
   }
 
+ private:
   std::size_t stride_;
 };
 
@@ -75,8 +78,7 @@ void find() {
   print("pairs of valid boxes", find_pairs(boxes, FindOptions{.quarantined = &quarantined}));
   print("quarantined", quarantined.size());
 
-  PairFinder<2>& finder = *new EveryPair(1);
-  const std::unique_ptr<PairFinder<2>> owner(&finder);
+  Finder<2> finder(std::make_unique<EveryPair>(1));
   finder.set_bad_input(BadInput::quarantine);
   std::vector<Pair> found;
   PairCollector collector(found);
@@ -88,7 +90,7 @@ void find() {
   PairFunction function([&](std::span<const Pair> pairs) { found.assign(pairs.begin(), pairs.end()); });
   for (PairSink* const sink :
        {static_cast<PairSink*>(&hasher), static_cast<PairSink*>(&counter), static_cast<PairSink*>(&function)})
-    make_finder<3>("bvh:threads=2")->find(many, *sink);
+    Finder<3>("bvh:threads=2").find(many, *sink);
   print("hash", hasher.hash());
   print("count", counter.count());
 
@@ -112,7 +114,7 @@ void list_algorithms() {
                       .choices = {"1", "2"}});
   Algorithm algorithm{.name = "every_pair", .summary = "the caller's", .source = "here"};
   algorithm.tunables = tunables;
-  algorithm.finder_2d = [](const Settings& settings) {
+  algorithm.searcher_2d = [](const Settings& settings) {
     return std::make_unique<EveryPair>(settings.text("stride") == "1" ? 1 : 2);
   };
   register_algorithm(algorithm);
@@ -132,8 +134,8 @@ void list_algorithms() {
 template <int D, typename Real>
 void track() {
   std::vector<Box<D, Real>> boxes = row<D, Real>(6);
-  const auto tracker = make_tracker<D, Real>("auto");
-  DiffTracker<D, Real> diff(make_finder<D, Real>("grid"));
+  Tracker<D, Real> tracker("auto");
+  Tracker<D, Real> anew("grid:update=rebuild");
   ShadowTracker<D, Real> shadow("sweep_and_prune");
   const auto index = make_box_index<D, Real>();
   IgnoredPairs ignored;
@@ -143,16 +145,18 @@ void track() {
   std::vector<BoxId> changed;
   for (int frame = 0; frame < 3; ++frame) {
     const Frame<D, Real> now{boxes, changed, filters, &ignored, {}};
-    for (PairTracker<D, Real>* const one : {tracker.get(), static_cast<PairTracker<D, Real>*>(&diff),
-                                            static_cast<PairTracker<D, Real>*>(&shadow)}) {
+    const auto update = [&](auto& one) {
       std::vector<Pair> begun;
       std::vector<Pair> ended;
       PairCollector begun_pairs(begun);
       PairCollector ended_pairs(ended);
-      one->update(now, begun_pairs, ended_pairs);
+      one.update(now, begun_pairs, ended_pairs);
       print("begun", begun);
       print("ended", ended);
-    }
+    };
+    update(tracker);
+    update(anew);
+    update(shadow);
     index->update(now);
     std::vector<BoxId> touched;
     index->overlapping(boxes[1], [&](BoxId id) { touched.push_back(id); });
@@ -225,14 +229,13 @@ void look_for_faults() {
   history = history_of<2, float>({.boxes = boxes}, std::vector<Step<2>>{});
   print("boxes of a history", only<2, float>(std::array{std::size_t{1}}, history).boxes.size());
 
-  const auto grid = make_finder<2>("grid");
   boxes = row<2, float>(40);
-  const Outline<2> laid_out = outline(*grid, boxes);
+  const Outline<2> laid_out = outline<2, float>("grid", boxes);
   std::printf("%s\n", laid_out.caption.c_str());
   for (const auto& level : laid_out.levels) print("outlined", level.size());
 
   // The caller forgets to list a change, and the shadow says so.
-  ShadowTracker<2> shadow([] { return make_tracker<2>("brute_force"); });
+  ShadowTracker<2> shadow([] { return Tracker<2>("brute_force"); });
   std::vector<Pair> events;
   PairCollector sink(events);
   shadow.update({.boxes = boxes}, sink, sink);
@@ -247,11 +250,11 @@ void look_for_faults() {
 template <int D, typename Real>
 void print_sizes() {
   for (const std::size_t size :
-       {sizeof(PairFinder<D, Real>), sizeof(PairTracker<D, Real>), sizeof(DiffTracker<D, Real>),
+       {sizeof(Finder<D, Real>), sizeof(Tracker<D, Real>), sizeof(Searcher<D>), sizeof(Follower<D>),
         sizeof(ShadowTracker<D, Real>), sizeof(BoxIndex<D, Real>), sizeof(World<D, Real>),
         sizeof(Frame<D, Real>), sizeof(Change<D, Real>), sizeof(Step<D, Real>), sizeof(History<D, Real>),
-        sizeof(Replay<D, Real>), sizeof(Outline<D, Real>), sizeof(Outlined<D, Real>),
-        sizeof(DivergenceOf<D, Real>), sizeof(BoxView<D, Real>)})
+        sizeof(Replay<D, Real>), sizeof(Outline<D, Real>), sizeof(DivergenceOf<D, Real>),
+        sizeof(BoxView<D, Real>)})
     std::printf("%zu ", size);
   std::printf("\n");
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -101,13 +103,14 @@ TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
   for (const auto& [benign, other] : deceptions) {
     Random random(1);
     std::vector<Box3> boxes = fooling(benign, other, count, random);
-    const auto finder = make_finder<3>("auto");
+    Finder<3> finder("auto");
     for (const bool has_floor : {false, true}) {
       // A box that overlaps all others is one that most of its tests find.
       if (has_floor) boxes[1] = {{-2000, -2000, -2000}, {4000, 4000, 4000}};
-      const std::size_t pairs = laws::found(*finder, boxes).size();
-      EXPECT_LE(finder->statistics()->tests, 600 * count + 64 * pairs) << finder->explanation();
-      EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+      PairCounter pairs;
+      const auto statistics = finder.find(boxes, pairs);
+      EXPECT_LE(statistics->tests, 600 * count + 64 * pairs.count()) << finder.explanation();
+      EXPECT_THAT(finder.explanation(), testing::HasSubstr("gave up"));
     }
   }
 }
@@ -116,10 +119,10 @@ TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
 template <int D>
 double tests_a_plate(std::size_t count) {
   lab::Random random(6);
-  const auto finder = make_finder<D, double>("auto");
+  Finder<D, double> finder("auto");
   PairCounter pairs;
-  finder->find(lab::make_family<D>(Spec::parse("plates"), count, random), pairs);
-  return static_cast<double>(finder->statistics()->tests) / static_cast<double>(count);
+  const auto statistics = finder.find(lab::make_family<D>(Spec::parse("plates"), count, random), pairs);
+  return static_cast<double>(statistics->tests) / static_cast<double>(count);
 }
 
 TEST(AutoHandOver, IsNotNeededForSomeThousandPlates) {
@@ -130,22 +133,22 @@ TEST(AutoHandOver, IsNotNeededForSomeThousandPlates) {
 
 TEST(AutoHandOver, FindsEachPairOnce) {
   constexpr std::size_t count = 8'000;
-  const auto definition = make_finder<3>("brute_force");
+  Finder<3> definition("brute_force");
   for (const auto& [benign, other] : deceptions) {
     Random random(2);
     const std::vector<Box3> boxes = fooling(benign, other, count, random);
     for (const std::size_t left_count : {std::size_t{0}, count / 3}) {
-      const auto finder = make_finder<3>("auto");
-      const std::vector<Pair> pairs = laws::found(*finder, boxes, left_count);
-      EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+      Finder<3> finder("auto");
+      const std::vector<Pair> pairs = laws::found(finder, boxes, left_count);
+      EXPECT_THAT(finder.explanation(), testing::HasSubstr("gave up"));
       std::vector<Pair> sorted = pairs;
       std::ranges::sort(sorted);
-      std::vector<Pair> expected = laws::found(*definition, boxes, left_count);
+      std::vector<Pair> expected = laws::found(definition, boxes, left_count);
       std::ranges::sort(expected);
       EXPECT_TRUE(sorted == expected)
-          << finder->explanation() << ": " << sorted.size() << " pairs; expected " << expected.size();
-      finder->set_workers({.threads = 3, .boxes_per_thread = 100});
-      EXPECT_TRUE(laws::found(*finder, boxes, left_count) == pairs) << "the order with three threads differs";
+          << finder.explanation() << ": " << sorted.size() << " pairs; expected " << expected.size();
+      finder.set_workers({.threads = 3, .boxes_per_thread = 100});
+      EXPECT_TRUE(laws::found(finder, boxes, left_count) == pairs) << "the order with three threads differs";
     }
   }
 }
@@ -161,25 +164,25 @@ Box3 on_lattice(Box3 box) {
 
 TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet) {
   constexpr std::size_t count = 8'000;
-  const auto definition = make_finder<3, double>("brute_force");
+  Finder<3, double> definition("brute_force");
   for (const auto& [benign, other] : deceptions) {
     Random random(3);
     std::vector<DoubleBox3> boxes;
     for (const Box3& box : fooling(benign, other, count, random))
       boxes.push_back(near_double(random, on_lattice(box)));
     for (const std::size_t left_count : {std::size_t{0}, count / 3}) {
-      std::vector<Pair> expected = laws::found(*definition, boxes, left_count);
+      std::vector<Pair> expected = laws::found(definition, boxes, left_count);
       std::ranges::sort(expected);
       std::vector<Pair> first;
       for (const std::string& name : instruction_sets()) {
         const OnInstructionSet chosen(name);
-        const auto finder = make_finder<3, double>("auto");
-        std::vector<Pair> pairs = laws::found(*finder, boxes, left_count);
-        EXPECT_THAT(finder->explanation(), testing::HasSubstr("gave up"));
+        Finder<3, double> finder("auto");
+        std::vector<Pair> pairs = laws::found(finder, boxes, left_count);
+        EXPECT_THAT(finder.explanation(), testing::HasSubstr("gave up"));
         if (first.empty()) first = pairs;
         EXPECT_TRUE(pairs == first) << "another order with " << name;
         std::ranges::sort(pairs);
-        EXPECT_TRUE(pairs == expected) << name << ", " << finder->explanation();
+        EXPECT_TRUE(pairs == expected) << name << ", " << finder.explanation();
       }
     }
   }
@@ -190,9 +193,9 @@ template <typename Real = float>
 class Followed {
  public:
   explicit Followed(std::vector<Box3> boxes, std::string_view spec = "auto", bool is_checked = true)
-      : boxes_(std::move(boxes)), tracker_(make_tracker<3, Real>(spec)) {
+      : boxes_(std::move(boxes)), tracker_(spec) {
     for (const Box3& box : boxes_) given_.push_back(given(box));
-    if (is_checked) expected_ = make_tracker<3, Real>("brute_force:update=follow");
+    if (is_checked) expected_.emplace("brute_force:update=follow");
     update({});
   }
 
@@ -209,7 +212,10 @@ class Followed {
     update(changed);
   }
 
-  PairTracker<3, Real>& tracker() { return *tracker_; }
+  const Tracker<3, Real>& tracker() const { return tracker_; }
+
+  /// Of the last frame.
+  std::uint64_t tests() const { return statistics_->tests; }
 
  private:
   /// Of doubles, many are apart that touch as floats.
@@ -226,18 +232,19 @@ class Followed {
     PairCollector ended(events[1]);
     PairCollector expected_begun(events[2]);
     PairCollector expected_ended(events[3]);
-    tracker_->update({given_, changed}, begun, ended);
+    statistics_ = tracker_.update({given_, changed}, begun, ended);
     if (!expected_) return;
     expected_->update({given_, changed}, expected_begun, expected_ended);
-    EXPECT_TRUE(events[0] == events[2]) << tracker_->explanation();
-    EXPECT_TRUE(events[1] == events[3]) << tracker_->explanation();
+    EXPECT_TRUE(events[0] == events[2]) << tracker_.explanation();
+    EXPECT_TRUE(events[1] == events[3]) << tracker_.explanation();
   }
 
   std::vector<Box3> boxes_;
   std::vector<Box<3, Real>> given_;  // as the trackers see them
   Random random_{5};
-  std::unique_ptr<PairTracker<3, Real>> tracker_;
-  std::unique_ptr<PairTracker<3, Real>> expected_;
+  Tracker<3, Real> tracker_;
+  std::optional<Tracker<3, Real>> expected_;
+  std::optional<Statistics> statistics_;
 };
 
 Box3 shifted(Box3 box, Random& random) {
@@ -258,7 +265,7 @@ std::uint64_t tests_of_few_movers(Kind kind, std::string_view spec) {
   Followed<Real> followed(boxes_of(kind, count, random), spec, false);
   for (int frame = 0; frame < 10; ++frame)
     followed.move(100, random, [&](const Box3& box) { return shifted(box, random); });
-  return followed.tracker().statistics()->tests;
+  return followed.tests();
 }
 
 TEST(AutoTrackerHandOver, TestsLessThanItsFirstFollowerInPlatesAndLines) {

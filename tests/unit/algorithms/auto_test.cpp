@@ -24,10 +24,10 @@ std::string chosen_for(const char* scene, std::size_t boxes, std::uint64_t seed)
   const lab::NamedScene named = lab::find_scene(scene);
   const lab::History<D> history =
       lab::make_history<D>(named.scene, named.spec, {.boxes = boxes, .seed = seed});
-  const auto finder = make_finder<D>("auto");
+  Finder<D> finder("auto");
   PairCounter pairs;
-  finder->find(history.boxes, pairs);
-  const std::string text = finder->explanation();
+  finder.find(history.boxes, pairs);
+  const std::string text = finder.explanation();
   return text.substr(0, text.find(','));
 }
 
@@ -56,12 +56,12 @@ template <int D>
 std::string chosen_for_a_pile() {
   const lab::NamedScene named = lab::find_scene("pile");
   const History<D> history = lab::make_history<D>(named.scene, named.spec, {.boxes = 5'051, .frames = 6});
-  const auto tracker = make_tracker<D>("auto");
+  Tracker<D> tracker("auto");
   PairCounter none;
   Replay<D> replay(history);
-  tracker->update(replay.frame(), none, none);
-  for (const Step<D>& step : history.steps) tracker->update(replay.next(step), none, none);
-  return tracker->explanation();
+  tracker.update(replay.frame(), none, none);
+  for (const Step<D>& step : history.steps) tracker.update(replay.next(step), none, none);
+  return tracker.explanation();
 }
 
 TEST(AutoTracker, TestsThePairsOfEnlargedBoxesInAPileAtRest) {
@@ -83,11 +83,11 @@ std::vector<Box2> boxes_anywhere(std::size_t count, Rng& random) {
 TEST(AutoTracker, ComparesFewBoxesAndKeepsToItForSomeMore) {
   Rng random(1);
   PairCounter none;
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   const auto compares = [&](std::size_t count) {
     const std::vector<Box2> boxes = boxes_anywhere(count, random);
-    for (int frame = 0; frame < 2; ++frame) tracker->update({boxes, {}}, none, none);
-    return tracker->explanation().starts_with("brute_force, since so few");
+    for (int frame = 0; frame < 2; ++frame) tracker.update({boxes, {}}, none, none);
+    return tracker.explanation().starts_with("brute_force, since so few");
   };
   std::size_t most = 100;
   while (compares(most) && most < 2000) most += 20;
@@ -101,8 +101,8 @@ TEST(AutoTracker, ComparesFewBoxesAndKeepsToItForSomeMore) {
 
 TEST(AutoTracker, MissesNoEventWhereBoxesBecomeFewOrMany) {
   Rng random(7);
-  const auto automatic = make_tracker<2>("auto");
-  const auto expected = make_tracker<2>("brute_force:update=rebuild");
+  Tracker<2> automatic("auto");
+  Tracker<2> expected("brute_force:update=rebuild");
   std::vector<Box2> boxes;
   for (const std::size_t count : {300, 300, 500, 500, 500, 300, 280, 280, 390, 450, 450, 0, 310, 700, 20}) {
     std::vector<BoxId> changed;
@@ -118,8 +118,8 @@ TEST(AutoTracker, MissesNoEventWhereBoxesBecomeFewOrMany) {
     PairCollector ended(events[1]);
     PairCollector expected_begun(events[2]);
     PairCollector expected_ended(events[3]);
-    automatic->update({boxes, changed}, begun, ended);
-    expected->update({boxes, changed}, expected_begun, expected_ended);
+    automatic.update({boxes, changed}, begun, ended);
+    expected.update({boxes, changed}, expected_begun, expected_ended);
     EXPECT_EQ(events[0], events[2]) << count;
     EXPECT_EQ(events[1], events[3]) << count;
   }

@@ -52,12 +52,12 @@ TEST(Limits, HoldInSearches) {
           "sweep_and_prune", "sweep_and_prune:axes=2", "auto"}) {
       for (const std::vector<Box<D>>& boxes : hard_boxes<D>(count)) {
         const lab::AllocationMeter meter;
-        const auto finder = make_finder<D>(spec);
+        Finder<D> finder(spec);
         PairCounter pairs;
-        finder->find(boxes, pairs);
-        ASSERT_TRUE(finder->statistics());
-        EXPECT_LE(finder->statistics()->references, 80 * count) << spec;
-        EXPECT_LE(finder->statistics()->tests, 80 * count * count / 2) << spec;
+        const auto statistics = finder.find(boxes, pairs);
+        ASSERT_TRUE(statistics);
+        EXPECT_LE(statistics->references, 80 * count) << spec;
+        EXPECT_LE(statistics->tests, 80 * count * count / 2) << spec;
         if (const auto allocation = meter.read()) {
           EXPECT_LE(allocation->peak, static_cast<std::int64_t>(2000 * count)) << spec;
         }
@@ -72,20 +72,20 @@ TEST(Limits, HoldWhileBoxesAreFollowed) {
     for (const std::string spec :
          {"grid:update=follow", "grid:cell=1e-6:update=follow", "quadtree:update=follow",
           "quadtree:capacity=1:update=follow", "bvh:update=follow", "sweep_and_prune:update=follow"}) {
-      const auto tracker = make_tracker<D>(spec);
+      Tracker<D> tracker(spec);
       std::vector<BoxId> all;
       for (std::size_t i = 0; i < count; ++i) all.push_back(BoxId(i));
       std::vector<Box<D>> boxes(count, absent_box<D>());
       std::uint64_t most_events = 0;
       const auto update = [&](std::size_t max_references) {
         PairCounter events;
-        tracker->update({boxes, all}, events, events);
+        const auto statistics = tracker.update({boxes, all}, events, events);
         most_events = std::max(most_events, events.count());
-        ASSERT_TRUE(tracker->statistics());
-        EXPECT_LE(tracker->statistics()->references, max_references * count) << spec;
-        EXPECT_LE(tracker->statistics()->cells, 8 * count) << spec;
-        EXPECT_LE(tracker->statistics()->tests, 4 * count * count) << spec;
-        EXPECT_LE(tracker->bytes(), 4000 * count + 64 * most_events) << spec;
+        ASSERT_TRUE(statistics);
+        EXPECT_LE(statistics->references, max_references * count) << spec;
+        EXPECT_LE(statistics->cells, 8 * count) << spec;
+        EXPECT_LE(statistics->tests, 4 * count * count) << spec;
+        EXPECT_LE(tracker.bytes(), 4000 * count + 64 * most_events) << spec;
       };
       for (const std::vector<Box<D>>& next : hard_boxes<D>(count)) {
         // A third at a time becomes of another kind, in a structure made for others.

@@ -1,4 +1,4 @@
-// The library's list of algorithms, and how a spec becomes a finder or a tracker.
+// The library's list of algorithms, and how a spec becomes a Finder or a Tracker.
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -10,10 +10,13 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 #include "broadside/world.hpp"
 
 #include "tests/support/message.hpp"
+#include "tests/support/searchers.hpp"
 
 namespace broadside {
 namespace {
@@ -24,7 +27,7 @@ Algorithm planar() {
       .summary = "does the plane only",
       .source = "this test",
       .tunables = {{.name = "cell", .summary = "edge", .standard = "1"}},
-      .finder_2d = [](const Settings&) { return make_finder<2>("brute_force"); },
+      .searcher_2d = [](const Settings&) { return library_searcher<2>("brute_force"); },
   };
 }
 
@@ -106,31 +109,31 @@ TEST(Registry, RefusesAnUnknownNameAndNamesTheKnownOnes) {
   std::string known;
   for (const Algorithm& algorithm : algorithms()) known += (known.empty() ? "" : ", ") + algorithm.name;
   const std::string expected = "unknown algorithm 'gird' (did you mean 'grid'?); expected one of: " + known;
-  EXPECT_EQ(message_of<InvalidSpec>([] { make_finder<2>("gird:cell=2"); }), expected);
-  EXPECT_EQ(message_of<InvalidSpec>([] { make_tracker<3>("gird"); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([] { Finder<2>("gird:cell=2"); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([] { Tracker<3>("gird"); }), expected);
 }
 
 TEST(Registry, RefusesADimensionThatTheAlgorithmDoesNotDo) {
   const Algorithm algorithm = planar();
-  EXPECT_NE(make_finder<2>(algorithm, {"planar", {}}), nullptr);
+  EXPECT_NO_THROW(Finder<2>(algorithm, {"planar", {}}));
   const std::string expected = "planar does not do 3D; expected 2D boxes";
-  EXPECT_EQ(message_of<InvalidSpec>([&] { make_finder<3>(algorithm, {"planar", {}}); }), expected);
-  EXPECT_EQ(message_of<InvalidSpec>([&] { make_tracker<3>(algorithm, {"planar", {}}); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Finder<3>(algorithm, {"planar", {}}); }), expected);
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Tracker<3>(algorithm, {"planar", {}}); }), expected);
 }
 
 TEST(Registry, RefusesAValueThatIsWrong) {
   const Algorithm algorithm = planar();
-  EXPECT_EQ(message_of<InvalidSpec>([&] { make_finder<2>(algorithm, Spec::parse("planar:cell=-1")); }),
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Finder<2>(algorithm, Spec::parse("planar:cell=-1")); }),
             "planar: cell is '-1'; expected a number of at least 0");
-  EXPECT_EQ(message_of<InvalidSpec>([&] { make_tracker<2>(algorithm, Spec::parse("planar:size=1")); }),
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Tracker<2>(algorithm, Spec::parse("planar:size=1")); }),
             "planar: unknown tunable 'size'; expected one of: cell");
 }
 
 TEST(Registry, TakesNamesOfEarlierVersions) {
   ASSERT_NE(find_algorithm("hierarchical_grid"), nullptr);
   EXPECT_EQ(find_algorithm("hierarchical_grid")->name, "grid");
-  EXPECT_NO_THROW(make_tracker<2>("bvh:update=reinsert"));
-  EXPECT_THROW(make_tracker<2>("grid:update=reinsert"), InvalidSpec);
+  EXPECT_NO_THROW(Tracker<2>("bvh:update=reinsert"));
+  EXPECT_THROW(Tracker<2>("grid:update=reinsert"), InvalidSpec);
 }
 
 TEST(AlgorithmKind, HasANameForEachKind) {

@@ -7,6 +7,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 
 namespace broadside {
 namespace {
@@ -39,9 +40,8 @@ TEST(DidYouMean, IsAskedForUnknownAlgorithmsAndTunables) {
   const auto says = [](const char* suggestion) {
     return Throws<InvalidSpec>(Property(&InvalidSpec::what, HasSubstr(suggestion)));
   };
-  EXPECT_THAT([] { make_finder<2>("gird"); },
-              says("unknown algorithm 'gird' (did you mean 'grid'?); expected"));
-  EXPECT_THAT([] { make_finder<2>("grid:cel=2"); },
+  EXPECT_THAT([] { Finder<2>("gird"); }, says("unknown algorithm 'gird' (did you mean 'grid'?); expected"));
+  EXPECT_THAT([] { Finder<2>("grid:cel=2"); },
               says("grid: unknown tunable 'cel' (did you mean 'cell'?); expected"));
 }
 

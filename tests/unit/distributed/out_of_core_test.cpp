@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 
 #include "lab/measure/memory.hpp"
 #include "tests/support/files.hpp"

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 
 #include "lab/formats/format.hpp"

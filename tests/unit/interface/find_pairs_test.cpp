@@ -1,4 +1,6 @@
 // find_pairs: one call from boxes to pairs.
+#include "broadside/find_pairs.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -175,13 +177,13 @@ TEST(FindPairs, EndsWhereAFunctionThrows) {
     EXPECT_THROW(find_pairs(boxes, third_time, algorithm), std::runtime_error) << algorithm;
     EXPECT_EQ(calls, 3U) << algorithm;
   }
-  const auto finder = make_finder<2>("grid");
-  EXPECT_THROW(finder->find(boxes, [](Pair) { throw std::runtime_error("enough"); }), std::runtime_error);
+  Finder<2> finder("grid");
+  EXPECT_THROW(finder.find(boxes, [](Pair) { throw std::runtime_error("enough"); }), std::runtime_error);
   PairCounter counter;
-  finder->find(boxes, counter);
+  finder.find(boxes, counter);
   EXPECT_EQ(counter.count(), 4950U) << "a finder that goes on";
   std::size_t found = 0;
-  finder->find_between(boxes, boxes, [&found](std::span<const Pair> chunk) { found += chunk.size(); });
+  finder.find_between(boxes, boxes, [&found](std::span<const Pair> chunk) { found += chunk.size(); });
   EXPECT_EQ(found, 10'000U);
 }
 

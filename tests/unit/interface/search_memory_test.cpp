@@ -31,9 +31,9 @@ class SearchMemory : public testing::Test {
 template <int D, typename Real>
 std::int64_t peak_of(const std::vector<Box<D, Real>>& boxes, Executor& executor, PairSink& pairs) {
   const AllocationMeter meter;
-  const auto finder = make_finder<D, Real>("auto");
-  finder->set_workers({.threads = 3, .executor = &executor, .boxes_per_thread = 1});
-  finder->find(boxes, pairs);
+  Finder<D, Real> finder("auto");
+  finder.set_workers({.threads = 3, .executor = &executor, .boxes_per_thread = 1});
+  finder.find(boxes, pairs);
   return meter.read()->peak;
 }
 

@@ -44,8 +44,9 @@ History<2, double> row(int count) {
 }
 
 /// Finds nothing.
-class Blind final : public PairFinder<2> {
-  void find_valid(std::span<const Box2>, PairSink&) override {}
+class Blind final : public Searcher<2> {
+ public:
+  std::optional<Statistics> search(const SearchInput<2>&, PairSink&) override { return std::nullopt; }
 };
 
 std::vector<std::string> texts(const std::vector<Entry>& entries) {
@@ -120,7 +121,7 @@ TEST(Advise, MeasuresFramesInWhichAsMuchMovesAsInAll) {
 TEST(Advise, OffersNothingWhereNothingIsVerified) {
   Catalogue catalogue;
   Algorithm blind{.name = "blind", .summary = {}, .source = {}};
-  blind.finder_2d = [](const Settings&) { return std::make_unique<Blind>(); };
+  blind.searcher_2d = [](const Settings&) { return std::make_unique<Blind>(); };
   catalogue.add(blind);
   const History<2> two = {{{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}}, {}};
   const Advice advice = advise(catalogue, "two", two, quickly("blind"));

@@ -56,7 +56,7 @@ TEST(Compare, VerifiesAndTimesEveryAlgorithmOnAStillScene) {
   const std::vector<Box2> boxes =
       make_history<2>(find_scene("uniform").scene, Spec{"uniform", {}}, {.boxes = 300, .seed = 1}).boxes;
   PairHasher hasher;
-  make_finder<2>("brute_force")->find(boxes, hasher);
+  Finder<2>("brute_force").find(boxes, hasher);
   for (const Measurement& measurement : result.measurements) {
     EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
     ASSERT_TRUE(measurement.evidence);
@@ -270,7 +270,7 @@ TEST(Compare, SkipsWhatIsTooSlowForTheBudgetAndEstimatesIt) {
 
 TEST(Compare, SaysWhichDimensionAndWhichBoxesAnAlgorithmDoesNotDo) {
   Algorithm flat = spoilt("flat", [](std::vector<Pair>&, std::size_t) {});
-  flat.finder_3d = nullptr;
+  flat.searcher_3d = nullptr;
   Catalogue catalogue;
   catalogue.add(flat);
   const Comparison comparison = compare(catalogue, options_for("flat", {small_still, small_moving}));
@@ -294,17 +294,18 @@ TEST(Compare, SkipsWhatIsGivenMoreBoxesThanItTakes) {
 }
 
 TEST(Compare, CountsTheMemoryThatAnAlgorithmKeeps) {
-  struct Keeper final : PairFinder<2> {
-    void find_valid(std::span<const Box2>, PairSink&) override {
+  struct Keeper final : Searcher<2> {
+    std::optional<Statistics> search(const SearchInput<2>&, PairSink&) override {
       kept.assign(1'000'000, 1);
       const std::vector<char> dropped(500'000, 1);
       use(dropped.data());
+      return std::nullopt;
     }
     std::vector<char> kept;
   };
   Algorithm algorithm;
   algorithm.name = "keeper";
-  algorithm.finder_2d = [](const Settings&) { return std::make_unique<Keeper>(); };
+  algorithm.searcher_2d = [](const Settings&) { return std::make_unique<Keeper>(); };
   Catalogue catalogue;
   catalogue.add(algorithm);
   // Boxes so small that none touch: a keeper that finds nothing is right.
@@ -319,12 +320,16 @@ TEST(Compare, CountsTheMemoryThatAnAlgorithmKeeps) {
 }
 
 TEST(Compare, CountsTheMemoryThatATrackerComesToKeep) {
-  class Keeper final : public PairTracker<2> {
-    void update_valid(const Change<2>&, PairSink&, PairSink&) override { kept_.emplace_back(200'000, 1); }
-    std::vector<std::vector<char>> kept_;
+  struct Keeper final : Follower<2> {
+    std::optional<Statistics> follow(const Change<2>&, PairSink&, PairSink&) override {
+      kept.emplace_back(200'000, 1);
+      return std::nullopt;
+    }
+    std::vector<std::vector<char>> kept;
   };
   Algorithm algorithm = spoilt("keeper", [](std::vector<Pair>&, std::size_t) {});
-  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<Keeper>(); };
+  algorithm.followers_2d.push_back(
+      {.name = "keeper", .make = [](const Settings&) { return std::make_unique<Keeper>(); }});
   Catalogue catalogue;
   catalogue.add(algorithm);
   const Measurement measurement =

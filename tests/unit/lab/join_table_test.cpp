@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 
 #include "lab/scenes/scene.hpp"

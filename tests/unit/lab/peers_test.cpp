@@ -56,7 +56,7 @@ void expect_the_same_after_tear_down(const Algorithm& peer) {
   const auto boxes_of = [&scene](std::size_t count) {
     return make_history<D>(scene, {scene.name, {}}, {.boxes = count, .seed = 3}).boxes;
   };
-  const auto finder = make_finder<D>(peer, {peer.name, {}});
+  Finder<D> finder(peer, {peer.name, {}});
   auto* const torn_down = dynamic_cast<peers::TearDown*>(finder.get());
   if (torn_down == nullptr) return;
   torn_down->tear_down();  // before there is anything
@@ -67,7 +67,7 @@ void expect_the_same_after_tear_down(const Algorithm& peer) {
     for (const bool tear_down : {false, true}) {
       std::vector<Pair> found;
       PairCollector collector(found);
-      finder->find(boxes, collector);
+      finder.find(boxes, collector);
       collector.flush();
       std::ranges::sort(found);
       EXPECT_EQ(found, expected) << peer.name;

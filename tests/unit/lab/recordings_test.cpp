@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 
 #include "lab/scenes/scene.hpp"

@@ -2,6 +2,8 @@
 #include "lab/verify/verify.hpp"
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,20 +17,21 @@ namespace {
 const std::vector<Box2> chain = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}, {{2, 2}, {3, 3}}, {{5, 5}, {6, 6}}};
 
 /// Reports the same pairs whatever the boxes.
-class FixedFinder final : public PairFinder<2> {
+class FixedSearcher final : public Searcher<2> {
  public:
-  explicit FixedFinder(Pairs pairs) : pairs_(std::move(pairs)) {}
+  explicit FixedSearcher(Pairs pairs) : pairs_(std::move(pairs)) {}
 
- private:
-  void find_valid(std::span<const Box2>, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<2>&, PairSink& pairs) override {
     for (const Pair pair : pairs_) *pairs.room(1) = pair, pairs.commit(1);
+    return std::nullopt;
   }
 
+ private:
   Pairs pairs_;
 };
 
 std::optional<Divergence> divergence_of(const Pairs& found) {
-  FixedFinder finder(found);
+  Finder<2> finder(std::make_unique<FixedSearcher>(found));
   return check_finder<2>(finder, chain, "fixed");
 }
 
@@ -82,22 +85,23 @@ TEST(CheckFinder, SaysWhoAndWhichPairAndWhere) {
 }
 
 /// Gives frame after frame the events it was made with.
-class FixedTracker final : public PairTracker<2> {
+class FixedFollower final : public Follower<2> {
  public:
   struct Events {
     Pairs begun;
     Pairs ended;
   };
 
-  explicit FixedTracker(std::vector<Events> frames) : frames_(std::move(frames)) {}
+  explicit FixedFollower(std::vector<Events> frames) : frames_(std::move(frames)) {}
 
- private:
-  void update_valid(const Change<2>&, PairSink& begun, PairSink& ended) override {
+  std::optional<Statistics> follow(const Change<2>&, PairSink& begun, PairSink& ended) override {
     for (const Pair pair : frames_[frame_].begun) begun.add(pair.first, pair.second);
     for (const Pair pair : frames_[frame_].ended) ended.add(pair.first, pair.second);
     ++frame_;
+    return std::nullopt;
   }
 
+ private:
   std::vector<Events> frames_;
   std::size_t frame_ = 0;
 };
@@ -105,8 +109,8 @@ class FixedTracker final : public PairTracker<2> {
 /// Box 1 leaves box 0 for box 3 (with which no one overlapped) and keeps box 2 behind.
 const History<2> leaving = {chain, {Step<2>{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, Step<2>{4, {}, {}}}};
 
-std::optional<Divergence> tracking_divergence(const std::vector<FixedTracker::Events>& frames) {
-  FixedTracker tracker(frames);
+std::optional<Divergence> tracking_divergence(const std::vector<FixedFollower::Events>& frames) {
+  Tracker<2> tracker(std::make_unique<FixedFollower>(frames));
   return check_tracker<2>(tracker, leaving, "fixed");
 }
 
@@ -116,10 +120,10 @@ TEST(CheckTracker, PassesTheRightEvents) {
 }
 
 TEST(CheckTracker, SeesEventsThatAreMissingOrExtra) {
-  const FixedTracker::Events first = {{pair(0, 1), pair(1, 2)}, {}};
-  const FixedTracker::Events second = {{pair(1, 3)}, {pair(0, 1), pair(1, 2)}};
+  const FixedFollower::Events first = {{pair(0, 1), pair(1, 2)}, {}};
+  const FixedFollower::Events second = {{pair(1, 3)}, {pair(0, 1), pair(1, 2)}};
   using Kind = Divergence::Kind;
-  const auto expect = [](const std::vector<FixedTracker::Events>& frames, Kind kind, std::size_t frame) {
+  const auto expect = [](const std::vector<FixedFollower::Events>& frames, Kind kind, std::size_t frame) {
     const auto divergence = tracking_divergence(frames);
     ASSERT_TRUE(divergence.has_value());
     EXPECT_EQ(divergence->kind, kind) << divergence->text;

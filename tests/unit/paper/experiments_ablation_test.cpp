@@ -37,7 +37,7 @@ template <int D>
 std::vector<Pair> pairs_by(const Algorithm& algorithm, const Spec& spec, const std::vector<Box<D>>& boxes) {
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  make_finder<D>(algorithm, spec)->find(boxes, collector);
+  Finder<D>(algorithm, spec).find(boxes, collector);
   std::ranges::sort(pairs);
   return pairs;
 }

@@ -69,10 +69,11 @@ void expect_past_the_end(std::string_view listing, Run run) {
 
 /// Expects the mended algorithm to find exactly the pairs of `boxes`, each once; returns what it counted.
 inline Statistics expect_right(std::string_view spec, const std::vector<Box2>& boxes) {
-  const auto finder = make_finder<2>(spec);
-  const auto divergence = lab::check_finder<2>(*finder, boxes, spec);
+  Finder<2> finder(spec);
+  const auto divergence = lab::check_finder<2>(finder, boxes, spec);
   EXPECT_FALSE(divergence) << divergence->text;
-  return finder->statistics().value_or(Statistics{});
+  PairCounter pairs;
+  return finder.find(boxes, pairs).value_or(Statistics{});
 }
 
 }  // namespace broadside::paper

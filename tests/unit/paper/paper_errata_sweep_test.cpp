@@ -44,9 +44,9 @@ TEST(Erratum5d, TheActiveListIsNeverEmptied) {
   printed::algorithm_5_sweep({{BoxId{1}, box(0, 0, 1, 1)}}, f, excluding, record.sink());
   EXPECT_EQ(record.times(0, 1), 1U) << "a pair of boxes of two different sweeps";
 
-  const auto finder = make_finder<2>("paper_sweep_and_prune");
+  Finder<2> finder("paper_sweep_and_prune");
   PairCounter pairs;
-  for (int call = 0; call < 2; ++call) finder->find(std::vector<Box2>{box(0, 0, 1, 1)}, pairs);
+  for (int call = 0; call < 2; ++call) finder.find(std::vector<Box2>{box(0, 0, 1, 1)}, pairs);
   EXPECT_EQ(pairs.count(), 0U);
 }
 

@@ -13,6 +13,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 
 #include "lab/verify/verify.hpp"
@@ -26,10 +27,11 @@ constexpr float largest = std::numeric_limits<float>::max();
 /// Expects `spec` to find exactly the pairs of `boxes`, each once; returns what it counted.
 template <int D>
 Statistics expect_right(const std::string& spec, const std::vector<Box<D>>& boxes) {
-  const auto finder = make_finder<D>(spec);
-  const auto divergence = lab::check_finder<D>(*finder, boxes, spec);
+  Finder<D> finder(spec);
+  const auto divergence = lab::check_finder<D>(finder, boxes, spec);
   EXPECT_FALSE(divergence) << divergence->text;
-  return finder->statistics().value_or(Statistics{});
+  PairCounter pairs;
+  return finder.find(boxes, pairs).value_or(Statistics{});
 }
 
 /// Every paper algorithm, and those with a world in one that is far too small as well.
@@ -225,7 +227,7 @@ TEST(PaperListings, LookAtNoBoxThatChangesWhileTheySearch) {
   for (const std::string& spec : specs<2>()) {
     std::vector<Box2> spoiled = boxes;
     SpoilingSink pairs(spoiled);
-    make_finder<2>(spec)->find(spoiled, pairs);
+    Finder<2>(spec).find(spoiled, pairs);
     EXPECT_EQ(pairs.count(), expected) << spec;
   }
 }
@@ -235,7 +237,7 @@ TEST(PaperGridAndQuadtree, Are2DOnly) {
     const Algorithm* const algorithm = find_algorithm(name);
     ASSERT_NE(algorithm, nullptr);
     EXPECT_THAT(algorithm->summary, testing::HasSubstr("2D only"));
-    EXPECT_THROW(make_finder<3>(name), InvalidSpec);
+    EXPECT_THROW(Finder<3>{name}, InvalidSpec);
   }
 }
 

@@ -1,6 +1,7 @@
 // Section VI: every way to mend a structure gives the right events, does the work that it says, and is
 // searched as the listing searches.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,10 +9,11 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/scenes/motion.hpp"
 #include "lab/verify/verify.hpp"
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
 #include "paper/listings/printed.hpp"
 
 namespace broadside::paper {
@@ -42,7 +44,8 @@ void expect_lawful(const std::string& spec) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const auto history = lab::random_history<D>(
         {.boxes = 20 + 15 * seed, .frames = 40, .seed = seed, .infinite_boxes = seed % 2 == 0});
-    const auto divergence = lab::check_tracker<D>(*make_tracker<D>(spec), history, spec);
+    Tracker<D> tracker(spec);
+    const auto divergence = lab::check_tracker<D>(tracker, history, spec);
     ASSERT_FALSE(divergence) << divergence->text << ", seed " << seed;
   }
 }
@@ -55,13 +58,17 @@ TEST(PaperTrackers, GiveTheEventsOfEveryHistory) {
     expect_lawful<3>(std::string("paper_sweep_and_prune:detect=compare:update=") + update);
 }
 
-/// A tracker, the boxes that it follows, and what moving some of them comes to.
+std::unique_ptr<CoherentFollower<2>> coherent_follower(const Spec& spec) {
+  const Algorithm& algorithm = *find_algorithm(spec.name);
+  std::unique_ptr<Follower<2>> follower = algorithm.followers_2d[0].make({spec, algorithm.tunables});
+  return std::unique_ptr<CoherentFollower<2>>(&dynamic_cast<CoherentFollower<2>&>(*follower.release()));
+}
+
+/// Boxes, what follows them, and what moving some of them comes to.
 class Followed {
  public:
   Followed(const std::string& spec, std::vector<Box2> boxes)
-      : tracker_(make_tracker<2>(spec)), boxes_(std::move(boxes)) {
-    update({});
-  }
+      : Followed(coherent_follower(Spec::parse(spec)), std::move(boxes)) {}
 
   UpdateParts move(std::size_t box, const Box2& to) {
     boxes_[box] = to;
@@ -86,18 +93,25 @@ class Followed {
   }
 
   UpdateParts rest() { return update({}); }
-  std::size_t tests() const { return tracker_->statistics()->tests; }
-  std::size_t references() const { return tracker_->statistics()->references; }
+  std::size_t tests() const { return statistics_->tests; }
+  std::size_t references() const { return statistics_->references; }
 
  private:
+  Followed(std::unique_ptr<CoherentFollower<2>> follower, std::vector<Box2> boxes)
+      : follower_(follower.get()), tracker_(std::move(follower)), boxes_(std::move(boxes)) {
+    update({});
+  }
+
   UpdateParts update(std::span<const BoxId> changed) {
     PairCounter begun;
     PairCounter ended;
-    tracker_->update({boxes_, changed}, begun, ended);
-    return dynamic_cast<CoherentTracker<2>&>(*tracker_).parts();
+    statistics_ = tracker_.update({boxes_, changed}, begun, ended);
+    return follower_->parts();
   }
 
-  std::unique_ptr<PairTracker<2>> tracker_;
+  const CoherentFollower<2>* follower_;  // the tracker's
+  Tracker<2> tracker_;
+  std::optional<Statistics> statistics_;
   std::vector<Box2> boxes_;
 };
 
@@ -125,15 +139,14 @@ TEST(PaperTrackers, SearchLikeTheListingOnWhateverTheyHaveMended) {
     Followed followed(spec, boxes);
     boxes[7] = {{5.5F, 9.5F}, {6.5F, 10.5F}};
     followed.move(7, boxes[7]);
-    const auto finder = make_finder<2>(spec);
+    Finder<2> finder(spec);
     PairCounter pairs;
-    finder->find(boxes, pairs);
+    const auto found = finder.find(boxes, pairs);
     if (spec.find("quadtree") == std::string::npos) {
-      EXPECT_EQ(followed.tests(), finder->statistics()->tests) << spec;
-      EXPECT_EQ(followed.references(), finder->statistics()->references) << spec;
+      EXPECT_EQ(followed.tests(), found->tests) << spec;
+      EXPECT_EQ(followed.references(), found->references) << spec;
     } else {  // splits depend on the order in which boxes were added, and are not undone
-      EXPECT_NEAR(static_cast<double>(followed.references()),
-                  static_cast<double>(finder->statistics()->references), 20)
+      EXPECT_NEAR(static_cast<double>(followed.references()), static_cast<double>(found->references), 20)
           << spec;
     }
   }
@@ -226,7 +239,8 @@ TEST(ErratumT12, ABoxThatGrowsReachesLeavesWithoutLeavingAny) {
     history.boxes = boxes;
     const Box2 grown = {{10, 10}, {60, 20}};
     history.steps.push_back({3, {BoxId{0}}, {grown}});
-    const auto divergence = lab::check_tracker<2>(*make_tracker<2>(spec), history, spec);
+    Tracker<2> tracker(spec);
+    const auto divergence = lab::check_tracker<2>(tracker, history, spec);
     EXPECT_FALSE(divergence) << divergence->text;
   }
 }

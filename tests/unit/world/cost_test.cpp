@@ -220,14 +220,14 @@ TEST(QueryCost, AfterARollbackIsForWhatDiffers) {
 }
 
 /// Counts the boxes that it is told to have changed.
-class ChangeCounter final : public PairTracker<2> {
+class ChangeCounter final : public Follower<2> {
  public:
-  std::size_t changed = 0;
-
- private:
-  void update_valid(const Change<2>& change, PairSink&, PairSink&) override {
+  std::optional<Statistics> follow(const Change<2>& change, PairSink&, PairSink&) override {
     changed = change.changed.size();
+    return std::nullopt;
   }
+
+  std::size_t changed = 0;
 };
 
 struct Deed {
@@ -280,9 +280,9 @@ INSTANTIATE_TEST_SUITE_P(Deeds, UpdateCost, testing::ValuesIn(deeds()),
 
 TEST_P(UpdateCost, IsForWhatChangedSinceTheLastUpdate) {
   for (const std::size_t size : {100U, 10'000U}) {
-    auto tracker = std::make_unique<ChangeCounter>();
-    const ChangeCounter& counted = *tracker;
-    Crowd crowd(World2(std::move(tracker), GetParam().options), size);
+    auto follower = std::make_unique<ChangeCounter>();
+    const ChangeCounter& counted = *follower;
+    Crowd crowd(World2(Tracker<2>(std::move(follower)), GetParam().options), size);
     crowd.world.set_filter(crowd.handles[0], {.category = 2});  // the first one takes all boxes for changed
     crowd.world.update();
     EXPECT_EQ(counted.changed, size);
@@ -296,9 +296,9 @@ TEST_P(UpdateCost, IsForWhatChangedSinceTheLastUpdate) {
 
 TEST(UpdateCost, OfARollbackIsForWhatDiffers) {
   for (const std::size_t size : {100U, 10'000U}) {
-    auto tracker = std::make_unique<ChangeCounter>();
-    const ChangeCounter& counted = *tracker;
-    Crowd crowd(World2(std::move(tracker)), size);
+    auto follower = std::make_unique<ChangeCounter>();
+    const ChangeCounter& counted = *follower;
+    Crowd crowd(World2(Tracker<2>(std::move(follower))), size);
     const std::vector<std::byte> snapshot = crowd.world.snapshot();
     for (const std::size_t place : {3U, 30U, 50U}) crowd.world.move(crowd.handles[place], crowd.anywhere());
     crowd.world.update();

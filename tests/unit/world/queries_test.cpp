@@ -14,6 +14,7 @@
 #include "broadside/world.hpp"
 
 #include "tests/support/scattered.hpp"
+#include "tests/support/searchers.hpp"
 
 namespace broadside {
 namespace {
@@ -161,23 +162,23 @@ TEST(WorldQueries, LeaveOutOneBox) {
   EXPECT_EQ(world.first_hit(ray, nullptr, other), (HandleHit<float>{own, 0})) << "one that is gone";
 }
 
-TEST(WorldQueries, UseTheTrackersIndexWhereItHasOne) {
-  std::unique_ptr<PairTracker<2>> made = make_tracker<2>("bvh:update=follow");
-  const PairTracker<2>& tracker = *made;
-  World2 world(std::move(made));
+TEST(WorldQueries, UseTheFollowersIndexWhereItHasOne) {
+  auto made = library_follower<2>("bvh");
+  const Follower<2>& follower = *made;
+  World2 world{Tracker<2>(std::move(made))};
   const Handle a = world.add({{0, 0}, {1, 1}});
   const Handle b = world.add({{5, 0}, {6, 1}}, {.filter = {.category = 4}});
   world.update();
   EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
   const Filter query_filter{.mask = 4};
   EXPECT_THAT(overlapping(world, everywhere, &query_filter), ElementsAre(b));
-  EXPECT_EQ(&world.box_index(), tracker.box_index());
+  EXPECT_EQ(&world.box_index(), follower.index());
   world.move(a, {{8, 0}, {9, 1}});
-  EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a)) << "before the tracker knows of it";
-  EXPECT_NE(&world.box_index(), tracker.box_index());
+  EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a)) << "before the follower knows of it";
+  EXPECT_NE(&world.box_index(), follower.index());
   world.update();
   EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a));
-  EXPECT_EQ(&world.box_index(), tracker.box_index());
+  EXPECT_EQ(&world.box_index(), follower.index());
 }
 
 class WorldQueriesBy : public testing::TestWithParam<const char*> {};

@@ -19,6 +19,7 @@
 #include "lab/scenes/random.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/trackers.hpp"
 
 namespace broadside {
 namespace {
@@ -228,8 +229,8 @@ TEST(Snapshot, HasTheSameBytesAfterARestoreWhateverTheSpec) {
 TEST(Snapshot, OfACallersTrackerHasTheSameBytesWhateverTheSpec) {
   WorldOptions options;
   options.algorithm = "not used";
-  World2 world(make_tracker<2>("grid"), options);
-  World2 other(make_tracker<2>("bvh"));
+  World2 world(Tracker<2>("grid"), options);
+  World2 other(Tracker<2>("bvh"));
   other.restore(world.snapshot());
   EXPECT_EQ(other.snapshot(), world.snapshot());
 }
@@ -279,26 +280,15 @@ TEST(Snapshot, BringsItsAlgorithmAndMargin) {
   EXPECT_EQ(other.snapshot(), world.snapshot());
 }
 
-/// Counts what it is shown.
-class Watcher final : public PairTracker<2> {
- public:
-  explicit Watcher(std::vector<std::size_t>& seen) : seen_(&seen) {}
-
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
-    seen_->push_back(change.changed.size());
+TEST(Snapshot, IsReturnedToByShowingTheTrackerOnlyWhatDiffers) {
+  std::vector<std::size_t> seen;
+  World2 world(stub_tracker([&](const Change<2>& change, PairSink& begun, PairSink& ended) {
+    seen.push_back(change.changed.size());
     for (std::uint32_t a = 0; a < change.now.size(); ++a) {
       for (std::uint32_t b = a + 1; b < change.now.size(); ++b)
         change.report(BoxId{a}, BoxId{b}, begun, ended);
     }
-  }
-
-  std::vector<std::size_t>* seen_;
-};
-
-TEST(Snapshot, IsReturnedToByShowingTheTrackerOnlyWhatDiffers) {
-  std::vector<std::size_t> seen;
-  World2 world(std::make_unique<Watcher>(seen));
+  }));
   std::vector<Handle> handles;
   for (int i = 0; i < 100; ++i) handles.push_back(world.add(at(static_cast<float>(2 * i))));
   world.update();

@@ -12,6 +12,7 @@
 
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/searchers.hpp"
 #include "tests/unit/world/handle_pairs.hpp"
 
 namespace broadside {
@@ -287,24 +288,13 @@ TEST_F(WorldTest, WorksInThreeDimensions) {
   EXPECT_EQ(listed(world.update().ended), (HandlePairs{{a, b}}));
 }
 
-/// Fails when it is told to.
-class FailingFinder final : public PairFinder<2> {
- public:
-  explicit FailingFinder(const bool& fails) : fails_(&fails), finder_(make_finder<2>("brute_force")) {}
-
- private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
-    if (*fails_) throw std::runtime_error("out of luck");
-    finder_->find(boxes, pairs);
-  }
-
-  const bool* fails_;
-  std::unique_ptr<PairFinder<2>> finder_;
-};
-
 TEST_F(WorldTest, LosesNoEventWhenAnUpdateFails) {
   bool fails = false;
-  World2 world(std::make_unique<DiffTracker<2>>(std::make_unique<FailingFinder>(fails)));
+  const auto searcher = library_searcher<2>("brute_force");
+  World2 world{Tracker<2>(std::make_unique<StubSearcher>([&](const SearchInput<2>& input, PairSink& pairs) {
+    if (fails) throw std::runtime_error("out of luck");
+    return searcher->search(input, pairs);
+  }))};
   const Handle a = world.add(at(0));
   const Handle b = world.add(at(1));
   world.update();
@@ -321,11 +311,7 @@ TEST_F(WorldTest, LosesNoEventWhenAnUpdateFails) {
   EXPECT_EQ(world.box(b), at(1));
 }
 
-TEST_F(WorldTest, RefusesANullTrackerAndABadSpec) {
-  EXPECT_EQ(message_of<std::invalid_argument>([] { World2(std::unique_ptr<PairTracker<2>>()); }),
-            "World was given a null tracker; expected a tracker");
-  EXPECT_THROW(World2("no_such_algorithm"), InvalidSpec);
-}
+TEST_F(WorldTest, RefusesABadSpec) { EXPECT_THROW(World2("no_such_algorithm"), InvalidSpec); }
 
 }  // namespace
 }  // namespace broadside

@@ -1,4 +1,4 @@
-// outline(): what algorithms lay over boxes holds these boxes, is finite, and costs a search nothing.
+// outline(): what algorithms lay over boxes holds these boxes, and is finite.
 #include "broadside/debug/outline.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::vector<std::string> outlined() {
 
 template <int D>
 Outline<D> outline_by(const std::string& spec, const std::vector<Box<D>>& boxes) {
-  return outline(*make_finder<D>(spec), boxes);
+  return outline<D, float>(spec, boxes);
 }
 
 template <int D>
@@ -211,8 +211,7 @@ TEST(Outline, OfDoublesIsThatOfTheirFloats) {
   for (Box<2, double>& box : boxes) {
     for (double* const x : {&box.min[0], &box.max[0]}) *x += 1e9;
   }
-  const std::unique_ptr<PairFinder<2, double>> finder = make_finder<2, double>("quadtree:capacity=20");
-  const Outline<2, double> doubles = outline(*finder, boxes);
+  const Outline<2, double> doubles = outline<2, double>("quadtree:capacity=20", boxes);
   const Outline<2> floats = outline_by<2>("quadtree:capacity=20", scattered<2>(500));
   ASSERT_EQ(doubles.levels.size(), floats.levels.size());
   EXPECT_EQ(doubles.caption, floats.caption);
@@ -223,23 +222,6 @@ TEST(Outline, RefusesWhatAFindRefuses) {
   std::vector<Box2> boxes = scattered<2>(10);
   boxes[4].min[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(outline_by<2>("grid", boxes), InvalidInput);
-}
-
-TEST(Outline, ChangesNothingForTheNextSearch) {
-  const std::vector<Box2> boxes = scattered<2>(1000);
-  const std::vector<Box2> others = scattered<2>(50);
-  for (const std::string& name : outlined<2>()) {
-    const std::unique_ptr<PairFinder<2>> finder = make_finder<2>(name);
-    const auto find = [&] {
-      std::vector<Pair> pairs;
-      PairCollector collector(pairs);
-      finder->find(boxes, collector);
-      return pairs;
-    };
-    const std::vector<Pair> before = find();
-    outline(*finder, others);
-    EXPECT_EQ(find(), before) << name;
-  }
 }
 
 }  // namespace

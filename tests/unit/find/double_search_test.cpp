@@ -1,28 +1,34 @@
-// DoubleFinder against the definition in double, where floats cannot tell many boxes apart: with finders
-// whose kernels do the last test and with one that knows nothing of it.
-#include "doubles/double_finder.hpp"
+// Finders of doubles against the definition, where floats cannot tell many boxes apart: by searchers that test
+// doubles in their kernels, and by one that knows nothing of them.
+#include "find/double_search.hpp"
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 
 #include "tests/support/model.hpp"
+#include "tests/support/searchers.hpp"
 
-namespace broadside::core {
+namespace broadside::find {
 namespace {
 
 /// What a user's algorithm is: it searches floats.
 template <int D>
-class OfFloats final : public PairFinder<D> {
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    for (std::size_t j = 0; j < boxes.size(); ++j) {
+class OfFloats final : public Searcher<D> {
+ public:
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    for (std::size_t j = 0; j < input.boxes.size(); ++j) {
       for (std::size_t i = 0; i < j; ++i) {
-        if (overlap(boxes[i], boxes[j])) pairs.add(BoxId(i), BoxId(j));
+        if (overlap(input.boxes[i], input.boxes[j])) pairs.add(BoxId(i), BoxId(j));
       }
     }
+    return std::nullopt;
   }
 };
 
@@ -44,7 +50,7 @@ std::vector<Box<D, double>> boxes_that_round(Rng& rng, std::size_t count) {
 }
 
 template <int D>
-void expect_exact(PairFinder<D, double>& finder, const std::vector<Box<D, double>>& boxes) {
+void expect_exact(Finder<D, double>& finder, const std::vector<Box<D, double>>& boxes) {
   EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find(boxes, sink); }), overlapping_pairs(boxes));
   const std::size_t left_count = boxes.size() / 3;
   std::vector<Pair> between = overlapping_pairs(boxes, left_count);
@@ -54,39 +60,52 @@ void expect_exact(PairFinder<D, double>& finder, const std::vector<Box<D, double
               finder.find_between(all.first(left_count), all.subspan(left_count), sink);
             }),
             between);
-  EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find_between(all, left_count, sink); }), between);
+  EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find_across(all, left_count, sink); }), between);
 }
 
-TEST(DoubleFinder, IsExactWhateverSearchesTheFloats) {
+TEST(DoubleSearch, IsExactWhateverSearchesTheFloats) {
   in_each_dimension([]<int D>() {
     Rng rng(1);
     for (const std::size_t count : {10, 200, 1200}) {
       const std::vector<Box<D, double>> boxes = boxes_that_round<D>(rng, count);
-      DoubleFinder<D> of_user(std::make_unique<OfFloats<D>>());
+      Finder<D, double> of_user(std::make_unique<OfFloats<D>>());
       expect_exact(of_user, boxes);
       for (const Algorithm& algorithm : algorithms()) {
         if (algorithm.kind != AlgorithmKind::own) continue;
         SCOPED_TRACE(algorithm.name);
-        expect_exact(*make_finder<D, double>(algorithm.name), boxes);
+        Finder<D, double> finder(algorithm.name);
+        expect_exact(finder, boxes);
       }
     }
   });
 }
 
-TEST(DoubleFinder, LeavesTheLastTestToTheKernelsOfEachOwnAlgorithm) {
+TEST(DoubleSearch, LeavesTheLastTestToTheKernelsOfEachOwnAlgorithm) {
   in_each_dimension([]<int D>() {
+    Rng rng(3);
+    std::vector<Box<D, double>> boxes;
+    std::vector<Box<D>> floats;
+    for (int i = 0; i < 600; ++i) {
+      floats.push_back(random_box<D>(rng, {.places = 40}));
+      boxes.push_back(near_double(rng, floats.back()));
+    }
+    const std::vector<Pair> expected = overlapping_pairs(boxes);
+    ASSERT_LT(expected.size(), overlapping_pairs(floats).size());
     for (const Algorithm& algorithm : algorithms()) {
-      if (algorithm.kind == AlgorithmKind::own) {
-        EXPECT_NE(make_finder<D>(algorithm.name)->last_test(), nullptr) << algorithm.name;
-      }
+      if (algorithm.kind != AlgorithmKind::own) continue;
+      EXPECT_TRUE(algorithm.tests_doubles) << algorithm.name;
+      const SearchInput<D> input{.boxes = floats, .doubles = boxes.data()};
+      const auto searcher = library_searcher<D>(algorithm.name);
+      EXPECT_EQ(sorted_pairs([&](PairSink& sink) { searcher->search(input, sink); }), expected)
+          << algorithm.name;
     }
   });
 }
 
-TEST(DoubleFinder, GoesBackToFloatsWhereRoundingLosesNothing) {
+TEST(DoubleSearch, GoesBackToFloatsWhereRoundingLosesNothing) {
   in_each_dimension([]<int D>() {
     Rng rng(2);
-    DoubleFinder<D> finder(make_finder<D>("grid"));
+    Finder<D, double> finder("grid");
     for (const bool rounds : {true, false, true}) {
       std::vector<Box<D, double>> boxes = boxes_that_round<D>(rng, 600);
       for (Box<D, double>& box : boxes) {
@@ -101,4 +120,4 @@ TEST(DoubleFinder, GoesBackToFloatsWhereRoundingLosesNothing) {
 }
 
 }  // namespace
-}  // namespace broadside::core
+}  // namespace broadside::find
