@@ -74,7 +74,17 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
               IsEmpty());
   EXPECT_THAT(breaches("src/algorithms/tree/tree.cpp",
                        "#include \"algorithms/tree/tree.hpp\"\n#include \"algorithms/tree/cells.hpp\"\n"
-                       "#include \"algorithms/descriptions.hpp\"\n#include \"kernels/run.hpp\"\n"),
+                       "#include \"algorithms/registry.hpp\"\n#include \"kernels/run.hpp\"\n"),
+              IsEmpty());
+  EXPECT_THAT(breaches("src/find/finder.cpp",
+                       "#include \"find/search.hpp\"\n#include \"algorithms/registry.hpp\"\n"
+                       "#include \"kernels/last_test.hpp\"\n#include \"interface/input_check.hpp\"\n"),
+              IsEmpty());
+  EXPECT_THAT(
+      breaches("src/track/tracker.cpp", "#include \"find/search.hpp\"\n#include \"track/updater.hpp\"\n"),
+      IsEmpty());
+  EXPECT_THAT(breaches("src/world/world.cpp",
+                       "#include \"find/callers_sink.hpp\"\n#include \"track/pair_difference.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(breaches("lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
   EXPECT_THAT(breaches("lab/peers/embree_collide.cpp",
@@ -97,7 +107,7 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"include/broadside/world.hpp", "\"core/radix_sort.hpp\""},
       {"include/broadside/world.hpp", "<fmt/format.h>"},
       {"src/core/spec.cpp", "\"kernels/run.hpp\""},
-      {"src/core/spec.cpp", "\"algorithms/descriptions.hpp\""},
+      {"src/core/spec.cpp", "\"algorithms/registry.hpp\""},
       {"src/kernels/sweep.cpp", "\"broadside/algorithm.hpp\""},
       {"src/kernels/sweep.cpp", "\"core/parallel.hpp\""},
       {"src/algorithms/grid/grid.cpp", "\"algorithms/quadtree/nodes.hpp\""},
@@ -114,7 +124,15 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"distributed/mpi/find_pairs.cpp", "\"core/radix_sort.hpp\""},
       {"src/world/world.cpp", "\"lab/verify/verify.hpp\""},
       {"src/world/world.cpp", "\"kernels/run.hpp\""},
-      {"src/interface/finder.cpp", "\"world/state.hpp\""},
+      {"src/find/finder.cpp", "\"track/updater.hpp\""},
+      {"src/find/finder.cpp", "\"kernels/sweep.hpp\""},
+      {"src/find/finder.cpp", "\"algorithms/grid/layout.hpp\""},
+      {"src/track/tracker.cpp", "\"world/world.hpp\""},
+      {"src/track/tracker.cpp", "\"algorithms/grid/grid_follower.hpp\""},
+      {"src/algorithms/grid/grid.cpp", "\"find/search.hpp\""},
+      {"src/algorithms/auto/auto.cpp", "\"track/update_policy.hpp\""},
+      {"src/algorithms/registry.cpp", "\"find/search.hpp\""},
+      {"src/interface/input_check.cpp", "\"find/search.hpp\""},
       {"lab/verify/verify.cpp", "\"interface/input_check.hpp\""},
       {"lab/verify/verify.cpp", "\"../src/interface/input_check.hpp\""},
       {"lab/verify/verify.cpp", "\"cli/compare.hpp\""},

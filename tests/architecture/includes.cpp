@@ -22,7 +22,10 @@ const std::vector<Rule>& rules() {
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
   const std::string interface =
       core + R"(|"interface/[a-z_]+\.hpp"|"kernels/(overlap_flags|observed_tests)\.hpp")";
-  const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/descriptions\.hpp")";
+  const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/registry\.hpp")";
+  const std::string find =
+      interface + R"(|"find/[a-z_]+\.hpp"|"kernels/last_test\.hpp"|"algorithms/registry\.hpp")";
+  const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
                           R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
@@ -44,13 +47,12 @@ const std::vector<Rule>& rules() {
        standard +
            R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis|large_array|lean)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"src/algorithms/registry",
-       interface + R"(|"algorithms/descriptions\.hpp"|"doubles/double_finder\.hpp")"},
-      {"src/algorithms/auto/", algorithm + R"(|"algorithms/auto/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
+      {"src/algorithms/registry", interface + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
-      {"src/doubles/", interface + R"(|"kernels/[a-z_]+\.hpp"|"doubles/[a-z_]+\.hpp")"},
-      {"src/world/", interface + R"(|"world/[a-z_/]+\.hpp")"},
-      {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp")"},
+      {"src/find/", find},
+      {"src/track/", track},
+      {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
+      {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
@@ -67,7 +69,7 @@ const std::vector<Rule>& rules() {
                                      R"(|"(lab/scenes|paper/listings)/descriptions\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
-      {"lab/literature/", library + R"(|"lab/peers/peer_tracker\.hpp"|<hwy/[a-z_]+\.h>)"},
+      {"lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"lab/formats/", lab + R"(|<assimp/.*>|<(cpl_error|ogr_api)\.h>)"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},

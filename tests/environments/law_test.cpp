@@ -210,7 +210,7 @@ TEST(SpecInEnvironments, NamesTheSameNumber) {
   algorithm.tunables = {{.name = "size", .summary = "", .standard = "1"}};
   algorithm.searcher_2d = [&seen](const Settings& settings) {
     seen = settings.number("size");
-    return library_searcher<2>("grid");
+    return searcher_of<2>("grid");
   };
   const Spec spec = {"any", {{"size", "0.0007873178702928792"}}};
   static_cast<void>(Finder<2>(algorithm, spec));

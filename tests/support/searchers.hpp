@@ -28,26 +28,21 @@ class StubSearcher final : public Searcher<2> {
   Search search_;
 };
 
-/// The searcher of one of algorithms(), with nothing set.
+/// The algorithm's searcher, with nothing set.
 template <int D>
-std::unique_ptr<Searcher<D>> library_searcher(std::string_view name) {
-  const Algorithm& algorithm = *find_algorithm(name);
-  const Settings settings({algorithm.name, {}}, algorithm.tunables);
-  if constexpr (D == 2)
-    return algorithm.searcher_2d(settings);
-  else
-    return algorithm.searcher_3d(settings);
+std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm) {
+  return algorithm.searcher<D>()(Settings({algorithm.name, {}}, algorithm.tunables));
+}
+template <int D>
+std::unique_ptr<Searcher<D>> searcher_of(std::string_view name) {
+  return searcher_of<D>(*find_algorithm(name));
 }
 
-/// Its first follower, likewise.
+/// The algorithm's first follower, likewise.
 template <int D>
-std::unique_ptr<Follower<D>> library_follower(std::string_view name) {
+std::unique_ptr<Follower<D>> follower_of(std::string_view name) {
   const Algorithm& algorithm = *find_algorithm(name);
-  const Settings settings({algorithm.name, {}}, algorithm.tunables);
-  if constexpr (D == 2)
-    return algorithm.followers_2d[0].make(settings);
-  else
-    return algorithm.followers_3d[0].make(settings);
+  return algorithm.followers<D>()[0].make(Settings({algorithm.name, {}}, algorithm.tunables));
 }
 
 }  // namespace broadside

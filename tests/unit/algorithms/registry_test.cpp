@@ -27,7 +27,7 @@ Algorithm planar() {
       .summary = "does the plane only",
       .source = "this test",
       .tunables = {{.name = "cell", .summary = "edge", .standard = "1"}},
-      .searcher_2d = [](const Settings&) { return library_searcher<2>("brute_force"); },
+      .searcher_2d = [](const Settings&) { return searcher_of<2>("brute_force"); },
   };
 }
 

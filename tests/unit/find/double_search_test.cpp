@@ -95,7 +95,7 @@ TEST(DoubleSearch, LeavesTheLastTestToTheKernelsOfEachOwnAlgorithm) {
       if (algorithm.kind != AlgorithmKind::own) continue;
       EXPECT_TRUE(algorithm.tests_doubles) << algorithm.name;
       const SearchInput<D> input{.boxes = floats, .doubles = boxes.data()};
-      const auto searcher = library_searcher<D>(algorithm.name);
+      const auto searcher = searcher_of<D>(algorithm.name);
       EXPECT_EQ(sorted_pairs([&](PairSink& sink) { searcher->search(input, sink); }), expected)
           << algorithm.name;
     }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -16,6 +18,7 @@
 #include "lab/peers/tear_down.hpp"
 #include "lab/scenes/scene.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/searchers.hpp"
 #include "tests/support/text_of.hpp"
 
 namespace broadside::lab {
@@ -56,9 +59,10 @@ void expect_the_same_after_tear_down(const Algorithm& peer) {
   const auto boxes_of = [&scene](std::size_t count) {
     return make_history<D>(scene, {scene.name, {}}, {.boxes = count, .seed = 3}).boxes;
   };
-  Finder<D> finder(peer, {peer.name, {}});
-  auto* const torn_down = dynamic_cast<peers::TearDown*>(finder.get());
+  std::unique_ptr<Searcher<D>> searcher = searcher_of<D>(peer);
+  auto* const torn_down = dynamic_cast<peers::TearDown*>(searcher.get());
   if (torn_down == nullptr) return;
+  Finder<D> finder(std::move(searcher));
   torn_down->tear_down();  // before there is anything
   for (const std::size_t count : {300, 200, 400}) {
     const std::vector<Box<D>> boxes = boxes_of(count);

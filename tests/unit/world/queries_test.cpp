@@ -163,7 +163,7 @@ TEST(WorldQueries, LeaveOutOneBox) {
 }
 
 TEST(WorldQueries, UseTheFollowersIndexWhereItHasOne) {
-  auto made = library_follower<2>("bvh");
+  auto made = follower_of<2>("bvh");
   const Follower<2>& follower = *made;
   World2 world{Tracker<2>(std::move(made))};
   const Handle a = world.add({{0, 0}, {1, 1}});

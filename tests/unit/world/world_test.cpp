@@ -290,7 +290,7 @@ TEST_F(WorldTest, WorksInThreeDimensions) {
 
 TEST_F(WorldTest, LosesNoEventWhenAnUpdateFails) {
   bool fails = false;
-  const auto searcher = library_searcher<2>("brute_force");
+  const auto searcher = searcher_of<2>("brute_force");
   World2 world{Tracker<2>(std::make_unique<StubSearcher>([&](const SearchInput<2>& input, PairSink& pairs) {
     if (fails) throw std::runtime_error("out of luck");
     return searcher->search(input, pairs);
