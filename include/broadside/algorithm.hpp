@@ -16,6 +16,7 @@
 #include "broadside/export.hpp"
 #include "broadside/follower.hpp"
 #include "broadside/searcher.hpp"
+#include "broadside/spec.hpp"
 
 namespace broadside {
 
@@ -28,19 +29,6 @@ struct Outline;
 template <int D>
 using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
                                                     const Settings& settings)>;
-
-/// A name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
-struct BROADSIDE_PUBLIC Spec {
-  std::string name;
-  detail::Vector<std::pair<std::string, std::string>> values;
-
-  /// Reads a spec. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
-  /// is given twice. Whether name and tunables exist is for Settings to say.
-  static Spec parse(std::string_view text);
-
-  /// The text that parse() reads back to the same spec.
-  std::string text() const;
-};
 
 /// A parameter that a user may set in a spec.
 struct Tunable {
@@ -68,10 +56,12 @@ class BROADSIDE_PUBLIC Settings {
   /// The value of a tunable, which must exist and not be "auto".
   double number(std::string_view tunable) const;
   std::int64_t integer(std::string_view tunable) const;
-  const std::string& text(std::string_view tunable) const;
+  const std::string& text(std::string_view tunable) const { return value(tunable).text(); }
 
  private:
-  detail::Vector<std::pair<std::string, std::string>> values_;
+  const SpecValue& value(std::string_view tunable) const;
+
+  detail::Vector<std::pair<std::string, SpecValue>> values_;
 };
 
 /// Where an algorithm comes from.
@@ -107,8 +97,8 @@ struct FollowerChoice {
   std::function<std::unique_ptr<Follower<D>>(const Settings&)> make;
   FollowCosts costs{};
 
-  /// Not 0: it compares each changed box with all others, so that its cost is known beforehand. It is used for
-  /// up to so many boxes whatever the others cost, and for more where they make about as many tests.
+  /// Not 0: it compares each changed box with all others, so that its cost is known beforehand. It is used
+  /// for up to so many boxes whatever the others cost, and for more where they make about as many tests.
   std::size_t max_boxes = 0;
 };
 

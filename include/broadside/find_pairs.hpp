@@ -18,13 +18,14 @@
 #include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
 
 namespace broadside {
 
 /// How one call of find_pairs() searches.
 struct BROADSIDE_CALLERS_VECTOR FindOptions {
-  std::string_view algorithm = default_algorithm;  ///< the spec, such as "grid:cell=2.5" or "auto:threads=4"
-  std::span<const Filter> filters{};               ///< as PairFilters has them
+  Spec algorithm{};                   ///< such as "grid:cell=2.5" or AutoOptions{.threads = 4}
+  std::span<const Filter> filters{};  ///< as PairFilters has them
   std::span<const Filter> right_filters{};
   const IgnoredPairs* ignored = nullptr;
   Executor* executor = nullptr;  ///< whose threads search; null for the library's own
@@ -59,7 +60,7 @@ struct ViewTraits<T> : BoxTraits<std::ranges::range_value_t<T>> {
 };
 
 inline const FindOptions& options_of(const FindOptions& options) { return options; }
-inline FindOptions options_of(std::string_view algorithm) { return {.algorithm = algorithm}; }
+inline FindOptions options_of(const Spec& algorithm) { return {.algorithm = algorithm}; }
 
 /// Has a finder that the options describe search by `search`.
 template <int D, typename Real, typename Search>
@@ -99,7 +100,7 @@ concept BoxArray = requires {
 
 /// FindOptions, or the spec alone.
 template <typename T>
-concept FindOption = std::same_as<T, FindOptions> || std::convertible_to<const T&, std::string_view>;
+concept FindOption = std::same_as<T, FindOptions> || std::convertible_to<const T&, Spec>;
 
 namespace detail {
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "broadside/box.hpp"
 #include "broadside/error.hpp"
@@ -16,14 +15,11 @@
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
 
 namespace broadside {
 
 struct Algorithm;
-struct Spec;
-
-/// The spec that Finder, Tracker, World and find_pairs() use unless told otherwise.
-inline constexpr std::string_view default_algorithm = "auto";
 
 /// Finds every overlapping pair in an array of boxes, from nothing, at each call.
 ///
@@ -38,9 +34,10 @@ class BROADSIDE_PUBLIC Finder final {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5". Throws InvalidSpec, naming the
+  /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5" or
+  /// GridOptions{.cell = 2.5}. Throws InvalidSpec, naming the
   /// algorithms there are, if there is none of that name.
-  explicit Finder(std::string_view spec = default_algorithm);
+  explicit Finder(const Spec& spec = {});
 
   /// A finder by `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec if a
   /// value is wrong or the algorithm does not do D dimensions.

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 #include "broadside/box.hpp"
@@ -19,6 +18,7 @@
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
 
 namespace broadside {
 
@@ -60,9 +60,10 @@ class BROADSIDE_PUBLIC Tracker final {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A tracker by one of algorithms(), from a spec such as "grid:update=follow". Throws InvalidSpec, naming
+  /// A tracker by one of algorithms(), from a spec such as "grid:update=follow" or
+  /// GridOptions{.update = Update::follow}. Throws InvalidSpec, naming
   /// the algorithms there are, if there is none of that name.
-  explicit Tracker(std::string_view spec = default_algorithm);
+  explicit Tracker(const Spec& spec = {});
 
   /// A tracker by `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec if a
   /// value is wrong or the algorithm does not do D dimensions.

@@ -22,6 +22,7 @@
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/queries.hpp"
+#include "broadside/spec.hpp"
 #include "broadside/tracker.hpp"
 
 namespace broadside {
@@ -105,8 +106,8 @@ enum class WorldEvents : std::uint8_t { exact, enlarged };
 
 /// How a world works.
 struct WorldOptions {
-  /// The spec of the algorithm that finds the pairs.
-  std::string algorithm{default_algorithm};
+  /// The algorithm that finds the pairs, such as "grid:cell=2.5" or GridOptions{.cell = 2.5}.
+  Spec algorithm{};
 
   /// Whether the world knows its current pairs: pairs() and persisting(). Without them it saves 16 bytes a
   /// pair and some ten nanoseconds an event, and a predicate can only be set before the first update.
@@ -212,7 +213,7 @@ class BROADSIDE_PUBLIC World {
  public:
   /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
   /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite.
-  explicit World(std::string_view spec = default_algorithm);
+  explicit World(const Spec& spec = {});
   explicit World(const WorldOptions& options);
 
   /// A world over a tracker of the caller's, which no frame was handed to; options.algorithm is not used.

@@ -41,35 +41,35 @@ std::string_view current_value(std::string_view algorithm, std::string_view tuna
   return value;
 }
 
-std::string current_spec(std::string_view spec) {
-  Spec current = Spec::parse(spec);
+Spec current_spec(Spec current) {
   current.name = current_algorithm(current.name);
-  for (auto& [tunable, value] : current.values) value = current_value(current.name, tunable, value);
+  for (auto& [tunable, value] : current.values)
+    value = std::string(current_value(current.name, tunable, value.text()));
   // Not std::ranges::remove_if(), whose subrange clang 14 does not compile.
   const auto is_gone = [&current](const auto& given) {
     return !former_tunable(current.name, given.first).empty() ||
-           !former_value(current.name, given.first, given.second).empty();
+           !former_value(current.name, given.first, given.second.text()).empty();
   };
   current.values.erase(std::remove_if(current.values.begin(), current.values.end(), is_gone),
                        current.values.end());
-  return current.text();
+  return current;
 }
 
-std::string canonical_spec(std::string_view spec) {
-  const Spec given = Spec::parse(current_spec(spec));
+Spec canonical_spec(const Spec& spec) {
+  const Spec given = current_spec(spec);
   Spec canonical{given.name, {}};
   const Algorithm* const algorithm = find_algorithm(given.name);
   for (const Tunable& tunable : algorithm->tunables) {
     const auto found =
         std::ranges::find(given.values, tunable.name, &decltype(given.values)::value_type::first);
-    if (found == given.values.end() || found->second == tunable.standard) continue;
+    if (found == given.values.end() || found->second.text() == tunable.standard) continue;
     if (tunable.type == Tunable::Type::choice) {
       canonical.values.push_back(*found);
-    } else if (const double number = number_in(found->second); number != number_in(tunable.standard)) {
-      canonical.values.emplace_back(tunable.name, text_of(number));
+    } else if (const double number = number_in(found->second.text()); number != number_in(tunable.standard)) {
+      canonical.values.emplace_back(tunable.name, number);
     }
   }
-  return canonical.text();
+  return canonical;
 }
 
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {

@@ -1,8 +1,9 @@
 // Names of earlier versions, so that old specs and results are understood, or refused with the reason.
 #pragma once
 
-#include <string>
 #include <string_view>
+
+#include "broadside/spec.hpp"
 
 namespace broadside::core {
 
@@ -14,13 +15,13 @@ std::string_view current_value(std::string_view algorithm, std::string_view tuna
                                std::string_view value) noexcept;
 
 /// A spec of an earlier version as this one understands it: renamed, and without the tunables and values that
-/// are gone, none of which changed the pairs. Throws InvalidSpec if it cannot be read.
-std::string current_spec(std::string_view spec);
+/// are gone, none of which changed the pairs.
+Spec current_spec(Spec spec);
 
 /// The canonical form of a spec, the same for all specs that make the same algorithm with the same values:
 /// current names, tunables in the algorithm's order except those with default values, numbers in their
 /// shortest form. `spec` must be one that made an algorithm.
-std::string canonical_spec(std::string_view spec);
+Spec canonical_spec(const Spec& spec);
 
 /// The reason why a tunable of the library's algorithm no longer has this value, as the end of an error
 /// message; empty if it never had it.

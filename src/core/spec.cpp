@@ -33,8 +33,11 @@ std::string range(const Tunable& tunable, double found) {
   return message({kind, " from ", core::text_of(tunable.least), " to ", core::text_of(most(tunable))});
 }
 
-void check(const std::string& owner, const Tunable& tunable, const std::string& value) {
-  if (value == tunable.standard) return;
+/// The value as the tunable has it: a text, or a number. Throws InvalidSpec if it is not one of the
+/// tunable's.
+SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecValue& given) {
+  const std::string value(core::current_value(owner, tunable.name, given.text()));
+  if (value == tunable.standard) return value;
   const auto refuse = [&](const std::string& expected) {
     throw InvalidSpec(message({owner, ": ", tunable.name, " is '", value, "'; expected ", expected,
                                tunable.standard == "auto" ? ", or auto" : "",
@@ -43,51 +46,51 @@ void check(const std::string& owner, const Tunable& tunable, const std::string& 
   if (tunable.type == Tunable::Type::choice) {
     if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
       refuse(message({"one of: ", listed(tunable.choices)}));
-    return;
+    return value;
   }
-  const double number = core::number_in(value);
+  const double number = given.number() ? *given.number() : core::number_in(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
   if (!(number >= tunable.least && number <= most(tunable) && std::isfinite(number) && whole))
     refuse(range(tunable, number));
+  return number;
 }
 
 }  // namespace
 
-Spec Spec::parse(std::string_view text) {
+SpecValue::SpecValue(double number) : text_(core::text_of(number)), number_(number) {}
+
+Spec::Spec(std::string_view text) {
   const auto refuse = [text](const std::string& found) {
     throw InvalidSpec(message({"spec '", text, "': ", found, "; expected name:tunable=value:..."}));
   };
-  Spec spec;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(':', begin), text.size());
     const std::string_view part = text.substr(begin, end - begin);
     if (begin == 0) {
       if (part.empty()) refuse("no name");
-      spec.name = part;
+      name = part;
     } else {
       const std::size_t equals = part.find('=');
       if (equals == std::string_view::npos || equals == 0)
         refuse(message({"'", part, "' has no ", equals == 0 ? "name before " : "", "'='"}));
       const std::string tunable(part.substr(0, equals));
-      if (std::ranges::any_of(spec.values, [&](const auto& value) { return value.first == tunable; }))
+      if (std::ranges::any_of(values, [&](const auto& value) { return value.first == tunable; }))
         refuse(message({"'", tunable, "' is given twice"}));
-      spec.values.emplace_back(tunable, part.substr(equals + 1));
+      values.emplace_back(tunable, std::string(part.substr(equals + 1)));
     }
     begin = end + 1;
   }
-  return spec;
 }
 
 std::string Spec::text() const {
   std::string text = name;
-  for (const auto& [tunable, value] : values) text += ":" + tunable + "=" + value;
+  for (const auto& [tunable, value] : values) text += ":" + tunable + "=" + value.text();
   return text;
 }
 
 Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
   for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.standard);
   for (const auto& [name, given] : spec.values) {
-    const std::string value(core::current_value(spec.name, name, given));
     const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
     if (tunable == tunables.end()) {
       std::vector<std::string> names;
@@ -96,18 +99,21 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
           message({spec.name, ": unknown tunable '", name, "'", did_you_mean(name, names), "; expected ",
                    names.empty() ? "" : "one of: ", listed(names), core::former_tunable(spec.name, name)}));
     }
-    check(spec.name, *tunable, value);
-    values_[static_cast<std::size_t>(tunable - tunables.begin())].second = value;
+    values_[static_cast<std::size_t>(tunable - tunables.begin())].second =
+        checked(spec.name, *tunable, given);
   }
 }
 
-const std::string& Settings::text(std::string_view tunable) const {
-  const auto found = std::ranges::find(values_, tunable, &std::pair<std::string, std::string>::first);
+const SpecValue& Settings::value(std::string_view tunable) const {
+  const auto found = std::ranges::find(values_, tunable, &decltype(values_)::value_type::first);
   if (found == values_.end()) throw InvalidSpec(message({"there is no tunable '", tunable, "'"}));
   return found->second;
 }
 
-double Settings::number(std::string_view tunable) const { return core::number_in(text(tunable)); }
+double Settings::number(std::string_view tunable) const {
+  const SpecValue& found = value(tunable);
+  return found.number() ? *found.number() : core::number_in(found.text());
+}
 
 std::int64_t Settings::integer(std::string_view tunable) const { return std::llround(number(tunable)); }
 

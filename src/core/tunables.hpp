@@ -11,9 +11,6 @@ namespace broadside::core {
 /// The tunable `threads`, of every algorithm that uses several: Finder and Tracker set their Workers by it.
 Tunable threads_tunable();
 
-/// How a tracker updates: the values of the tunable `update`.
-enum class Update { automatic, follow, rebuild };
-
 /// The tunable `update`, of every algorithm of which a Tracker may also find all pairs anew.
 Tunable update_tunable();
 Update update_of(const Settings& settings);

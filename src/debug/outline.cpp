@@ -93,22 +93,21 @@ Outline<D, Real> outline(const Algorithm& algorithm, const Spec& spec, std::span
 }
 
 template <int D, typename Real>
-Outline<D, Real> outline(std::string_view spec, std::span<const Box<D, Real>> boxes, const Workers& workers) {
-  const Spec parsed = Spec::parse(spec);
-  return outline<D, Real>(algorithm::require_algorithm(parsed.name), parsed, boxes, workers);
+Outline<D, Real> outline(const Spec& spec, std::span<const Box<D, Real>> boxes, const Workers& workers) {
+  return outline<D, Real>(algorithm::require_algorithm(spec.name), spec, boxes, workers);
 }
 
 template Outline<2, float> outline(const Algorithm&, const Spec&, std::span<const Box<2, float>>,
                                    const Workers&);
-template Outline<2, float> outline(std::string_view, std::span<const Box<2, float>>, const Workers&);
+template Outline<2, float> outline(const Spec&, std::span<const Box<2, float>>, const Workers&);
 template Outline<3, float> outline(const Algorithm&, const Spec&, std::span<const Box<3, float>>,
                                    const Workers&);
-template Outline<3, float> outline(std::string_view, std::span<const Box<3, float>>, const Workers&);
+template Outline<3, float> outline(const Spec&, std::span<const Box<3, float>>, const Workers&);
 template Outline<2, double> outline(const Algorithm&, const Spec&, std::span<const Box<2, double>>,
                                     const Workers&);
-template Outline<2, double> outline(std::string_view, std::span<const Box<2, double>>, const Workers&);
+template Outline<2, double> outline(const Spec&, std::span<const Box<2, double>>, const Workers&);
 template Outline<3, double> outline(const Algorithm&, const Spec&, std::span<const Box<3, double>>,
                                     const Workers&);
-template Outline<3, double> outline(std::string_view, std::span<const Box<3, double>>, const Workers&);
+template Outline<3, double> outline(const Spec&, std::span<const Box<3, double>>, const Workers&);
 
 }  // namespace broadside

@@ -157,10 +157,7 @@ Finder<D, Real>::Finder(const Algorithm& algorithm, const Spec& spec) {
 }
 
 template <int D, typename Real>
-Finder<D, Real>::Finder(std::string_view spec) {
-  const Spec parsed = Spec::parse(spec);
-  *this = Finder(algorithm::require_algorithm(parsed.name), parsed);
-}
+Finder<D, Real>::Finder(const Spec& spec) : Finder(algorithm::require_algorithm(spec.name), spec) {}
 
 template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {

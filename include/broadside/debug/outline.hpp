@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
@@ -29,7 +28,7 @@ struct Outline {
 /// outlines, or if no box is present. Takes what laying it out takes. Throws as Finder::find() does, and
 /// InvalidSpec. Boxes of doubles are laid out as floats.
 template <int D, typename Real>
-BROADSIDE_PUBLIC Outline<D, Real> outline(std::string_view spec, std::span<const Box<D, Real>> boxes,
+BROADSIDE_PUBLIC Outline<D, Real> outline(const Spec& spec, std::span<const Box<D, Real>> boxes,
                                           const Workers& workers = default_workers);
 template <int D, typename Real>
 BROADSIDE_PUBLIC Outline<D, Real> outline(const Algorithm& algorithm, const Spec& spec,

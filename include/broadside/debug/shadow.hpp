@@ -9,7 +9,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -83,7 +82,7 @@ class BROADSIDE_PUBLIC ShadowTracker final {
   using Make = std::function<Tracker<D, Real>()>;
 
   /// Shadows a tracker of the library's. Throws InvalidSpec.
-  explicit ShadowTracker(std::string_view spec, const ShadowOptions& options = {});
+  explicit ShadowTracker(const Spec& spec, const ShadowOptions& options = {});
 
   /// Shadows what `make` makes; it is called again to make a history small.
   explicit ShadowTracker(Make make, const ShadowOptions& options = {});

@@ -44,9 +44,9 @@ const Algorithm& algorithm_of(Choice choice) {
 /// The settings of a choice: the default ones, but that a sweep uses one axis, since one in stripes cannot
 /// give up.
 Settings settings_of(const Algorithm& algorithm) {
-  Spec spec{algorithm.name, {}};
-  if (algorithm.name == "sweep_and_prune") spec.values.emplace_back("axes", "1");
-  return {spec, algorithm.tunables};
+  if (algorithm.name == "sweep_and_prune")
+    return {SweepAndPruneOptions{.is_striped = false}, algorithm.tunables};
+  return {Spec{algorithm.name, {}}, algorithm.tunables};
 }
 
 /// Chooses among searchers, which it keeps.

@@ -1,0 +1,131 @@
+// Spec: which algorithm to use, and the values of its tunables, as a text such as "grid:cell=2.5" or as typed
+// options such as GridOptions{.cell = 2.5}.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "broadside/export.hpp"
+
+namespace broadside {
+
+/// The name of the algorithm that Finder, Tracker, World and find_pairs() use unless told otherwise.
+inline constexpr std::string_view default_algorithm = "auto";
+
+/// The value of a tunable in a spec: a text, or a number.
+class BROADSIDE_PUBLIC SpecValue {
+ public:
+  SpecValue(std::string text) : text_(std::move(text)) {}
+  SpecValue(const char* text) : text_(text) {}
+  SpecValue(double number);
+
+  /// The text; of a number, the shortest one that reads back to it.
+  const std::string& text() const noexcept { return text_; }
+  operator const std::string&() const noexcept { return text_; }
+
+  /// The number; empty if the value is a text, which Settings reads.
+  const std::optional<double>& number() const noexcept { return number_; }
+
+  friend bool operator==(const SpecValue& a, const SpecValue& b) noexcept { return a.text_ == b.text_; }
+
+ private:
+  std::string text_;
+  std::optional<double> number_;
+};
+
+/// An algorithm's name and the values given to some of its tunables: `name:tunable=value:tunable=value`.
+///
+/// Texts and the options below convert to it, so that Finder<2>("grid:cell=2.5") and
+/// Finder<2>(GridOptions{.cell = 2.5}) make the same finder. Whether the name and the tunables exist, and
+/// whether the values are in range, is checked where the algorithm is made.
+struct BROADSIDE_PUBLIC Spec {
+  /// The default algorithm.
+  Spec() : name(default_algorithm) {}
+
+  Spec(std::string its_name, detail::Vector<std::pair<std::string, SpecValue>> its_values)
+      : name(std::move(its_name)), values(std::move(its_values)) {}
+
+  /// Reads a text. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
+  /// is given twice.
+  Spec(std::string_view text);
+  Spec(const char* text) : Spec(std::string_view(text)) {}
+  Spec(const std::string& text) : Spec(std::string_view(text)) {}
+
+  /// The text that reads back to the same spec.
+  std::string text() const;
+
+  std::string name;
+  detail::Vector<std::pair<std::string, SpecValue>> values;
+};
+
+/// How a Tracker brings pairs up to date: as costs less in each frame, by following the boxes that changed,
+/// or by finding all pairs anew.
+enum class Update : std::uint8_t { automatic, follow, rebuild };
+
+enum class Axis : std::uint8_t { x, y, z };
+
+// Options of the library's algorithms. Each converts to a Spec; a value that is out of range is refused, by
+// InvalidSpec, where the Spec is used. An empty value is left for the algorithm to choose. `threads` is the
+// maximum number of threads of a search, 0 to 1024; 0: as many as the executor has. `update` is for trackers
+// and worlds alone.
+
+/// Chooses among the other algorithms by a sample of the boxes; where boxes move, in each frame.
+struct AutoOptions {
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+/// Every box against every other.
+struct BruteForceOptions {
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+/// Cells over all axes but one, and a sweep along that one in each.
+struct GridOptions {
+  /// The size of a cell in the boxes' unit, above 0; made larger where there would be over 4 cells a box. Of
+  /// trackers, the size of the smallest cells.
+  std::optional<double> cell{};
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+/// A sorted sweep along one axis, in stripes of a second axis where that pays.
+struct SweepAndPruneOptions {
+  std::optional<Axis> axis{};        ///< the axis to sweep along
+  std::optional<bool> is_striped{};  ///< whether a second axis is cut into stripes
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+/// Nodes split at medians until they hold few boxes; an octree in 3D.
+struct QuadtreeOptions {
+  std::optional<std::size_t>
+      capacity{};  ///< the maximum number of boxes in a leaf that could be split, from 1
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+/// A tree of bounds, sixteen to a node, joined with itself.
+struct BvhOptions {
+  std::size_t threads = 1;
+  Update update = Update::automatic;
+
+  BROADSIDE_PUBLIC operator Spec() const;
+};
+
+}  // namespace broadside
