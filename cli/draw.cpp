@@ -59,7 +59,7 @@ std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::stri
     const std::string part = list.substr(begin, end - begin);
     begin = end + 1;
     for (const lab::Entry& entry : catalogue.select(part)) {
-      const bool is_group = Spec::parse(part).name != entry.algorithm->name;
+      const bool is_group = Spec(part).name != entry.algorithm->name;
       if (is_group) {
         if (lab::has_outline(entry, dimension)) choose(entry);
         continue;

@@ -30,17 +30,15 @@ constexpr std::array<std::string_view, 5> groups = {"own", "paper", "literature"
 
 bool is_group(std::string_view name) { return std::ranges::find(groups, name) != groups.end(); }
 
-/// The spec's value of `threads`, or a null pointer.
-const std::string* given_threads(const Spec& spec) {
-  const auto given = std::ranges::find(spec.values, "threads", &std::pair<std::string, std::string>::first);
-  return given == spec.values.end() ? nullptr : &given->second;
+/// Whether the spec sets `threads`.
+bool sets_threads(const Spec& spec) {
+  return std::ranges::any_of(spec.values, [](const auto& value) { return value.first == "threads"; });
 }
 
 }  // namespace
 
 std::size_t threads_of(const Entry& entry) {
-  const std::string* const given = given_threads(entry.spec);
-  if (given == nullptr || !has_threads(*entry.algorithm)) return 1;
+  if (!sets_threads(entry.spec) || !has_threads(*entry.algorithm)) return 1;
   const Executor* const executor = standard_executor();
   if (executor == nullptr) return 1;
   const Settings settings(entry.spec, entry.algorithm->tunables);
@@ -51,7 +49,7 @@ std::size_t threads_of(const Entry& entry) {
 std::vector<Entry> with_threads(const std::vector<Entry>& entries, std::span<const std::size_t> threads) {
   std::vector<Entry> all;
   for (const Entry& entry : entries) {
-    if (!has_threads(*entry.algorithm) || given_threads(entry.spec) != nullptr) {
+    if (!has_threads(*entry.algorithm) || sets_threads(entry.spec)) {
       all.push_back(entry);
       continue;
     }
@@ -98,7 +96,7 @@ std::vector<Entry> Catalogue::select(std::string_view list) const {
                           "' is empty; expected one with algorithms in this build");
       continue;
     }
-    Spec spec = Spec::parse(part);
+    Spec spec(part);
     const Algorithm* const algorithm = find_algorithm(spec.name, algorithms_);
     if (algorithm == nullptr) {
       const auto missing = std::ranges::find(peers::missing_peers(), spec.name, &peers::MissingPeer::name);

@@ -58,6 +58,8 @@ struct BROADSIDE_PUBLIC Spec {
   /// The text that reads back to the same spec.
   std::string text() const;
 
+  friend bool operator==(const Spec&, const Spec&) = default;
+
   std::string name;
   detail::Vector<std::pair<std::string, SpecValue>> values;
 };

@@ -10,7 +10,7 @@ namespace broadside::lab {
 std::string snippet(std::string_view spec, Mode mode, int dimension, Precision precision) {
   const std::string_view real = precision == Precision::float64 ? "Double" : "";
   const std::string box = fmt::format("broadside::{}Box{}", real, dimension);
-  const std::string name = Spec::parse(spec).name;
+  const std::string name = Spec(spec).name;
   const Algorithm* const algorithm = find_algorithm(name);
   const bool is_ours = algorithm != nullptr && algorithm->kind != AlgorithmKind::peer;
   std::string text = "#include <broadside/broadside.hpp>\n\n";
@@ -23,7 +23,7 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);
   // What the library cannot look up by its name is made of its description.
   const auto made = [&](std::string_view function) {
-    return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec::parse(\"{}\"))", function, dimension,
+    return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec(\"{}\"))", function, dimension,
                        precision == Precision::float64 ? ", double" : "", name, spec);
   };
   if (mode == Mode::find) {

@@ -83,7 +83,7 @@ NamedScene find_scene(std::string_view text, const ReadOptions& files) {
   // A file's name may have a colon in it.
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(text, ignored);
-  Spec spec = is_file ? Spec{std::string(text), {}} : Spec::parse(text);
+  Spec spec = is_file ? Spec{std::string(text), {}} : Spec(text);
   const std::vector<Scene>& list = scene_list().scenes;
   const auto found = std::ranges::find(list, spec.name, &Scene::name);
   if (found == list.end() && is_path(spec.name)) {

@@ -101,7 +101,7 @@ std::string HardInput::text() const {
 }
 
 HardInput parse_input(std::string_view text) {
-  const Spec spec = Spec::parse(text);
+  const Spec spec(text);
   Spec common{spec.name, {}};
   HardInput input;
   input.family.name = find_family(spec.name).name;

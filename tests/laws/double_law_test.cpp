@@ -298,7 +298,7 @@ TEST_P(DoubleLaw, TracksBoxesThatRestCreepJumpComeAndGo) {
       for (const double where : {0.0, 5e6}) {
         track_restless_boxes<D>(algorithm(), spec(), where, unit);
         if (algorithm().name == "auto")
-          track_restless_boxes<D>(algorithm(), Spec::parse("auto:update=follow"), where, unit);
+          track_restless_boxes<D>(algorithm(), Spec("auto:update=follow"), where, unit);
       }
     }
   });

@@ -85,7 +85,7 @@ void with_each_finder(Body body) {
   for (const Algorithm& algorithm : algorithms()) specs.push_back(algorithm.name);
   const std::vector<std::vector<Box<D>>> all = scenes<D>();
   for (const std::string& spec : specs) {
-    if (!find_algorithm(Spec::parse(spec).name)->has_dimension(D)) continue;
+    if (!find_algorithm(Spec(spec).name)->has_dimension(D)) continue;
     Finder<D> finder(spec);
     for (std::size_t scene = 0; scene < all.size(); ++scene) {
       SCOPED_TRACE(testing::Message() << spec << " in " << D << "D, scene " << scene);

@@ -104,7 +104,7 @@ void find() {
 }
 
 void list_algorithms() {
-  const Spec spec = Spec::parse("every_pair:stride=1");
+  const Spec spec = Spec("every_pair:stride=1");
   print("values of a spec", spec.values.size());
   std::vector<Tunable> tunables;
   tunables.push_back({.name = "stride",

@@ -121,7 +121,7 @@ double tests_a_plate(std::size_t count) {
   lab::Random random(6);
   Finder<D, double> finder("auto");
   PairCounter pairs;
-  const auto statistics = finder.find(lab::make_family<D>(Spec::parse("plates"), count, random), pairs);
+  const auto statistics = finder.find(lab::make_family<D>(Spec("plates"), count, random), pairs);
   return static_cast<double>(statistics->tests) / static_cast<double>(count);
 }
 

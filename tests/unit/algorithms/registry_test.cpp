@@ -123,9 +123,9 @@ TEST(Registry, RefusesADimensionThatTheAlgorithmDoesNotDo) {
 
 TEST(Registry, RefusesAValueThatIsWrong) {
   const Algorithm algorithm = planar();
-  EXPECT_EQ(message_of<InvalidSpec>([&] { Finder<2>(algorithm, Spec::parse("planar:cell=-1")); }),
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Finder<2>(algorithm, Spec("planar:cell=-1")); }),
             "planar: cell is '-1'; expected a number of at least 0");
-  EXPECT_EQ(message_of<InvalidSpec>([&] { Tracker<2>(algorithm, Spec::parse("planar:size=1")); }),
+  EXPECT_EQ(message_of<InvalidSpec>([&] { Tracker<2>(algorithm, Spec("planar:size=1")); }),
             "planar: unknown tunable 'size'; expected one of: cell");
 }
 

@@ -15,7 +15,7 @@
 namespace broadside {
 namespace {
 
-using Values = std::vector<std::pair<std::string, std::string>>;
+using Values = decltype(Spec::values);
 
 const std::vector<Tunable> tunables = {
     {.name = "cell", .summary = "edge of a cell", .standard = "auto", .least = 0.5, .most = 2147483648.0},
@@ -33,33 +33,33 @@ const std::vector<Tunable> tunables = {
 };
 
 std::string refusal_of(std::string_view text) {
-  return message_of<InvalidSpec>([&] { Settings(Spec::parse(text), tunables); });
+  return message_of<InvalidSpec>([&] { Settings(Spec(text), tunables); });
 }
 
 TEST(Spec, ReadsANameAlone) {
-  const Spec spec = Spec::parse("grid");
+  const Spec spec("grid");
   EXPECT_EQ(spec.name, "grid");
   EXPECT_TRUE(spec.values.empty());
 }
 
 TEST(Spec, ReadsValuesInTheirOrder) {
-  const Spec spec = Spec::parse("grid:cell=2.5:axis=x");
+  const Spec spec("grid:cell=2.5:axis=x");
   EXPECT_EQ(spec.name, "grid");
   EXPECT_EQ(spec.values, (Values{{"cell", "2.5"}, {"axis", "x"}}));
 }
 
 TEST(Spec, LeavesEqualsSignsInAValue) {
-  EXPECT_EQ(Spec::parse("file:where=a=b").values, (Values{{"where", "a=b"}}));
+  EXPECT_EQ(Spec("file:where=a=b").values, (Values{{"where", "a=b"}}));
 }
 
 TEST(Spec, GivesBackTheTextItWasReadFrom) {
   for (const char* const text : {"grid", "grid:cell=2.5", "grid:cell=:axis=x", "a:b=c:d=e"})
-    EXPECT_EQ(Spec::parse(text).text(), text);
+    EXPECT_EQ(Spec(text).text(), text);
 }
 
 TEST(Spec, RefusesWhatIsNoSpec) {
   const auto refusal = [](std::string_view text) {
-    return message_of<InvalidSpec>([&] { Spec::parse(text); });
+    return message_of<InvalidSpec>([&] { static_cast<void>(Spec{text}); });
   };
   EXPECT_EQ(refusal(""), "spec '': no name; expected name:tunable=value:...");
   EXPECT_EQ(refusal(":cell=1"), "spec ':cell=1': no name; expected name:tunable=value:...");
@@ -84,7 +84,7 @@ TEST(Spec, HasOneCanonicalText) {
 }
 
 TEST(Settings, HaveStandardValuesWhereNoneIsGiven) {
-  const Settings settings(Spec::parse("grid"), tunables);
+  const Settings settings(Spec("grid"), tunables);
   EXPECT_TRUE(settings.is_auto("cell"));
   EXPECT_TRUE(settings.is_auto("axis"));
   EXPECT_EQ(settings.integer("capacity"), 16);
@@ -92,7 +92,7 @@ TEST(Settings, HaveStandardValuesWhereNoneIsGiven) {
 }
 
 TEST(Settings, TakeTheValuesGiven) {
-  const Settings settings(Spec::parse("grid:cell=2.5:capacity=1e3:axis=y:margin=0.1"), tunables);
+  const Settings settings(Spec("grid:cell=2.5:capacity=1e3:axis=y:margin=0.1"), tunables);
   EXPECT_FALSE(settings.is_auto("cell"));
   EXPECT_EQ(settings.number("cell"), 2.5);
   EXPECT_EQ(settings.integer("capacity"), 1000);
@@ -101,14 +101,13 @@ TEST(Settings, TakeTheValuesGiven) {
 }
 
 TEST(Settings, TakeBothEndsOfARange) {
-  EXPECT_EQ(Settings(Spec::parse("grid:cell=0.5"), tunables).number("cell"), 0.5);
-  EXPECT_EQ(Settings(Spec::parse("grid:cell=2147483648"), tunables).number("cell"), 2147483648.0);
-  EXPECT_EQ(Settings(Spec::parse("grid:capacity=9007199254740992"), tunables).integer("capacity"),
-            9007199254740992);
+  EXPECT_EQ(Settings(Spec("grid:cell=0.5"), tunables).number("cell"), 0.5);
+  EXPECT_EQ(Settings(Spec("grid:cell=2147483648"), tunables).number("cell"), 2147483648.0);
+  EXPECT_EQ(Settings(Spec("grid:capacity=9007199254740992"), tunables).integer("capacity"), 9007199254740992);
 }
 
 TEST(Settings, TakeAutoOnlyWhereItIsTheStandard) {
-  EXPECT_TRUE(Settings(Spec::parse("grid:cell=auto"), tunables).is_auto("cell"));
+  EXPECT_TRUE(Settings(Spec("grid:cell=auto"), tunables).is_auto("cell"));
   EXPECT_EQ(refusal_of("grid:capacity=auto"),
             "grid: capacity is 'auto'; expected a whole number from 1 to 9007199254740992");
 }
@@ -117,7 +116,7 @@ TEST(Settings, RefuseAnUnknownTunableAndNameTheKnownOnes) {
   EXPECT_EQ(
       refusal_of("grid:cells=2"),
       "grid: unknown tunable 'cells' (did you mean 'cell'?); expected one of: cell, capacity, axis, margin");
-  EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec::parse("a:b=1"), {}); }),
+  EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec("a:b=1"), {}); }),
             "a: unknown tunable 'b'; expected none");
 }
 
@@ -137,8 +136,7 @@ TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
                         .least = std::numeric_limits<float>::min(),
                         .most = std::numeric_limits<float>::max()};
   const auto refusal = [&](const std::string& value) {
-    return message_of<InvalidSpec>(
-        [&] { Settings(Spec::parse("grid:cell=" + value), std::span(&above_0, 1)); });
+    return message_of<InvalidSpec>([&] { Settings(Spec("grid:cell=" + value), std::span(&above_0, 1)); });
   };
   EXPECT_EQ(refusal("0"), "grid: cell is '0'; expected a number above 0, or auto");
   for (const std::string value : {"1e-38", "1e39"})
@@ -146,7 +144,7 @@ TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
               "grid: cell is '" + value +
                   "'; expected a number from 1.1754943508222875e-38 to 3.4028234663852886e+38, or auto");
   for (const std::string value : {"1.1754943508222875e-38", "3.4028234663852886e+38"})
-    EXPECT_NO_THROW(Settings(Spec::parse("grid:cell=" + value), std::span(&above_0, 1)));
+    EXPECT_NO_THROW(Settings(Spec("grid:cell=" + value), std::span(&above_0, 1)));
 }
 
 TEST(Settings, RefuseAnIntegerThatIsNotWholeOrThatADoubleCannotHold) {
@@ -169,7 +167,7 @@ TEST(CurrentSpec, LosesWhatIsGoneFromOursAndNothingFromOthers) {
 }
 
 TEST(Settings, RefuseToReadATunableThatDoesNotExist) {
-  const Settings settings(Spec::parse("grid"), tunables);
+  const Settings settings(Spec("grid"), tunables);
   EXPECT_THROW(settings.text("depth"), InvalidSpec);
 }
 

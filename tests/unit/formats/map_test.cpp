@@ -282,7 +282,7 @@ TEST_F(MapTest, MakesScenesOfTheMapsThatWereFetched) {
   const Scene coastlines = generated::coastlines();
   unsetenv("BROADSIDE_DATA");
   const auto count = [](const Scene& scene, const std::string& spec) {
-    return make_history<2>(scene, Spec::parse(spec), {}).boxes.size();
+    return make_history<2>(scene, Spec(spec), {}).boxes.size();
   };
   EXPECT_EQ(count(counties, "counties"), 4u);
   EXPECT_EQ(count(counties, "counties:boxes=segments"), 7u);

@@ -68,7 +68,7 @@ std::unique_ptr<CoherentFollower<2>> coherent_follower(const Spec& spec) {
 class Followed {
  public:
   Followed(const std::string& spec, std::vector<Box2> boxes)
-      : Followed(coherent_follower(Spec::parse(spec)), std::move(boxes)) {}
+      : Followed(coherent_follower(Spec(spec)), std::move(boxes)) {}
 
   UpdateParts move(std::size_t box, const Box2& to) {
     boxes_[box] = to;

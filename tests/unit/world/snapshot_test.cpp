@@ -220,7 +220,7 @@ void expect_the_same_bytes_after_a_restore(const std::string& spec) {
 
 TEST(Snapshot, HasTheSameBytesAfterARestoreWhateverTheSpec) {
   for (const std::string& spec : odd_specs()) {
-    const Algorithm& algorithm = *find_algorithm(Spec::parse(spec).name);
+    const Algorithm& algorithm = *find_algorithm(Spec(spec).name);
     if (algorithm.has_dimension(2)) expect_the_same_bytes_after_a_restore<2>(spec);
     if (algorithm.has_dimension(3)) expect_the_same_bytes_after_a_restore<3>(spec);
   }

@@ -232,7 +232,7 @@ const std::vector<lab::Scene>& scenes() {
 
 template <int D>
 void make_scene(std::size_t count, std::uint32_t seed) {
-  const Spec spec = Spec::parse(input.text);
+  const Spec spec = Spec(input.text);
   std::string names;
   for (const lab::Scene& scene : scenes()) {
     names += (names.empty() ? "" : ", ") + scene.name;
