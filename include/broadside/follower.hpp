@@ -82,7 +82,7 @@ class BROADSIDE_PUBLIC Follower {
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
 
   /// The boxes of the last frame for queries (see queries.hpp), if the follower keeps such an index anyway.
-  virtual const BoxIndex<D, float>* index() const noexcept { return nullptr; }
+  virtual const BoxIndex<D, float>* box_index() const noexcept { return nullptr; }
 
   /// The bytes kept from frame to frame.
   virtual std::size_t bytes() const noexcept { return 0; }

@@ -91,7 +91,7 @@ class BvhFollower final : public Follower<D> {
     return Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
   }
 
-  const BoxIndex<D, float>* index() const noexcept override { return &index_; }
+  const BoxIndex<D, float>* box_index() const noexcept override { return &index_; }
 
   std::size_t bytes() const noexcept override {
     return index_.bytes() + moved_.capacity() * sizeof(kernels::MovedBox<D>) +

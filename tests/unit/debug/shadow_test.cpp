@@ -35,7 +35,7 @@ class Forgetful final : public Follower<2> {
   std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
     const bool forgets = frames_++ >= from_;
     for (const BoxId a : change.changed) {
-      if (forgets && broadside::index(a) > 2) continue;
+      if (forgets && index(a) > 2) continue;
       for (std::uint32_t b = 0; b < change.now.size(); ++b) {
         if (BoxId{b} != a) change.report(a, BoxId{b}, begun, ended);
       }
