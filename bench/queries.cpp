@@ -83,11 +83,10 @@ class Queries {
         high_[axis] = std::max(high_[axis], box.max[axis]);
       }
     }
-    index_ = make_box_index<D>();
     const lab::Stopwatch watch;
-    index_->update({.boxes = boxes_, .changed = {}});
+    index_.update({.boxes = boxes_, .changed = {}});
     fmt::print("{}D: built in {:.2f} ms, {:.0f} bytes a box\n", D, watch.milliseconds(),
-               static_cast<double>(index_->bytes()) / static_cast<double>(boxes));
+               static_cast<double>(index_.bytes()) / static_cast<double>(boxes));
     peers_ = lab::peers::query_peers<D>(boxes_);
   }
 
@@ -138,7 +137,7 @@ class Queries {
     for (Ray<D>& ray : rays) {
       do {
         ray.origin = any_point();
-      } while (!index_->containing(ray.origin, [](BoxId) { return false; }));
+      } while (!index_.containing(ray.origin, [](BoxId) { return false; }));
       const std::array<float, D> to = any_point();
       for (int axis = 0; axis < D; ++axis) ray.direction[axis] = to[axis] - ray.origin[axis];
       ray.t_max = 1;
@@ -149,14 +148,14 @@ class Queries {
   Answers own_overlapping(std::span<const Box<D>> queries) const {
     Answers answers;
     for (std::size_t i = 0; i < queries.size(); ++i)
-      index_->overlapping(queries[i], [&answers, i](BoxId id) { answers.add(i, id); });
+      index_.overlapping(queries[i], [&answers, i](BoxId id) { answers.add(i, id); });
     return answers;
   }
 
   Answers own_first_hits(std::span<const Ray<D>> rays) const {
     Answers answers;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (const auto hit = index_->first_hit(rays[i])) answers.add(i, hit->box);
+      if (const auto hit = index_.first_hit(rays[i])) answers.add(i, hit->box);
     }
     return answers;
   }
@@ -164,7 +163,7 @@ class Queries {
   Answers own_all_hits(std::span<const Ray<D>> rays) const {
     Answers answers;
     for (std::size_t i = 0; i < rays.size(); ++i)
-      index_->hits(rays[i], [&answers, i](Hit<float> hit) { answers.add(i, hit.box); });
+      index_.hits(rays[i], [&answers, i](Hit<float> hit) { answers.add(i, hit.box); });
     return answers;
   }
 
@@ -184,7 +183,7 @@ class Queries {
         }
         const std::array changed = {BoxId(i)};
         const lab::Stopwatch watch;
-        index_->update({.boxes = boxes_, .changed = changed});
+        index_.update({.boxes = boxes_, .changed = changed});
         samples.push_back(watch.milliseconds() * 1e6);
       }
       fmt::print("{:<32}{:>9}  broadside {:.0f} ns, the clock's included\n",
@@ -198,7 +197,7 @@ class Queries {
   std::vector<Box<D>> boxes_;
   std::array<float, D> low_;
   std::array<float, D> high_;
-  std::unique_ptr<BoxIndex<D>> index_;
+  BoxIndex<D> index_;
   std::vector<std::unique_ptr<lab::peers::QueryPeer<D>>> peers_;
   lab::Random random_{1};
 };

@@ -18,32 +18,30 @@ class KeptIndex final : public broadside_index {
  public:
   void update(const broadside_boxes& boxes, const std::uint32_t* changed, std::size_t changed_count,
               const broadside_filter* filters) override {
-    index_->update(memory_.frame(boxes, changed, changed_count, filters));
+    index_.update(memory_.frame(boxes, changed, changed_count, filters));
   }
 
   void overlapping(const void* box, const Eligible& eligible, Buffer<std::uint32_t>& places) const override {
-    index_->overlapping(
-        value_of<Box<D, Real>>(box, "box"), [&](BoxId id) { places.add(index(id)); }, eligible.filter(),
-        eligible.place);
+    index_.overlapping(value_of<Box<D, Real>>(box, "box"), [&](BoxId id) { places.add(index(id)); },
+                       {eligible.filter(), eligible.place});
   }
 
   void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
             Buffer<broadside_hit>& hits) const override {
-    index_->hits(
-        cast_of<D, Real>(box, direction, t_max), [&](const Hit<Real>& hit) { hits.add(hit_of(hit)); },
-        eligible.filter(), eligible.place);
+    index_.hits(cast_of<D, Real>(box, direction, t_max), [&](const Hit<Real>& hit) { hits.add(hit_of(hit)); },
+                {eligible.filter(), eligible.place});
   }
 
   std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
                                          const Eligible& eligible) const override {
     const auto hit =
-        index_->first_hit(cast_of<D, Real>(box, direction, t_max), eligible.filter(), eligible.place);
+        index_.first_hit(cast_of<D, Real>(box, direction, t_max), {eligible.filter(), eligible.place});
     return hit ? std::optional(hit_of(*hit)) : std::nullopt;
   }
 
   void nearest(const void* point, std::size_t count, double max_distance, const Eligible& eligible,
                Buffer<broadside_neighbour>& neighbours) const override {
-    index_->nearest(
+    index_.nearest(
         value_of<Point<D, Real>>(point, "point"), count,
         [&](const Neighbour<Real>& neighbour) {
           neighbours.add({{index(neighbour.box), 0}, static_cast<double>(neighbour.distance_squared)});
@@ -56,7 +54,7 @@ class KeptIndex final : public broadside_index {
     return {{index(hit.box), 0}, static_cast<double>(hit.t_enter)};
   }
 
-  std::unique_ptr<BoxIndex<D, Real>> index_ = make_box_index<D, Real>();
+  BoxIndex<D, Real> index_;
   FrameMemory<D, Real> memory_;
 };
 

@@ -143,30 +143,28 @@ class KeptWorld final : public broadside_world {
 
   void overlapping(const void* box, const Eligible& eligible,
                    Buffer<broadside_handle>& handles) const override {
-    world_.overlapping(
-        value_of<Box<D, Real>>(box, "box"),
-        [&](Handle handle) {
-          handles.add(handle_of(handle));
-          return true;
-        },
-        eligible.filter(), eligible.handle.value_or(Handle{}));
+    world_.overlapping(value_of<Box<D, Real>>(box, "box"),
+                       [&](Handle handle) {
+                         handles.add(handle_of(handle));
+                         return true;
+                       },
+                       {eligible.filter(), eligible.handle});
   }
 
   void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
             Buffer<broadside_hit>& hits) const override {
-    world_.hits(
-        cast_of<D, Real>(box, direction, t_max),
-        [&](Handle handle, Real t_enter) {
-          hits.add({handle_of(handle), static_cast<double>(t_enter)});
-          return true;
-        },
-        eligible.filter(), eligible.handle.value_or(Handle{}));
+    world_.hits(cast_of<D, Real>(box, direction, t_max),
+                [&](Handle handle, Real t_enter) {
+                  hits.add({handle_of(handle), static_cast<double>(t_enter)});
+                  return true;
+                },
+                {eligible.filter(), eligible.handle});
   }
 
   std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
                                          const Eligible& eligible) const override {
-    const auto hit = world_.first_hit(cast_of<D, Real>(box, direction, t_max), eligible.filter(),
-                                      eligible.handle.value_or(Handle{}));
+    const auto hit =
+        world_.first_hit(cast_of<D, Real>(box, direction, t_max), {eligible.filter(), eligible.handle});
     if (!hit) return std::nullopt;
     return broadside_hit{handle_of(hit->handle), static_cast<double>(hit->t_enter)};
   }

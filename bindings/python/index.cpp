@@ -33,13 +33,13 @@ class IndexOf final : public Index {
   IndexOf(const Rows& rows, std::span<const Filter> filters) : size_(rows.size()) {
     std::vector<Box<Dimension, Coordinate>> memory;
     const auto boxes = rows.array(memory);
-    without_gil([&](WithoutGil&) { index_->update({.boxes = boxes, .filters = filters}); });
+    without_gil([&](WithoutGil&) { index_.update({.boxes = boxes, .filters = filters}); });
   }
 
   std::size_t size() const noexcept override { return size_; }
   int dimension() const noexcept override { return Dimension; }
   bool has_doubles() const noexcept override { return std::is_same_v<Coordinate, double>; }
-  std::size_t bytes() const noexcept override { return index_->bytes(); }
+  std::size_t bytes() const noexcept override { return index_.bytes(); }
 
   nb::object overlapping(nb::handle queries, const QueryChoice& choice) const override {
     return Queries(asked_).overlapping(queries, choice);
@@ -78,8 +78,8 @@ class IndexOf final : public Index {
   };
 
   std::size_t size_;
-  std::unique_ptr<BoxIndex<Dimension, Coordinate>> index_ = make_box_index<Dimension, Coordinate>();
-  const Asked asked_{*index_};
+  BoxIndex<Dimension, Coordinate> index_;
+  const Asked asked_{index_};
 };
 
 std::unique_ptr<Index> make_index(nb::handle boxes, nb::handle filters) {

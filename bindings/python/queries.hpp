@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 
 #include "bindings/python/input.hpp"
 #include "bindings/python/running.hpp"

@@ -15,6 +15,7 @@
 #include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/follower.hpp"
+#include "broadside/index.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/queries.hpp"
 #include "broadside/searcher.hpp"

@@ -21,7 +21,7 @@
 #include "broadside/export.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/finder.hpp"
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 #include "broadside/spec.hpp"
 #include "broadside/tracker.hpp"
 

@@ -51,7 +51,7 @@ class QueryIndex {
   void update(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters) {
     if (index_ == nullptr) {
       make_room(boxes.size());
-      index_ = make_box_index<D, Real>();
+      index_ = std::make_unique<BoxIndex<D, Real>>();
     }
     // Slots that are gone need not be listed; slots that came and went in between must not be listed.
     std::erase_if(marked_, [&](BoxId slot) {

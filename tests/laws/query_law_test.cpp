@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 
 #include "hard_inputs.hpp"
 #include "histories.hpp"
@@ -168,8 +168,7 @@ class QueryLaw : public testing::Test {
       if (counts(i) && is_present(box) && overlap(boxes[i], box)) expected.push_back(BoxId(i));
     }
     std::vector<BoxId> found;
-    EXPECT_TRUE(index.overlapping(
-        box, [&found](BoxId id) { found.push_back(id); }, filter, except));
+    EXPECT_TRUE(index.overlapping(box, [&found](BoxId id) { found.push_back(id); }, {filter, except}));
     std::ranges::sort(found);
     EXPECT_EQ(found, expected) << "overlapping a box from " << testing::PrintToString(box.min) << " to "
                                << testing::PrintToString(box.max);
@@ -187,8 +186,7 @@ class QueryLaw : public testing::Test {
       if (!first || *enter < first->t_enter) first = expected.back();
     }
     std::vector<Hit<Real>> found;
-    EXPECT_TRUE(index.hits(
-        cast, [&found](Hit<Real> hit) { found.push_back(hit); }, filter, except));
+    EXPECT_TRUE(index.hits(cast, [&found](Hit<Real> hit) { found.push_back(hit); }, {filter, except}));
     std::ranges::sort(found, {}, &Hit<Real>::box);
     const auto shown = [&cast] {
       return "cast from " + testing::PrintToString(cast.box.min) + " to " +
@@ -196,7 +194,7 @@ class QueryLaw : public testing::Test {
              " up to " + testing::PrintToString(cast.t_max);
     };
     EXPECT_EQ(found, expected) << shown();
-    EXPECT_EQ(index.first_hit(cast, filter, except), first) << shown();
+    EXPECT_EQ(index.first_hit(cast, {filter, except}), first) << shown();
   }
 
   template <typename Counts>
@@ -248,9 +246,9 @@ TYPED_TEST_SUITE(QueryLaw, Kinds, KindNames);
 TYPED_TEST(QueryLaw, HoldsForHardInputs) {
   for (const auto& [name, floats] : hard_inputs<TestFixture::D>(Algorithm{})) {
     const typename TestFixture::Boxes boxes = this->real(floats);
-    const auto index = make_box_index<TestFixture::D, typename TestFixture::Real>();
-    index->update({.boxes = boxes, .changed = {}});
-    this->expect_answers(*index, boxes, {}, reduced(60, 1));
+    BoxIndex<TestFixture::D, typename TestFixture::Real> index;
+    index.update({.boxes = boxes, .changed = {}});
+    this->expect_answers(index, boxes, {}, reduced(60, 1));
     ASSERT_FALSE(this->HasFailure()) << name;
   }
 }
@@ -268,9 +266,9 @@ TYPED_TEST(QueryLaw, HoldsAtEveryScale) {
       this->unit_ = unit;
       for (const auto& [name, floats] : hard_inputs<TestFixture::D>(Algorithm{})) {
         const typename TestFixture::Boxes boxes = this->real(floats);
-        const auto index = make_box_index<TestFixture::D, double>();
-        index->update({.boxes = boxes, .changed = {}});
-        this->expect_answers(*index, boxes, {}, reduced(20, 1));
+        BoxIndex<TestFixture::D, double> index;
+        index.update({.boxes = boxes, .changed = {}});
+        this->expect_answers(index, boxes, {}, reduced(20, 1));
         ASSERT_FALSE(this->HasFailure()) << name << ", " << unit[0] << ", " << unit[1];
       }
     }
@@ -286,9 +284,9 @@ TYPED_TEST(QueryLaw, HoldsForScenes) {
     const auto history = lab::make_history<dimension>(scene, {scene.name, {}}, {.boxes = count});
     if (history.boxes.size() > 20'000) continue;
     const typename TestFixture::Boxes boxes = this->real(history.boxes);
-    const auto index = make_box_index<dimension, typename TestFixture::Real>();
-    index->update({.boxes = boxes, .changed = {}});
-    this->expect_answers(*index, boxes, {}, reduced(20, 1));
+    BoxIndex<dimension, typename TestFixture::Real> index;
+    index.update({.boxes = boxes, .changed = {}});
+    this->expect_answers(index, boxes, {}, reduced(20, 1));
     ASSERT_FALSE(this->HasFailure()) << scene.name;
   }
 }
@@ -299,12 +297,12 @@ TYPED_TEST(QueryLaw, HoldsAfterHistories) {
     typename TestFixture::Boxes boxes = this->real(history.boxes);
     std::vector<Filter> filters(boxes.size());
     const bool has_filters = this->rng_.one_in(2);
-    const auto index = make_box_index<dimension, typename TestFixture::Real>();
+    BoxIndex<dimension, typename TestFixture::Real> index;
     const auto update = [&](const std::vector<BoxId>& changed) {
-      index->update({.boxes = boxes,
-                     .changed = changed,
-                     .filters = std::span(filters).first(has_filters ? filters.size() : 0)});
-      this->expect_answers(*index, boxes, has_filters ? filters : std::vector<Filter>{}, 2);
+      index.update({.boxes = boxes,
+                    .changed = changed,
+                    .filters = std::span(filters).first(has_filters ? filters.size() : 0)});
+      this->expect_answers(index, boxes, has_filters ? filters : std::vector<Filter>{}, 2);
     };
     update({});
     for (const lab::Step<dimension>& step : history.steps) {
@@ -337,8 +335,8 @@ TYPED_TEST(QueryLaw, HoldsAfterManySmallChanges) {
     };
     typename TestFixture::Boxes boxes(reduced(1500, 1));
     std::ranges::generate(boxes, anywhere);
-    const auto index = make_box_index<dimension, typename TestFixture::Real>();
-    index->update({.boxes = boxes, .changed = {}});
+    BoxIndex<dimension, typename TestFixture::Real> index;
+    index.update({.boxes = boxes, .changed = {}});
     for (std::size_t frame = 0; frame < reduced(150, 1); ++frame) {
       std::vector<BoxId> changed;
       // Whole regions empty and fill in the second way.
@@ -357,8 +355,8 @@ TYPED_TEST(QueryLaw, HoldsAfterManySmallChanges) {
           box = anywhere();
         }
       }
-      index->update({.boxes = boxes, .changed = changed});
-      if (frame % 5 == 0) this->expect_answers(*index, boxes, {}, 3);
+      index.update({.boxes = boxes, .changed = changed});
+      if (frame % 5 == 0) this->expect_answers(index, boxes, {}, 3);
       ASSERT_FALSE(this->HasFailure()) << "frame " << frame << ", way " << way;
     }
   }

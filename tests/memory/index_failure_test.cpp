@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 
 #include "injection.hpp"
 #include "memory_case.hpp"
@@ -26,7 +26,7 @@ std::vector<BoxId> overlapping(const BoxIndex<D, Real>& index, const Box<D, Real
 template <int D, typename Real>
 std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector) {
   Rng rng(seed);
-  const std::unique_ptr<BoxIndex<D, Real>> index = make_box_index<D, Real>();
+  BoxIndex<D, Real> index;
   std::vector<Box<D, Real>> boxes;
   std::vector<Box<D, Real>> held;
   Box<D, Real> everywhere;
@@ -41,11 +41,11 @@ std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector)
       boxes[i] = others[i];
       changed.push_back(BoxId(i));
     }
-    while (!injector.attempt([&] { index->update({boxes, changed}); })) {
+    while (!injector.attempt([&] { index.update({boxes, changed}); })) {
       std::vector<Neighbour<Real>> near;
-      index->nearest({}, 1, near);
-      const bool is_empty = overlapping(*index, everywhere).empty() && near.empty() &&
-                            !index->first_hit(BoxCast<D, Real>{.box = everywhere, .direction = {}});
+      index.nearest({}, 1, near);
+      const bool is_empty = overlapping(index, everywhere).empty() && near.empty() &&
+                            !index.first_hit(BoxCast<D, Real>{.box = everywhere, .direction = {}});
       if (!is_empty) return "an index that ran out of memory finds boxes";
     }
     for (const Box<D, Real>& box : others) {
@@ -54,7 +54,7 @@ std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector)
       for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (is_present(boxes[i]) && overlap(box, boxes[i])) expected.push_back(BoxId(i));
       }
-      if (overlapping(*index, box) != expected) return "not the boxes that overlap";
+      if (overlapping(index, box) != expected) return "not the boxes that overlap";
     }
   }
   return "";

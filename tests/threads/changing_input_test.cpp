@@ -18,7 +18,7 @@
 #include "broadside/error.hpp"
 #include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 #include "broadside/world.hpp"
@@ -255,13 +255,13 @@ TEST(ChangingIndex, SpoilsNothingButAnswersWhereAnotherThreadWrites) {
     std::vector<Box<D, Real>> boxes = valid_boxes<D, Real>(2000, random);
     std::vector<BoxId> places;
     for (std::size_t i = 0; i < 100; ++i) places.push_back(BoxId(7 * i));
-    const auto boxes_index = make_box_index<D, Real>();
+    BoxIndex<D, Real> boxes_index;
     race(boxes, places, [&] {
-      try_to([&] { boxes_index->update({.boxes = boxes, .changed = places}); });
+      try_to([&] { boxes_index.update({.boxes = boxes, .changed = places}); });
       Box<D, Real> all;
       all.min.fill(-1);
       all.max.fill(2000);
-      boxes_index->overlapping(all, [&](BoxId id) { EXPECT_LT(index(id), boxes.size()); });
+      boxes_index.overlapping(all, [&](BoxId id) { EXPECT_LT(index(id), boxes.size()); });
     });
   };
   check.template operator()<2, float>();

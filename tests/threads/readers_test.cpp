@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 #include "broadside/world.hpp"
 
 namespace broadside {
@@ -74,14 +74,14 @@ TEST(WorldQueriesThreads, MayAllAskFirst) {
 
 TEST(BoxIndexThreads, MayAllAskAtOnce) {
   const std::vector<Box2> boxes = row(3000);
-  const auto index = make_box_index<2>();
-  index->update({.boxes = boxes, .changed = {}});
+  BoxIndex<2> index;
+  index.update({.boxes = boxes, .changed = {}});
   const std::array found = in_threads([&index] {
     std::size_t hits = 0;
     for (int i = 0; i < 50; ++i) {
       const auto at = static_cast<float>(i * 100);
-      index->overlapping({{at, 0}, {at + 60, 1}}, [&hits](BoxId) { ++hits; });
-      if (index->first_hit(Ray<2>{{at, 0.5f}, {1, 0}})) ++hits;
+      index.overlapping({{at, 0}, {at + 60, 1}}, [&hits](BoxId) { ++hits; });
+      if (index.first_hit(Ray<2>{{at, 0.5f}, {1, 0}})) ++hits;
     }
     return hits;
   });

@@ -1,9 +1,9 @@
 // Queries: indexes of arrays of boxes, and worlds that are asked as well.
-#include "broadside/queries.hpp"
-
 #include <cmath>
 #include <memory>
 #include <optional>
+
+#include "broadside/index.hpp"
 
 #include "module/world.hpp"
 
@@ -32,7 +32,7 @@ BoxCast<dimension> cast_at() {
 
 class KeptIndex {
  public:
-  const BoxIndex<dimension>& index() const noexcept { return *index_; }
+  const BoxIndex<dimension>& index() const noexcept { return index_; }
 
   void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
               const Filter* filters) {
@@ -44,11 +44,11 @@ class KeptIndex {
       for (std::size_t i = 0; i < count; ++i) all_.push_back(BoxId(i));
       frame.changed = all_;
     }
-    index_->update(frame);
+    index_.update(frame);
   }
 
  private:
-  std::unique_ptr<BoxIndex<dimension>> index_ = make_box_index<dimension>();
+  BoxIndex<dimension> index_;
   std::vector<BoxId> all_;
 };
 
@@ -101,9 +101,8 @@ BROADSIDE_EXPORT(query_overlapping)
 Status query_overlapping(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 index.overlapping(
-                     Box<dimension>{point_at(0), point_at(dimension)}, [](BoxId id) { ids.push_back(id); },
-                     filter, left_out);
+                 index.overlapping(Box<dimension>{point_at(0), point_at(dimension)},
+                                   [](BoxId id) { ids.push_back(id); }, {filter, left_out});
                });
 }
 
@@ -127,7 +126,7 @@ BROADSIDE_EXPORT(query_first_hit)
 Status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 if (const auto hit = index.first_hit(cast_at(), filter, left_out)) {
+                 if (const auto hit = index.first_hit(cast_at(), {filter, left_out})) {
                    ids.push_back(hit->box);
                    question[0] = hit->t_enter;
                  }

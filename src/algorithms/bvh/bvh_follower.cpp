@@ -87,7 +87,7 @@ class BvhFollower final : public Follower<D> {
     ends.flush();
     judge(tests, movers);
     // The state's own filters, which stay until the next frame.
-    index_.take_filters(change.filters_now);
+    tree_index_.take_filters(change.filters_now);
     return Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
   }
 
@@ -160,8 +160,9 @@ class BvhFollower final : public Follower<D> {
            (is_worse_ || tree_.nodes() * kernels::fan_out > 4 * tree_.size() + 4096);
   }
 
-  BvhIndex<D, float> index_;
-  DynamicBvh<D>& tree_ = index_.tree();
+  BoxIndex<D> index_;  // answers queries by the tree whose boxes move here
+  BvhIndex<D, float>& tree_index_ = BvhIndex<D, float>::of(index_);
+  DynamicBvh<D>& tree_ = tree_index_.tree();
   std::vector<Box<D>> packed_;
   std::vector<kernels::MovedBox<D>> moved_;
   std::vector<std::uint8_t> calls_for_;  // of moved_: bits of follow()

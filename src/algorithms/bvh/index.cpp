@@ -1,13 +1,14 @@
-// An index of boxes: updates, and queries by the kernels.
+// BvhIndex: updates, and queries by the kernels.
 #include "algorithms/bvh/index.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <utility>
 
 #include "algorithms/bvh/found.hpp"
+#include "interface/input_check.hpp"
 #include "interface/squared_distance.hpp"
 
 namespace broadside::algorithm {
@@ -29,19 +30,53 @@ float in_tree(Real t_max, int exponent) {
 }  // namespace
 
 template <int D, typename Real>
-void BvhIndex<D, Real>::update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
-                                     bool rebuild) {
+void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
+  core::check_frame(frame, size_, dirty_);
+  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
+  take_filters_of(frame, rebuild);
+  changed_.clear();
+  if (!rebuild) list_changes(frame);
+
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
   // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
-  if (rebuild || changed.size() > tree_.size() / 4 + boxes.size() / 64 + 16) return build(boxes);
-  if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
-  for (const BoxId id : changed) {
-    const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);
-    tree_.set(id, is_there ? in_tree(boxes[index(id)]) : absent_box<D>());
-    if constexpr (!is_float<Real>) {
-      if (index(id) < boxes.size()) exact_[index(id)] = boxes[index(id)];
+  if (rebuild || changed_.size() > tree_.size() / 4 + boxes.size() / 64 + 16) {
+    build(boxes);
+  } else {
+    if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
+    for (const BoxId id : changed_) {
+      const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);
+      tree_.set(id, is_there ? in_tree(boxes[index(id)]) : absent_box<D>());
+      if constexpr (!is_float<Real>) {
+        if (index(id) < boxes.size()) exact_[index(id)] = boxes[index(id)];
+      }
     }
+    if (tree_.needs_rebuild()) build(boxes);
   }
-  if (tree_.needs_rebuild()) build(boxes);
+  size_ = boxes.size();
+  dirty_ = false;
+}
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::take_filters_of(const Frame<D, Real>& frame, bool rebuild) {
+  if (rebuild || frame.filters.empty() || own_filters_.empty()) {
+    own_filters_.assign(frame.filters.begin(), frame.filters.end());
+  } else {
+    own_filters_.resize(frame.filters.size());
+    for (const BoxId id : frame.changed) {
+      if (index(id) < own_filters_.size()) own_filters_[index(id)] = frame.filters[index(id)];
+    }
+    for (std::size_t i = size_; i < own_filters_.size(); ++i) own_filters_[i] = frame.filters[i];
+  }
+  filters_ = own_filters_;
+}
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::list_changes(const Frame<D, Real>& frame) {
+  changed_.assign(frame.changed.begin(), frame.changed.end());
+  const std::size_t size = std::max(size_, frame.boxes.size());
+  for (std::size_t i = std::min(size_, frame.boxes.size()); i < size; ++i) changed_.push_back(BoxId(i));
+  // Another thread may have written to the list since it was checked.
+  std::erase_if(changed_, [size](BoxId id) { return index(id) >= size; });
 }
 
 template <int D, typename Real>
@@ -119,7 +154,7 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
 template <int D, typename Real>
 bool BvhIndex<D, Real>::find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
                                          const QueryOptions& options) const {
-  if (tree_.size() == 0) return true;
+  if (is_empty()) return true;
   Overlapping<D, Real> found(*this, box, visitor, options);
   return kernels::find_overlapping(tree_.view(), in_tree(box), found) && found.take();
 }
@@ -127,7 +162,7 @@ bool BvhIndex<D, Real>::find_overlapping(const Box<D, Real>& box, Visitor<BoxId>
 template <int D, typename Real>
 bool BvhIndex<D, Real>::find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                                   const QueryOptions& options) const {
-  if (tree_.size() == 0) return true;
+  if (is_empty()) return true;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
   Met<D, Real> found(*this, cast, visitor, options);
@@ -138,7 +173,7 @@ bool BvhIndex<D, Real>::find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real
 template <int D, typename Real>
 std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real>& cast,
                                                            const QueryOptions& options) const {
-  if (tree_.size() == 0) return std::nullopt;
+  if (is_empty()) return std::nullopt;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
   First<D, Real> found(*this, cast, options, exponent);
@@ -150,7 +185,7 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
 template <int D, typename Real>
 bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
                                      Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const {
-  if (tree_.size() == 0) return true;
+  if (is_empty()) return true;
   kernels::DistanceQuery<D> query;
   query.weight.fill(1);
   query.point = in_tree(Box<D, Real>{point, point});
@@ -192,7 +227,7 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
         waiting[waits++] = {distances[i], child};
         continue;
       }
-      if (!this->may_find(BoxId{child}, options)) continue;
+      if (!may_find(BoxId{child}, options)) continue;
       if constexpr (is_float<Real>)
         found.offer({BoxId{child}, distances[i]});
       else
@@ -214,17 +249,3 @@ template class BvhIndex<3, float>;
 template class BvhIndex<3, double>;
 
 }  // namespace broadside::algorithm
-
-namespace broadside {
-
-template <int D, typename Real>
-std::unique_ptr<BoxIndex<D, Real>> make_box_index() {
-  return std::make_unique<algorithm::BvhIndex<D, Real>>();
-}
-
-template std::unique_ptr<BoxIndex<2, float>> make_box_index();
-template std::unique_ptr<BoxIndex<3, float>> make_box_index();
-template std::unique_ptr<BoxIndex<2, double>> make_box_index();
-template std::unique_ptr<BoxIndex<3, double>> make_box_index();
-
-}  // namespace broadside

@@ -1,4 +1,5 @@
-// An index of boxes: a dynamic bounding volume hierarchy that follows frames and answers queries.
+// BvhIndex: what is behind a BoxIndex, a dynamic bounding volume hierarchy that follows frames and answers
+// queries.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "broadside/index.hpp"
 #include "broadside/queries.hpp"
 
 #include "algorithms/bvh/conservative_rounding.hpp"
@@ -18,40 +20,58 @@ namespace broadside::algorithm {
 /// Floats are searched exactly by the kernels. Boxes of doubles are in the tree as floats about an origin, by
 /// conservative rounding; what the kernels find there is tested again by the definitions, in double.
 template <int D, typename Real>
-class BvhIndex final : public BoxIndex<D, Real> {
+class BvhIndex {
  public:
+  using Point = broadside::Point<D, Real>;
   using QueryOptions = broadside::QueryOptions<BoxId>;
-  using BoxIndex<D, Real>::may_find;
 
-  /// For a tracker of floats that moves the boxes itself, instead of update(), and then hands over filters.
+  static BvhIndex& of(BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
+  static const BvhIndex& of(const BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
+
+  /// Takes a frame: BoxIndex::update().
+  void update(const Frame<D, Real>& frame);
+
+  /// For a follower of floats that moves the boxes in the tree itself, instead of update(). It then says
+  /// which filters the boxes have now: none, or one for each. They must stay where they are until the next
+  /// call.
   DynamicBvh<D>& tree() noexcept { return tree_; }
   const DynamicBvh<D>& tree() const noexcept { return tree_; }
-  using BoxIndex<D, Real>::take_filters;
+  void take_filters(std::span<const Filter> filters) noexcept {
+    filters_ = filters;
+    dirty_ = false;
+  }
 
+  /// The queries of BoxIndex, with valid arguments; the box is not absent.
+  bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const QueryOptions& options) const;
+  bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
+                 const QueryOptions& options) const;
+  std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast, const QueryOptions& options) const;
+  bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
+                    Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const;
+
+  std::size_t bytes() const noexcept {
+    if constexpr (core::is_lean) return 0;
+    return own_filters_.capacity() * sizeof(Filter) + changed_.capacity() * sizeof(BoxId) + tree_.bytes() +
+           exact_.capacity() * sizeof(Box<D, Real>);
+  }
+
+  /// For the kernels' sinks: whether a query may find the box, the box itself (of doubles), and the parameter
+  /// at which box `found.ids[i]` is hit.
+  bool may_find(BoxId id, const QueryOptions& options) const noexcept {
+    if (options.except && id == *options.except) return false;
+    return options.filter == nullptr ||
+           accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
+  }
   const Box<D, Real>& exact(BoxId id) const noexcept { return exact_[index(id)]; }
-
-  /// The parameter at which box `found.ids[i]` is met.
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
                                  std::size_t i) const;
 
  private:
-  using Point = std::array<Real, D>;
+  /// Whether there is nothing to find: no box, or the last update did not end.
+  bool is_empty() const noexcept { return dirty_ || tree_.size() == 0; }
 
-  void update_valid(std::span<const Box<D, Real>> boxes, std::span<const BoxId> changed,
-                    bool rebuild) override;
-  bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
-                        const QueryOptions& options) const override;
-  bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-                 const QueryOptions& options) const override;
-  std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast,
-                                          const QueryOptions& options) const override;
-  bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                    Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const override;
-  std::size_t index_bytes() const noexcept override {
-    if constexpr (core::is_lean) return 0;
-    return tree_.bytes() + exact_.capacity() * sizeof(Box<D, Real>);
-  }
-
+  void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
+  void list_changes(const Frame<D, Real>& frame);
   void build(std::span<const Box<D, Real>> boxes);
   Box<D> in_tree(const Box<D, Real>& box) const;
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
@@ -59,6 +79,12 @@ class BvhIndex final : public BoxIndex<D, Real> {
   DynamicBvh<D> tree_;
   std::vector<Box<D, Real>> exact_;  // by id; of doubles alone
   ConservativeRounding<D> rounding_;
+
+  std::span<const Filter> filters_;  // of the last frame; empty if it had none
+  std::vector<Filter> own_filters_;  // the array behind filters_ after update()
+  std::vector<BoxId> changed_;       // with those that need not be listed
+  std::size_t size_ = 0;             // of the last frame
+  bool dirty_ = true;                // the last update did not end, or there was none
 };
 
 }  // namespace broadside::algorithm

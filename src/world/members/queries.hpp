@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "broadside/queries.hpp"
+#include "broadside/index.hpp"
 #include "broadside/world.hpp"
 
 #include "world/state.hpp"

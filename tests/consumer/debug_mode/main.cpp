@@ -137,7 +137,7 @@ void track() {
   Tracker<D, Real> tracker("auto");
   Tracker<D, Real> anew("grid:update=rebuild");
   ShadowTracker<D, Real> shadow("sweep_and_prune");
-  const auto index = make_box_index<D, Real>();
+  BoxIndex<D, Real> index;
   IgnoredPairs ignored;
   ignored.insert({BoxId{0}, BoxId{1}});
   std::vector<Filter> filters(boxes.size());
@@ -157,17 +157,17 @@ void track() {
     update(tracker);
     update(anew);
     update(shadow);
-    index->update(now);
+    index.update(now);
     std::vector<BoxId> touched;
-    index->overlapping(boxes[1], [&](BoxId id) { touched.push_back(id); });
+    index.overlapping(boxes[1], [&](BoxId id) { touched.push_back(id); });
     print("overlapping", touched.size());
     changed = {BoxId{2}};
     boxes[2].min[0] -= 1;
   }
   std::vector<Neighbour<Real>> nearest;
-  index->nearest({}, 3, nearest);
+  index.nearest({}, 3, nearest);
   for (const Neighbour<Real>& one : nearest) print("nearest", broadside::index(one.box));
-  print("nearest in a new vector", index->nearest({}, 3) == nearest);
+  print("nearest in a new vector", index.nearest({}, 3) == nearest);
 }
 
 template <int D, typename Real>

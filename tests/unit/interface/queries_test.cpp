@@ -1,20 +1,20 @@
 // Queries: what they promise beyond agreeing with the definitions.
-#include "broadside/queries.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
+#include "broadside/index.hpp"
 
 #include "algorithms/bvh/index.hpp"
 #include "tests/support/boxes.hpp"
@@ -38,19 +38,30 @@ std::vector<Box2> row(std::size_t count) {
   return boxes;
 }
 
-std::unique_ptr<BoxIndex<2>> index_of(const std::vector<Box2>& boxes) {
-  auto index = make_box_index<2>();
-  index->update({.boxes = boxes, .changed = {}});
+BoxIndex<2> index_of(const std::vector<Box2>& boxes) {
+  BoxIndex<2> index;
+  index.update({.boxes = boxes, .changed = {}});
   return index;
 }
 
 std::vector<BoxId> overlapping(const BoxIndex<2>& index, const Box2& box,
-                               const Filter* query_filter = nullptr) {
+                               const BoxIndex<2>::QueryOptions& options = {}) {
   std::vector<BoxId> found;
   index.overlapping(
-      box, [&found](BoxId id) { found.push_back(id); }, query_filter);
+      box, [&found](BoxId id) { found.push_back(id); }, options);
   std::ranges::sort(found);
   return found;
+}
+
+static_assert(std::is_final_v<BoxIndex<2>> && std::is_nothrow_move_constructible_v<BoxIndex<2>>);
+
+TEST(BoxIndex, MovesWithItsBoxes) {
+  BoxIndex<2> index = index_of(row(3));
+  BoxIndex<2> moved(std::move(index));
+  EXPECT_THAT(overlapping(moved, {{2, 0}, {9, 1}}), ElementsAre(BoxId(1), BoxId(2)));
+  index = index_of(row(1));
+  index.update({.boxes = row(2), .changed = {}});
+  EXPECT_THAT(overlapping(index, {{2, 0}, {9, 1}}), ElementsAre(BoxId(1)));
 }
 
 TEST(RayEntry, IsWhereTheRayFirstTouches) {
@@ -99,61 +110,61 @@ TEST(DistanceSquared, IsZeroInsideAndDefinedForInfinities) {
 }
 
 TEST(BoxIndex, AnswersNothingBeforeAnUpdateAndWithoutBoxes) {
-  const auto index = make_box_index<2>();
+  BoxIndex<2> index;
   const Box2 everything{{-infinity, -infinity}, {infinity, infinity}};
-  EXPECT_THAT(overlapping(*index, everything), IsEmpty());
-  EXPECT_EQ(index->first_hit(Ray<2>{{0, 0}, {1, 0}}), std::nullopt);
+  EXPECT_THAT(overlapping(index, everything), IsEmpty());
+  EXPECT_EQ(index.first_hit(Ray<2>{{0, 0}, {1, 0}}), std::nullopt);
   const std::vector<Box2> absent(40, absent_box<2>());
-  index->update({.boxes = absent, .changed = {}});
-  EXPECT_THAT(overlapping(*index, everything), IsEmpty());
+  index.update({.boxes = absent, .changed = {}});
+  EXPECT_THAT(overlapping(index, everything), IsEmpty());
   std::vector<Neighbour<float>> found;
-  index->nearest({0, 0}, 3, found);
+  index.nearest({0, 0}, 3, found);
   EXPECT_THAT(found, IsEmpty());
 }
 
 TEST(BoxIndex, FindsNothingForAnAbsentBox) {
   const auto index = index_of({{{-infinity, -infinity}, {infinity, infinity}}});
-  EXPECT_THAT(overlapping(*index, absent_box<2>()), IsEmpty());
+  EXPECT_THAT(overlapping(index, absent_box<2>()), IsEmpty());
 }
 
 TEST(BoxIndex, FollowsTheFrames) {
   std::vector<Box2> boxes = row(100);
-  const auto index = index_of(boxes);
+  auto index = index_of(boxes);
   const Box2 far{{1000, 0}, {1001, 1}};
   boxes[3] = far;
   boxes[4] = absent_box<2>();
   boxes.push_back(far);
-  index->update({.boxes = boxes, .changed = std::vector{BoxId(3), BoxId(4)}});
-  EXPECT_THAT(overlapping(*index, far), ElementsAre(BoxId(3), BoxId(100)));
-  EXPECT_THAT(overlapping(*index, {{6, 0}, {9, 1}}), IsEmpty());
+  index.update({.boxes = boxes, .changed = std::vector{BoxId(3), BoxId(4)}});
+  EXPECT_THAT(overlapping(index, far), ElementsAre(BoxId(3), BoxId(100)));
+  EXPECT_THAT(overlapping(index, {{6, 0}, {9, 1}}), IsEmpty());
   boxes.resize(2);
-  index->update({.boxes = boxes, .changed = {}});
-  EXPECT_THAT(overlapping(*index, {{-1e9f, 0}, {1e9f, 1}}), ElementsAre(BoxId(0), BoxId(1)));
+  index.update({.boxes = boxes, .changed = {}});
+  EXPECT_THAT(overlapping(index, {{-1e9f, 0}, {1e9f, 1}}), ElementsAre(BoxId(0), BoxId(1)));
 }
 
 TEST(BoxIndex, KeepsItsAnswersWhenAFrameIsRefused) {
   std::vector<Box2> boxes = row(50);
-  const auto index = index_of(boxes);
+  auto index = index_of(boxes);
   boxes[7].min[0] = nan;
   boxes[2] = {{500, 0}, {501, 1}};
   const std::vector changed = {BoxId(2), BoxId(7)};
-  EXPECT_THROW(index->update({.boxes = boxes, .changed = changed}), InvalidInput);
-  EXPECT_THAT(overlapping(*index, {{4, 0}, {4, 0}}), ElementsAre(BoxId(2)));
+  EXPECT_THROW(index.update({.boxes = boxes, .changed = changed}), InvalidInput);
+  EXPECT_THAT(overlapping(index, {{4, 0}, {4, 0}}), ElementsAre(BoxId(2)));
   const std::vector beyond = {BoxId(50)};
-  EXPECT_THROW(index->update({.boxes = row(50), .changed = beyond}), InvalidFrame);
+  EXPECT_THROW(index.update({.boxes = row(50), .changed = beyond}), InvalidFrame);
   const std::vector<Filter> filters(49);
-  EXPECT_THROW(index->update({.boxes = row(50), .changed = {}, .filters = filters}), InvalidFrame);
+  EXPECT_THROW(index.update({.boxes = row(50), .changed = {}, .filters = filters}), InvalidFrame);
 }
 
 TEST(BoxIndex, EndsASearchWhenTheVisitorSaysSo) {
   const auto index = index_of(row(2000));
   const Box2 everything{{-1, 0}, {1e6f, 1}};
   int calls = 0;
-  EXPECT_FALSE(index->overlapping(everything, [&calls](BoxId) { return ++calls < 3; }));
+  EXPECT_FALSE(index.overlapping(everything, [&calls](BoxId) { return ++calls < 3; }));
   EXPECT_EQ(calls, 3);
   calls = 0;
   const Ray<2> along{{-1, 0.5f}, {1, 0}};
-  EXPECT_FALSE(index->hits(along, [&calls](Hit<float>) { return ++calls < 30; }));
+  EXPECT_FALSE(index.hits(along, [&calls](Hit<float>) { return ++calls < 30; }));
   EXPECT_EQ(calls, 30);
 }
 
@@ -167,7 +178,7 @@ TEST(BoxIndex, HandsOnSmallChunksFirst) {
     std::vector<std::size_t> sizes;
   } visitor;
   const auto index = index_of(row(5000));
-  EXPECT_TRUE(index->overlapping({{-1, 0}, {1e6f, 1}}, visitor));
+  EXPECT_TRUE(index.overlapping({{-1, 0}, {1e6f, 1}}, visitor));
   EXPECT_LE(visitor.sizes.front(), 32U);
   EXPECT_LE(visitor.sizes.size(), 60U);
   EXPECT_EQ(std::accumulate(visitor.sizes.begin(), visitor.sizes.end(), std::size_t{0}), 5000U);
@@ -179,25 +190,25 @@ TEST(BoxIndex, FindsOnlyWhatAcceptsTheQueryFilter) {
   filters[1].category = 4;
   filters[3].mask = 8;
   filters[4].group = -2;
-  auto index = make_box_index<2>();
-  index->update({.boxes = boxes, .changed = {}, .filters = filters});
+  BoxIndex<2> index;
+  index.update({.boxes = boxes, .changed = {}, .filters = filters});
   const Filter query_filter{.category = 1, .mask = 1, .group = -2};
   const Box2 all{{0, 0}, {100, 1}};
-  EXPECT_THAT(overlapping(*index, all, &query_filter), ElementsAre(BoxId(0), BoxId(2), BoxId(5)));
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter)->box, BoxId(5));
+  EXPECT_THAT(overlapping(index, all, {&query_filter}), ElementsAre(BoxId(0), BoxId(2), BoxId(5)));
+  EXPECT_EQ(index.first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, {&query_filter})->box, BoxId(5));
   filters[5].category = 16;
-  index->update({.boxes = boxes, .changed = std::vector{BoxId(5)}, .filters = filters});
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter), std::nullopt);
-  index->update({.boxes = boxes, .changed = {}});
-  EXPECT_EQ(index->first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, &query_filter)->box, BoxId(3));
+  index.update({.boxes = boxes, .changed = std::vector{BoxId(5)}, .filters = filters});
+  EXPECT_EQ(index.first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, {&query_filter}), std::nullopt);
+  index.update({.boxes = boxes, .changed = {}});
+  EXPECT_EQ(index.first_hit(Ray<2>{{5.5f, 0}, {1, 0}}, {&query_filter})->box, BoxId(3));
 }
 
 TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
   const std::vector<Box2> boxes(300, Box2{{5, 0}, {6, 1}});
-  const auto index = index_of(boxes);
-  EXPECT_EQ(index->first_hit(Ray<2>{{0, 0.5f}, {1, 0}}), (Hit<float>{BoxId(0), 5}));
+  auto index = index_of(boxes);
+  EXPECT_EQ(index.first_hit(Ray<2>{{0, 0.5f}, {1, 0}}), (Hit<float>{BoxId(0), 5}));
   std::vector<Neighbour<float>> found;
-  index->nearest({3, 0}, 3, found);
+  index.nearest({3, 0}, 3, found);
   EXPECT_THAT(found, ElementsAre(Neighbour<float>{BoxId(0), 4}, Neighbour<float>{BoxId(1), 4},
                                  Neighbour<float>{BoxId(2), 4}));
 }
@@ -225,19 +236,19 @@ void expect_nearest_within() {
       boxes.back().max[axis] = box.max[axis];
     }
   }
-  const auto index = make_box_index<D, Real>();
-  index->update({.boxes = boxes, .changed = {}});
+  BoxIndex<D, Real> index;
+  index.update({.boxes = boxes, .changed = {}});
   Point<D, Real> point;
   point.fill(5);
   for (const Real max_distance :
        {Real(0), Real(0.1), Real(1), boxes[7].max[0], Real(1e6), std::numeric_limits<Real>::infinity()}) {
     const auto expected = within(boxes, point, max_distance);
-    EXPECT_EQ(index->nearest(point, 1000, {.max_distance = max_distance}), expected) << max_distance;
+    EXPECT_EQ(index.nearest(point, 1000, {.max_distance = max_distance}), expected) << max_distance;
     if (expected.size() < 3) continue;
     const std::vector few(expected.begin(), expected.begin() + 3);
-    EXPECT_EQ(index->nearest(point, 3, {.max_distance = max_distance}), few) << max_distance;
+    EXPECT_EQ(index.nearest(point, 3, {.max_distance = max_distance}), few) << max_distance;
     const std::vector without_first(expected.begin() + 1, expected.end());
-    EXPECT_EQ(index->nearest(point, 1000, {.except = expected[0].box, .max_distance = max_distance}),
+    EXPECT_EQ(index.nearest(point, 1000, {.except = expected[0].box, .max_distance = max_distance}),
               without_first);
   }
 }
@@ -253,28 +264,28 @@ TEST(BoxIndex, FindsABoxThatIsExactlyAsFarAsTheGreatestDistance) {
   const float tenth = 0.1f;  // its square is rounded
   const auto index = index_of({{{tenth, 0}, {1, 1}}, {{3, 4}, {5, 5}}});
   const float less = std::nextafter(tenth, 0.0f);
-  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = tenth}).size(), 1U);
-  EXPECT_THAT(index->nearest({0, 0}, 9, {.max_distance = less}), IsEmpty());
-  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = 5}).size(), 2U);
-  EXPECT_EQ(index->nearest({0, 0}, 9, {.max_distance = std::nextafter(5.0f, 0.0f)}).size(), 1U);
-  EXPECT_EQ(index->nearest({tenth, 0.5f}, 9, {.max_distance = 0}),
+  EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = tenth}).size(), 1U);
+  EXPECT_THAT(index.nearest({0, 0}, 9, {.max_distance = less}), IsEmpty());
+  EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = 5}).size(), 2U);
+  EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = std::nextafter(5.0f, 0.0f)}).size(), 1U);
+  EXPECT_EQ(index.nearest({tenth, 0.5f}, 9, {.max_distance = 0}),
             (std::vector{Neighbour<float>{BoxId(0), 0}}));
 }
 
 TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
   std::vector<Filter> filters(6);
   filters[0].category = 4;
-  auto index = make_box_index<2>();
-  index->update({.boxes = row(6), .changed = {}, .filters = filters});
+  BoxIndex<2> index;
+  index.update({.boxes = row(6), .changed = {}, .filters = filters});
   const Filter filter{.mask = 1};
-  EXPECT_THAT(index->nearest({0, 0}, 9, {.filter = &filter, .except = BoxId(2), .max_distance = 6}),
+  EXPECT_THAT(index.nearest({0, 0}, 9, {.filter = &filter, .except = BoxId(2), .max_distance = 6}),
               ElementsAre(Neighbour<float>{BoxId(1), 4}, Neighbour<float>{BoxId(3), 36}));
 }
 
 TEST(BoxIndex, HandsTheNearestToAFunctionUntilItEnds) {
   const auto index = index_of(row(100));
   std::vector<BoxId> found;
-  const bool is_whole = index->nearest({0, 0}, 90, [&found](const Neighbour<float>& one) {
+  const bool is_whole = index.nearest({0, 0}, 90, [&found](const Neighbour<float>& one) {
     found.push_back(one.box);
     return found.size() < 3;
   });
@@ -287,11 +298,11 @@ TEST(BoxIndex, TakesTheFilterAndTheBoxLeftOutInEveryQuery) {
   std::vector<BoxId> found;
   const auto add = [&found](BoxId id) { found.push_back(id); };
   const auto options = BoxIndex<2>::QueryOptions{.except = BoxId(0)};
-  index->overlapping({{0, 0}, {2, 1}}, add, options);
-  index->containing({2.5f, 0.5f}, add, {.except = BoxId(0)});
-  index->hits(
+  index.overlapping({{0, 0}, {2, 1}}, add, options);
+  index.containing({2.5f, 0.5f}, add, {.except = BoxId(0)});
+  index.hits(
       Ray<2>{{0, 0}, {1, 0}, 3}, [&add](const Hit<float>& hit) { add(hit.box); }, options);
-  found.push_back(index->first_hit(Ray<2>{{0, 0}, {1, 0}}, {.except = BoxId(0)})->box);
+  found.push_back(index.first_hit(Ray<2>{{0, 0}, {1, 0}}, {.except = BoxId(0)})->box);
   EXPECT_THAT(found, testing::Each(BoxId(1)));
   EXPECT_EQ(found.size(), 4U);
 }
@@ -303,35 +314,36 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   const Ray<2> good{{0, 0}, {1, 0}};
   Ray<2> bad = good;
   bad.origin[1] = infinity;
-  EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("0, inf; expected finite"));
+  EXPECT_THAT(message_of<InvalidQuery>([&] { static_cast<void>(index.first_hit(bad)); }),
+              HasSubstr("0, inf; expected finite"));
   bad = good;
   bad.direction[0] = nan;
-  EXPECT_THAT(message_of<InvalidQuery>([&] { index->hits(bad, ignore); }), HasSubstr("direction"));
+  EXPECT_THAT(message_of<InvalidQuery>([&] { index.hits(bad, ignore); }), HasSubstr("direction"));
   bad = good;
   bad.t_max = -1;
-  EXPECT_THAT(message_of<InvalidQuery>([&] { index->first_hit(bad); }), HasSubstr("is -1; expected 0"));
-  EXPECT_THROW(index->first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}}), InvalidQuery);
-  EXPECT_THROW(index->overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
-  EXPECT_THROW(index->containing({0, nan}, ignore), InvalidQuery);
-  EXPECT_THROW(index->nearest({0, nan}, 1, found), InvalidQuery);
+  EXPECT_THAT(message_of<InvalidQuery>([&] { static_cast<void>(index.first_hit(bad)); }),
+              HasSubstr("is -1; expected 0"));
+  EXPECT_THROW(static_cast<void>(index.first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}})), InvalidQuery);
+  EXPECT_THROW(index.overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
+  EXPECT_THROW(index.containing({0, nan}, ignore), InvalidQuery);
+  EXPECT_THROW(index.nearest({0, nan}, 1, found), InvalidQuery);
   EXPECT_EQ(message_of<InvalidQuery>([&] {
-              index->nearest({0, 0}, 1, {.max_distance = -1});
+              static_cast<void>(index.nearest({0, 0}, 1, {.max_distance = -1}));
             }),
             "max_distance is -1; expected 0, more, or infinity");
-  EXPECT_THROW(index->nearest({0, 0}, 1, {.max_distance = nan}), InvalidQuery);
+  EXPECT_THROW(static_cast<void>(index.nearest({0, 0}, 1, {.max_distance = nan})), InvalidQuery);
 }
 
 TEST(BoxIndex, LetsAVisitorsExceptionThroughAndGoesOn) {
   const auto index = index_of(row(100));
   const Box2 all{{0, 0}, {1000, 1}};
-  EXPECT_THROW(index->overlapping(all, [](BoxId) { throw std::runtime_error("enough"); }),
-               std::runtime_error);
-  EXPECT_EQ(overlapping(*index, all).size(), 100U);
+  EXPECT_THROW(index.overlapping(all, [](BoxId) { throw std::runtime_error("enough"); }), std::runtime_error);
+  EXPECT_EQ(overlapping(index, all).size(), 100U);
 }
 
 TEST(BoxIndex, DoesNotGrowUnderChurn) {
   std::vector<Box2> boxes = row(2000);
-  const auto index = index_of(boxes);
+  auto index = index_of(boxes);
   std::vector<BoxId> changed;
   std::size_t bytes = 0;
   for (std::size_t frame = 0; frame < 2000; ++frame) {
@@ -342,15 +354,15 @@ TEST(BoxIndex, DoesNotGrowUnderChurn) {
       boxes[i] = (frame + k) % 3 == 0 ? absent_box<2>() : Box2{{at, 0}, {at + 1, 1}};
       changed.push_back(BoxId(i));
     }
-    index->update({.boxes = boxes, .changed = changed});
-    if (frame == 200) bytes = index->bytes();
+    index.update({.boxes = boxes, .changed = changed});
+    if (frame == 200) bytes = index.bytes();
   }
-  EXPECT_LE(index->bytes(), bytes + bytes / 4);
+  EXPECT_LE(index.bytes(), bytes + bytes / 4);
 }
 
 /// How many boxes the index took for this frame.
 std::uint64_t taken(BoxIndex<2>& index, const Frame<2>& frame) {
-  const algorithm::DynamicBvh<2>& tree = static_cast<const algorithm::BvhIndex<2, float>&>(index).tree();
+  const algorithm::DynamicBvh<2>& tree = algorithm::BvhIndex<2, float>::of(index).tree();
   const std::uint64_t before = tree.boxes_taken();
   index.update(frame);
   return tree.boxes_taken() - before;
@@ -360,31 +372,31 @@ TEST(BoxIndex, TakesWhatChangedWhateverTheNumberOfBoxes) {
   for (const std::size_t size : {200U, 20'000U}) {
     std::vector<Box2> boxes = row(size);
     std::vector<Filter> filters(size);
-    auto index = make_box_index<2>();
-    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), size);
-    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 0U);
+    BoxIndex<2> index;
+    EXPECT_EQ(taken(index, {.boxes = boxes, .filters = filters}), size);
+    EXPECT_EQ(taken(index, {.boxes = boxes, .filters = filters}), 0U);
     boxes[3] = boxes[100];
     boxes[4] = absent_box<2>();
     filters[5].mask = 1;
     const std::vector<BoxId> changed = {BoxId{3}, BoxId{4}, BoxId{5}};
-    EXPECT_EQ(taken(*index, {.boxes = boxes, .changed = changed, .filters = filters}), 3U);
+    EXPECT_EQ(taken(index, {.boxes = boxes, .changed = changed, .filters = filters}), 3U);
     boxes.resize(size + 2, boxes[3]);
     filters.resize(size + 2);
-    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 2U) << "new ones";
+    EXPECT_EQ(taken(index, {.boxes = boxes, .filters = filters}), 2U) << "new ones";
     boxes.resize(size - 3);
     filters.resize(size - 3);
-    EXPECT_EQ(taken(*index, {.boxes = boxes, .filters = filters}), 5U) << "those that are gone";
+    EXPECT_EQ(taken(index, {.boxes = boxes, .filters = filters}), 5U) << "those that are gone";
   }
 }
 
 TEST(BoxIndex, TakesWhatChangedAmongManyAbsentBoxes) {
   for (const std::size_t size : {2000U, 200'000U}) {
     std::vector<Box2> boxes = row(size);
-    const auto index = index_of(boxes);
+    auto index = index_of(boxes);
     std::ranges::fill(boxes, absent_box<2>());
     std::vector<BoxId> changed;
     for (std::size_t i = 0; i < size; ++i) changed.push_back(BoxId(i));
-    index->update({.boxes = boxes, .changed = changed});
+    index.update({.boxes = boxes, .changed = changed});
     changed.resize(20);
     std::uint64_t all = 0;
     for (int frame = 0; frame < 400; ++frame) {
@@ -392,7 +404,7 @@ TEST(BoxIndex, TakesWhatChangedAmongManyAbsentBoxes) {
         const auto at = static_cast<float>(frame % 7 * 100 + static_cast<int>(id));
         boxes[static_cast<std::size_t>(id)] = frame % 5 == 4 ? absent_box<2>() : Box2{{at, 0}, {at + 1, 1}};
       }
-      all += taken(*index, {.boxes = boxes, .changed = changed});
+      all += taken(index, {.boxes = boxes, .changed = changed});
     }
     EXPECT_LE(all, 400U * changed.size() * 50) << size << " places";
   }

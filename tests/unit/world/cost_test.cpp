@@ -98,7 +98,7 @@ class IndexMeter {
 
   /// After it.
   void read(const World2& world) {
-    const auto& index = static_cast<const algorithm::BvhIndex<2, float>&>(world.box_index());
+    const auto& index = algorithm::BvhIndex<2, float>::of(world.box_index());
     const std::uint64_t now = index.tree().boxes_taken();
     taken_ += now - std::exchange(last_, now);
   }

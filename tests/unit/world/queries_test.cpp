@@ -24,10 +24,11 @@ using testing::IsEmpty;
 
 constexpr Box2 everywhere{{-1e6f, -1e6f}, {1e6f, 1e6f}};
 
-std::vector<Handle> overlapping(const World2& world, const Box2& box, const Filter* query_filter = nullptr) {
+std::vector<Handle> overlapping(const World2& world, const Box2& box,
+                                const World2::QueryOptions& options = {}) {
   std::vector<Handle> found;
   world.overlapping(
-      box, [&found](Handle handle) { found.push_back(handle); }, query_filter);
+      box, [&found](Handle handle) { found.push_back(handle); }, options);
   std::ranges::sort(found);
   return found;
 }
@@ -134,9 +135,9 @@ TEST(WorldQueries, HeedFiltersAndNotTheMargin) {
   world.update();
   EXPECT_THAT(overlapping(world, {{0, 0}, {1, 1}}), ElementsAre(a));
   const Filter query_filter{.category = 2, .mask = 4};
-  EXPECT_THAT(overlapping(world, everywhere, &query_filter), IsEmpty());
+  EXPECT_THAT(overlapping(world, everywhere, {&query_filter}), IsEmpty());
   world.set_filter(b, {.category = 4});
-  EXPECT_THAT(overlapping(world, everywhere, &query_filter), ElementsAre(b));
+  EXPECT_THAT(overlapping(world, everywhere, {&query_filter}), ElementsAre(b));
 }
 
 TEST(WorldQueries, LeaveOutOneBox) {
@@ -145,21 +146,16 @@ TEST(WorldQueries, LeaveOutOneBox) {
   const Handle other = world.add({{3, 0}, {4, 1}});
   const Ray<2> ray{{0.5f, 0.5f}, {1, 0}};
   EXPECT_EQ(world.first_hit(ray), (HandleHit<float>{own, 0}));
-  EXPECT_EQ(world.first_hit(ray, nullptr, own), (HandleHit<float>{other, 2.5f}));
   EXPECT_EQ(world.first_hit(ray, {.except = own}), (HandleHit<float>{other, 2.5f}));
   std::vector<Handle> found;
   const auto add = [&found](Handle handle) { found.push_back(handle); };
-  world.overlapping(everywhere, add, nullptr, own);
-  world.containing({3.5f, 0.5f}, add, nullptr, other);
-  world.hits(
-      ray, [&add](Handle handle, float) { add(handle); }, nullptr, own);
   world.overlapping(everywhere, add, {.except = own});
   world.containing({3.5f, 0.5f}, add, {.except = other});
   world.hits(ray, [&add](Handle handle, float) { add(handle); }, {.except = own});
   found.push_back(world.nearest({0, 0}, 1, {.except = own}).front().handle);
-  EXPECT_THAT(found, ElementsAre(other, other, other, other, other));
+  EXPECT_THAT(found, ElementsAre(other, other, other));
   world.remove(other);
-  EXPECT_EQ(world.first_hit(ray, nullptr, other), (HandleHit<float>{own, 0})) << "one that is gone";
+  EXPECT_EQ(world.first_hit(ray, {.except = other}), (HandleHit<float>{own, 0})) << "one that is gone";
 }
 
 TEST(WorldQueries, UseTheFollowersIndexWhereItHasOne) {
@@ -171,7 +167,7 @@ TEST(WorldQueries, UseTheFollowersIndexWhereItHasOne) {
   world.update();
   EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
   const Filter query_filter{.mask = 4};
-  EXPECT_THAT(overlapping(world, everywhere, &query_filter), ElementsAre(b));
+  EXPECT_THAT(overlapping(world, everywhere, {&query_filter}), ElementsAre(b));
   EXPECT_EQ(&world.box_index(), follower.index());
   world.move(a, {{8, 0}, {9, 1}});
   EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a)) << "before the follower knows of it";

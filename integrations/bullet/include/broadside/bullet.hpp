@@ -128,8 +128,8 @@ class BulletBroadphase final : public btBroadphaseInterface {
   void note_enlarged(Proxy& proxy, const bullet_detail::Box& box);
   btScalar reach() const noexcept { return has_untold_ ? reach_ : 0; }
   Found found(Handle handle) const { return {handle, &bullet_detail::proxy_in(world_.user_data(handle))}; }
-  std::vector<Found> overlapping(const bullet_detail::Box& box, const Filter* filter = nullptr,
-                                 const Handle& except = {}) const;
+  std::vector<Found> overlapping(const bullet_detail::Box& box,
+                                 const World::QueryOptions& options = {}) const;
   template <typename Callback>
   static void process(const std::vector<Found>& all, Callback& callback);
   bool is_ghost(const Proxy& proxy) const;

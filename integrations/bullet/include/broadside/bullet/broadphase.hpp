@@ -167,9 +167,8 @@ inline void BulletBroadphase::aabbTest(const btVector3& min, const btVector3& ma
 }
 
 /// The proxies whose boxes overlap the given one.
-inline std::vector<BulletBroadphase::Found> BulletBroadphase::overlapping(const bullet_detail::Box& box,
-                                                                          const Filter* filter,
-                                                                          const Handle& except) const {
+inline std::vector<BulletBroadphase::Found> BulletBroadphase::overlapping(
+    const bullet_detail::Box& box, const World::QueryOptions& options) const {
   std::vector<Found> all;
   world_.overlapping(
       bullet_detail::widened(box, reach()),
@@ -179,7 +178,7 @@ inline std::vector<BulletBroadphase::Found> BulletBroadphase::overlapping(const 
           all.push_back(one);
         return true;
       },
-      filter, except);
+      options);
   return all;
 }
 
@@ -275,7 +274,7 @@ inline void BulletBroadphase::offer_overlaps_of(Proxy& proxy) {
   const bullet_detail::Box box = bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax);
   if (!is_present(box)) return;
   const Filter filter = world_.filter(proxy.handle);
-  const std::vector<Found> all = overlapping(box, &filter, proxy.handle);
+  const std::vector<Found> all = overlapping(box, {&filter, proxy.handle});
   const Handle handle = proxy.handle;
   for (const Found& one : all) {
     if (one.proxy->handle == one.handle && proxy.handle == handle)

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/index.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/queries.hpp"
 
 namespace broadside::detail {
 

@@ -12,8 +12,8 @@
 
 #include "broadside/box.hpp"
 #include "broadside/finder.hpp"
+#include "broadside/index.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/queries.hpp"
 #include "broadside/sinks.hpp"
 
 namespace broadside::detail {
@@ -98,12 +98,11 @@ class LazyPairs {
 
   /// Not touched where it is current: other threads may be asking it.
   const BoxIndex<3, S>& box_index(std::span<const Box<3, S>> boxes) {
-    if (index_is_current_) return *index_;
-    if (!index_) index_ = make_box_index<3, S>();
-    index_->update({.boxes = boxes, .changed = for_index_.below(boxes.size())});
+    if (index_is_current_) return index_;
+    index_.update({.boxes = boxes, .changed = for_index_.below(boxes.size())});
     for_index_.clear();
     index_is_current_ = true;
-    return *index_;
+    return index_;
   }
 
  private:
@@ -133,12 +132,12 @@ class LazyPairs {
         else if (!for_pairs_.contains(other))
           pairs_.push_back({other, place});
       };
-      all.overlapping(boxes[index(place)], add, nullptr, place);
+      all.overlapping(boxes[index(place)], add, {.except = place});
     }
   }
 
   std::unique_ptr<PairFinder<3, S>> finder_;
-  std::unique_ptr<BoxIndex<3, S>> index_;
+  BoxIndex<3, S> index_;
   ChangedPlaces for_pairs_;  // since the last pairs(), and since the last box_index()
   ChangedPlaces for_index_;
   bool are_known_ = false;    // pairs_ were right at the last pairs()

@@ -1,13 +1,15 @@
-// BoxIndex: what every index does around its own work, and the distance.
+// BoxIndex: checks of what is asked, around the tree that answers; and the distance.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
-#include <utility>
 
 #include "broadside/error.hpp"
+#include "broadside/index.hpp"
 #include "broadside/queries.hpp"
 
+#include "algorithms/bvh/index.hpp"
 #include "core/float_environment.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
@@ -66,33 +68,23 @@ Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const B
 }
 
 template <int D, typename Real>
+BoxIndex<D, Real>::BoxIndex() : tree_(std::make_unique<algorithm::BvhIndex<D, Real>>()) {}
+template <int D, typename Real>
+BoxIndex<D, Real>::BoxIndex(BoxIndex&& other) noexcept = default;
+template <int D, typename Real>
+BoxIndex<D, Real>& BoxIndex<D, Real>::operator=(BoxIndex&& other) noexcept = default;
+template <int D, typename Real>
+BoxIndex<D, Real>::~BoxIndex() = default;
+
+template <int D, typename Real>
 void BoxIndex<D, Real>::update(const Frame<D, Real>& frame) {
   const core::DefaultEnvironment environment;
-  core::check_frame(frame, size_, dirty_);
+  tree_->update(frame);
+}
 
-  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
-  if (rebuild || frame.filters.empty() || own_filters_.empty()) {
-    own_filters_.assign(frame.filters.begin(), frame.filters.end());
-  } else {
-    own_filters_.resize(frame.filters.size());
-    for (const BoxId id : frame.changed) {
-      if (index(id) < own_filters_.size()) own_filters_[index(id)] = frame.filters[index(id)];
-    }
-    for (std::size_t i = size_; i < own_filters_.size(); ++i) own_filters_[i] = frame.filters[i];
-  }
-  filters_ = own_filters_;
-  changed_.clear();
-  if (!rebuild) {
-    changed_.assign(frame.changed.begin(), frame.changed.end());
-    const std::size_t size = std::max(size_, frame.boxes.size());
-    for (std::size_t i = std::min(size_, frame.boxes.size()); i < size; ++i) changed_.push_back(BoxId(i));
-  }
-  // Another thread may have written to the list since it was checked.
-  std::erase_if(changed_,
-                [this, &frame](BoxId id) { return index(id) >= std::max(size_, frame.boxes.size()); });
-  update_valid(frame.boxes, changed_, rebuild);
-  size_ = frame.boxes.size();
-  dirty_ = false;
+template <int D, typename Real>
+std::size_t BoxIndex<D, Real>::bytes() const noexcept {
+  return tree_->bytes();
 }
 
 template <int D, typename Real>
@@ -103,10 +95,9 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
     if (is_absent(box)) return true;
     throw InvalidQuery(core::fault_of(box, "the box or point asked about", true));
   }
-  if (dirty_) return true;
-  if (!environment.is_foreign()) return find_overlapping(box, visitor, options);
+  if (!environment.is_foreign()) return tree_->find_overlapping(box, visitor, options);
   CallersVisitor callers(visitor);
-  return find_overlapping(box, callers, options);
+  return tree_->find_overlapping(box, callers, options);
 }
 
 template <int D, typename Real>
@@ -114,10 +105,9 @@ bool BoxIndex<D, Real>::hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& v
                              const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
   check(cast);
-  if (dirty_) return true;
-  if (!environment.is_foreign()) return find_hits(cast, visitor, options);
+  if (!environment.is_foreign()) return tree_->find_hits(cast, visitor, options);
   CallersVisitor callers(visitor);
-  return find_hits(cast, callers, options);
+  return tree_->find_hits(cast, callers, options);
 }
 
 template <int D, typename Real>
@@ -125,7 +115,7 @@ std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& ca
                                                       const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
   check(cast);
-  return dirty_ ? std::nullopt : find_first_hit(cast, options);
+  return tree_->find_first_hit(cast, options);
 }
 
 template <int D, typename Real>
@@ -136,12 +126,12 @@ bool BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, Visitor<N
     if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
   }
   if (!(options.max_distance >= 0)) refuse("max_distance", &options.max_distance, 1, "0, more, or infinity");
-  if (count == 0 || dirty_) return true;
+  if (count == 0) return true;
   const Real max_squared = options.max_distance * options.max_distance;
   const QueryOptions eligible{options.filter, options.except};
-  if (!environment.is_foreign()) return find_nearest(point, count, max_squared, visitor, eligible);
+  if (!environment.is_foreign()) return tree_->find_nearest(point, count, max_squared, visitor, eligible);
   CallersVisitor callers(visitor);
-  return find_nearest(point, count, max_squared, callers, eligible);
+  return tree_->find_nearest(point, count, max_squared, callers, eligible);
 }
 
 template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;
