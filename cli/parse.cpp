@@ -10,6 +10,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "cli/message.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -49,7 +50,7 @@ std::string about_extra(const CLI::App& verb, const std::string& argument) {
             : "fewer");
   const std::string name = argument.substr(0, argument.find('='));
   const std::vector<std::string> known = names_of_options(verb);
-  const std::string suggested = did_you_mean(name, known);
+  const std::string suggested = core::did_you_mean(name, known);
   return fmt::format("unknown option '{}'{}; expected {}", name, suggested,
                      suggested.empty() ? fmt::format("one of: {}", fmt::join(known, ", "))
                                        : "an option of " + verb.get_name());
@@ -71,7 +72,7 @@ void check_verb(const std::vector<std::string>& arguments, const CLI::App& progr
   if (arguments.size() < 2) throw Unusable("no verb; " + expected);
   const std::string& verb = arguments[1];
   if (!verb.starts_with('-') && std::ranges::find(known, verb) == known.end())
-    throw Unusable(fmt::format("unknown verb '{}'{}; {}", verb, did_you_mean(verb, known), expected));
+    throw Unusable(fmt::format("unknown verb '{}'{}; {}", verb, core::did_you_mean(verb, known), expected));
 }
 
 /// The message for arguments that CLI11 refused with `error`.

@@ -14,6 +14,7 @@
 #include "lab/literature/literature.hpp"
 #include "lab/peers/peers.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -109,7 +110,7 @@ std::vector<Entry> Catalogue::select(std::string_view list) const {
       std::vector<std::string> known(groups.begin(), groups.end());
       for (const Algorithm& other : algorithms_) known.push_back(other.name);
       throw InvalidSpec(fmt::format("unknown algorithm '{}'{}; expected one of: {}", spec.name,
-                                    did_you_mean(spec.name, known), fmt::join(known, ", ")));
+                                    core::did_you_mean(spec.name, known), fmt::join(known, ", ")));
     }
     const Settings checked(spec, algorithm->tunables);
     spec.name = algorithm->name;  // the current one, where a former one was given

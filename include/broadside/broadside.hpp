@@ -4,6 +4,7 @@
 // IWYU pragma: begin_exports
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
 #include "broadside/debug/history.hpp"
 #include "broadside/debug/minimise.hpp"
 #include "broadside/debug/outline.hpp"

@@ -1,5 +1,5 @@
-// What searches run on: threads, how many of them and whose (Executor is how an engine hands in its own), and
-// the processor's instruction set.
+// Executor and Workers: thread settings, and how an engine provides its own threads. Also the processor's
+// instruction set.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,26 @@
 
 namespace broadside {
 
-/// Runs tasks on threads. An engine derives from it to have searches run by its own job system.
+/// Runs tasks on threads. An engine derives from it to run searches on its own job system.
 ///
-/// One executor may serve several finders, one after the other or, if its run() may be called from several
-/// threads, at the same time.
+/// One executor may serve several finders: one after another, or at the same time if run() may be called from
+/// several threads.
 class BROADSIDE_PUBLIC Executor {
  public:
   virtual ~Executor() = default;
 
-  /// How many tasks it runs at the same time, at least 1: what `threads=0` in a spec stands for.
-  virtual std::size_t threads() const noexcept = 0;
+  /// The number of tasks that it runs at the same time, at least 1. `threads=0` in a spec means this number.
+  [[nodiscard]] virtual std::size_t threads() const noexcept = 0;
 
   /// Calls task(i) exactly once for each i < count, and returns when all these calls have returned.
   ///
-  /// Called by the thread that called find(), several times in a search. Calls of `task` may be in any
-  /// thread, in any order, one after another, at the same time or nested in each other; none waits for
-  /// another one. It is faster if this thread takes part, since only there pairs can be delivered while
-  /// others search. The library's tasks throw nothing: what goes wrong in one is thrown by find(), the first
-  /// such in the order of the search. run() may throw anything, before its tasks or after some of them, but
-  /// not while a task is running: find() lets it through and can be called again. An update of a World that
-  /// throws it can be tried again; one that is only about to give memory back keeps the memory instead.
+  /// run() is called by the thread that called find(), several times per search. It may call `task` in any
+  /// thread and in any order, one call after another, at the same time or nested: no call waits for another.
+  /// The search is faster if the calling thread takes part, because only it can deliver pairs while other
+  /// threads search. The library's tasks do not throw: find() throws the exception of the first task, in
+  /// order of the search, that failed. run() may throw anything before its tasks or between them, but not
+  /// while a task is running. find() lets the exception through and can be called again. So can an update of
+  /// a World, which keeps its memory if it was only about to release some.
   virtual void run(std::size_t count, const std::function<void(std::size_t)>& task) = 0;
 
  protected:
@@ -42,48 +42,47 @@ class BROADSIDE_PUBLIC Executor {
   Executor& operator=(const Executor&) = default;
 };
 
-/// The executor used where none was handed in: that of oneTBB, in the arena of the calling thread; in a
-/// library built without it, a pool of threads that starts with the first search that uses several and lasts
-/// as long as the process. A null pointer if the library was built without threads; searches then run in the
-/// calling thread, whatever `threads` is, and find the same pairs in the same order. Thread-safe.
-BROADSIDE_PUBLIC Executor* standard_executor() noexcept;
+/// The executor that is used by default. It uses oneTBB when available, in the arena of the calling thread.
+/// Otherwise it is a pool of threads that starts with the first search on several threads and lasts until the
+/// process ends. Null if the library was built without threads: every search then runs in the calling thread,
+/// whatever `threads` is, and finds the same pairs in the same order. Thread-safe.
+[[nodiscard]] BROADSIDE_PUBLIC Executor* standard_executor() noexcept;
 
-/// Who does the work of a search.
+/// Threading options of a search.
 struct Workers {
-  /// The most threads a search uses, the calling one among them; 0: as many as the executor has. In a spec:
-  /// `threads`.
+  /// The maximum number of threads, including the calling one; 0 means as many as the executor has. In a
+  /// spec: `threads`.
   std::size_t threads = 1;
 
-  /// Whose threads; null: the standard executor's. Must live as long as what uses it.
+  /// Executor to use; null selects standard_executor(). It must outlive the objects that use it.
   Executor* executor = nullptr;
 
-  /// Every thread must have at least this many boxes to look at, or fewer threads are used: waking one takes
+  /// The minimum number of boxes per thread. Fewer boxes use fewer threads, because waking a thread takes
   /// some microseconds.
   std::size_t boxes_per_thread = 4096;
 
-  /// Called during a search by the thread that called find() or update(): after every few million pairs of
-  /// boxes compared (see Checkpoint), and while that thread waits for other threads. It is not called while
-  /// a structure is sorted or built, nor if the executor runs no task on the calling thread. An exception
-  /// from it ends the search and leaves find() or update(). Without a checkpoint, a search by one thread is
-  /// never interrupted.
+  /// Called during a search, in the thread that called find() or update(): after every few million
+  /// comparisons of boxes (see Checkpoint), and while that thread waits for other threads. It is not called
+  /// while a structure is sorted or built, nor if the executor runs no task in the calling thread. An
+  /// exception from it ends the search and leaves find() or update(). Without a checkpoint, nothing
+  /// interrupts a search by one thread.
   std::function<void()> checkpoint{};
 };
 
 /// One thread and no checkpoint.
 inline const Workers default_workers{};
 
-/// For algorithms: counts the pairs of boxes compared across loops and functions, and calls a checkpoint once
-/// every few million. Each thread needs its own.
+/// For algorithms: counts comparisons of boxes across loops and functions, and calls a checkpoint after every
+/// few million. Each thread needs its own.
 class BROADSIDE_PUBLIC Checkpoint {
  public:
-  /// The maximum number of pairs compared between two calls, plus the comparisons of a few boxes with all
-  /// others.
+  /// The maximum number of comparisons between two calls, plus those of a few boxes with all others.
   static constexpr std::uint64_t max_tests = std::uint64_t{1} << 22;
 
   /// `call` may be empty, and must outlive the Checkpoint.
   explicit Checkpoint(const std::function<void()>& call) noexcept : call_(&call) {}
 
-  /// Adds `tests` to the number of pairs compared. Throws what the checkpoint throws.
+  /// Counts `tests` comparisons. Exceptions from the checkpoint pass through.
   void count(std::uint64_t tests) {
     tests_ += tests;
     if (tests_ >= max_tests) pass();
@@ -98,22 +97,22 @@ class BROADSIDE_PUBLIC Checkpoint {
 
 /// The name of the instruction set that searches use on this processor, such as "AVX-512", "AVX2", "SSE4" or
 /// "NEON". Pairs and their order do not depend on it. Thread-safe.
-BROADSIDE_PUBLIC std::string instruction_set();
+[[nodiscard]] BROADSIDE_PUBLIC std::string instruction_set();
 
 namespace detail {
 BROADSIDE_PUBLIC std::span<const std::string> instruction_sets();
 }  // namespace detail
 
-/// Those that the library was compiled for and this processor has, the best first; the last one is plain C++.
-/// Not changed by limit_instruction_set(). Thread-safe.
-BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR inline std::vector<std::string> instruction_sets() {
+/// The instruction sets that the library was compiled for and this processor has, best first; the last one is
+/// plain C++. limit_instruction_set() does not change them. Thread-safe.
+[[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR inline std::vector<std::string> instruction_sets() {
   const std::span<const std::string> names = detail::instruction_sets();
   return {names.begin(), names.end()};
 }
 
-/// Has every search of this process use the instruction set `name`, one of instruction_sets(), or the best
-/// one again if `name` is empty. For measurements and tests. Not to be called while another thread searches
-/// or calls one of these three. Throws InvalidSpec, and changes nothing, if there is none of that name.
+/// Makes every search of this process use the instruction set `name`, one of instruction_sets(), or the best
+/// one again if `name` is empty. For measurements and tests. Do not call it while another thread searches or
+/// calls one of these three functions. Throws InvalidSpec, and changes nothing, if the name is unknown.
 BROADSIDE_PUBLIC void limit_instruction_set(std::string_view name);
 
 }  // namespace broadside

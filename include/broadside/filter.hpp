@@ -1,9 +1,9 @@
-// Filters: which overlapping boxes are to count as pairs.
+// Filter and IgnoredPairs: which overlapping boxes count as pairs.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "broadside/export.hpp"
@@ -11,133 +11,87 @@
 
 namespace broadside {
 
-/// What a box is, and what it wants to meet. Two boxes count as a pair if they overlap and their filters
-/// accept each other: see accepts().
+namespace core {
+class PairSet;
+}  // namespace core
+
+/// What a box is, and the categories it collides with. Two boxes count as a pair if they overlap and their
+/// filters accept each other: see accepts().
 struct Filter {
   std::uint64_t category = 1;              ///< bits: what the box is
-  std::uint64_t mask = ~std::uint64_t{0};  ///< bits: the categories it meets
+  std::uint64_t mask = ~std::uint64_t{0};  ///< bits: the categories it collides with
 
-  /// Two boxes of the same group other than 0 meet whatever their bits if it is positive, and never if it is
-  /// negative.
+  /// If two boxes have the same group and it is not 0, it decides instead of the bits: they always collide if
+  /// it is positive, and never if it is negative.
   std::int32_t group = 0;
 
-  /// Two static boxes never meet.
+  /// Two static boxes never collide.
   bool is_static = false;
 
   friend constexpr bool operator==(const Filter&, const Filter&) = default;
 };
 
-/// Whether boxes with these filters may pair: each one's mask has a bit of the other one's category, unless
-/// their groups decide; and not both are static.
-constexpr bool accepts(const Filter& a, const Filter& b) noexcept {
+/// Whether boxes with these filters may be a pair: they are not both static, and either their common group is
+/// positive or, without a common group, the mask of each has a bit of the other's category.
+[[nodiscard]] constexpr bool accepts(const Filter& a, const Filter& b) noexcept {
   if (a.is_static && b.is_static) return false;
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
 }
 
-/// A set of pairs that never count, whatever their boxes and filters: bodies that a joint connects. Each may
-/// be named with its boxes in either order.
+/// A set of pairs that never count, whatever their boxes and filters are, such as bodies that a joint
+/// connects. The two boxes of a pair may be given in either order.
 ///
-/// Costs: O(1) each, and 16 to 32 bytes a pair. One thread at a time; several may read. A hash table with
-/// open addressing, linear probing and deletion by shifting back (Knuth, TAOCP 3, 6.4, algorithm R).
-class IgnoredPairs {
+/// Each operation is O(1). A pair takes 16 to 32 bytes. Several threads may read at once; nothing else may
+/// run at the same time as a change.
+class BROADSIDE_PUBLIC IgnoredPairs {
  public:
-  /// Whether the pair was not ignored before. A box and itself are no pair, and nothing is inserted.
-  bool insert(Pair pair) {
-    if (pair.first == pair.second) return false;
-    if (2 * size_ >= keys_.size()) grow();
-    const std::uint64_t key = ordered_key(pair);
-    const std::size_t place = find(key);
-    if (keys_[place] == key) return false;
-    keys_[place] = key;
-    ++size_;
-    return true;
-  }
+  IgnoredPairs() noexcept;
+  IgnoredPairs(const IgnoredPairs& other);
+  IgnoredPairs(IgnoredPairs&& other) noexcept;
+  IgnoredPairs& operator=(IgnoredPairs other) noexcept;
+  ~IgnoredPairs();
 
-  /// Whether the pair was ignored before.
-  bool erase(Pair pair) noexcept {
-    if (!contains(pair)) return false;
-    std::size_t gap = find(ordered_key(pair));
-    for (std::size_t place = next(gap); keys_[place] != none; place = next(place)) {
-      // One that stands before its gap on the way from its home moves there.
-      if (((place - home(keys_[place])) & mask()) < ((place - gap) & mask())) continue;
-      keys_[gap] = keys_[place];
-      gap = place;
-    }
-    keys_[gap] = none;
-    --size_;
-    return true;
-  }
+  /// Returns whether the pair is new. A box and itself are no pair: nothing is inserted.
+  bool insert(Pair pair);
 
-  bool contains(Pair pair) const noexcept {
-    const std::uint64_t key = ordered_key(pair);
-    return size_ != 0 && key != none && keys_[find(key)] == key;
-  }
+  /// Returns whether the pair was in the set.
+  bool erase(Pair pair) noexcept;
 
-  bool empty() const noexcept { return size_ == 0; }
-  std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool contains(Pair pair) const noexcept;
+  [[nodiscard]] bool empty() const noexcept { return size() == 0; }
+  [[nodiscard]] std::size_t size() const noexcept;
+  void clear() noexcept;
 
-  void clear() noexcept {
-    keys_.clear();
-    size_ = 0;
-  }
+  /// The number of bytes held.
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
-  /// How many bytes it holds.
-  std::size_t bytes() const noexcept { return keys_.capacity() * sizeof(std::uint64_t); }
-
-  /// Calls `visit(pair)` for each pair, in no order that means anything.
+  /// Calls `visit(pair)` for each pair, in an unspecified order.
   template <typename Visit>
   void for_each(Visit visit) const {
-    for (const std::uint64_t pair : keys_) {
-      if (pair != none)
-        visit(Pair{BoxId(static_cast<std::uint32_t>(pair >> 32)), BoxId(static_cast<std::uint32_t>(pair))});
+    for (const std::uint64_t key : keys()) {
+      if (key != 0)
+        visit(Pair{BoxId(static_cast<std::uint32_t>(key >> 32)), BoxId(static_cast<std::uint32_t>(key))});
     }
   }
 
  private:
-  /// No pair: that of box 0 with itself.
-  static constexpr std::uint64_t none = 0;
+  friend class core::PairSet;
 
-  static std::uint64_t ordered_key(Pair pair) noexcept {
-    return key(pair.first < pair.second ? pair : Pair{pair.second, pair.first});
-  }
+  /// The keys of the pairs, and zeros.
+  std::span<const std::uint64_t> keys() const noexcept;
 
-  std::size_t mask() const noexcept { return keys_.size() - 1; }
-  std::size_t next(std::size_t place) const noexcept { return (place + 1) & mask(); }
-
-  /// Where a key's search begins: the highest bits of a multiple of the golden ratio (ibid., 6.4).
-  std::size_t home(std::uint64_t key) const noexcept {
-    const int bits = std::countr_zero(keys_.size());
-    return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15U >> (64 - bits));
-  }
-
-  /// Where the key is, or would be. There are places, and half of them are free.
-  std::size_t find(std::uint64_t key) const noexcept {
-    std::size_t place = home(key);
-    while (keys_[place] != none && keys_[place] != key) place = next(place);
-    return place;
-  }
-
-  void grow() {
-    IgnoredPairs larger;
-    larger.keys_.resize(keys_.empty() ? 16 : 2 * keys_.size());
-    for (const std::uint64_t key : keys_) {
-      if (key != none) larger.keys_[larger.find(key)] = key;
-    }
-    keys_.swap(larger.keys_);
-  }
-
-  detail::Vector<std::uint64_t> keys_;  // size is a power of two; `none` where a slot is free
-  std::size_t size_ = 0;
+  std::unique_ptr<core::PairSet> set_;  // null until a pair is inserted
 };
 
-/// Which overlapping boxes of one search count as pairs; all, where nothing is given.
+/// Which overlapping boxes of one search count as pairs: by default all.
 struct PairFilters {
-  std::span<const Filter> filters{};        ///< one for each box (of the left set), or none
-  std::span<const Filter> right_filters{};  ///< of two sets: one for each box of the right one, or none
-  const IgnoredPairs* ignored = nullptr;    ///< pairs that never count; of one set only
+  std::span<const Filter> filters{};  ///< one for each box (of the left set), or none
+  std::span<const Filter>
+      right_filters{};  ///< if two sets are searched: one for each box of the right set, or none
+  const IgnoredPairs* ignored = nullptr;  ///< pairs that never count; only if one set is searched
 
-  bool empty() const noexcept {
+  [[nodiscard]] bool empty() const noexcept {
     return filters.empty() && right_filters.empty() && (ignored == nullptr || ignored->empty());
   }
 };

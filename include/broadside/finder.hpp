@@ -8,6 +8,7 @@
 #include <string>
 
 #include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/export.hpp"

@@ -1,7 +1,6 @@
-// Ids of boxes, pairs of ids, and PairSink: where an algorithm writes the pairs it finds.
+// BoxId, Pair, and PairSink: where an algorithm writes the pairs that it finds.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -21,14 +20,14 @@ class FilterSink;
 }  // namespace core
 
 /// The index of a box in the caller's array, counted from 0. It converts implicitly to a number, so boxes[id]
-/// is that box. The conversion from a number must be explicit: BoxId(number).
+/// is that box. A number must be converted explicitly: BoxId(number).
 enum BoxId : std::uint32_t {};
 
 /// The id as a 32-bit number, for an explicit conversion.
-constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
+[[nodiscard]] constexpr std::uint32_t index(BoxId id) noexcept { return static_cast<std::uint32_t>(id); }
 
-/// Two different boxes; first < second. Where two sets are joined, a box of the left one and a box of the
-/// right one.
+/// Two different boxes, with first < second. If two sets are searched: a box of the left set and a box of the
+/// right set.
 struct Pair {
   BoxId first;
   BoxId second;
@@ -36,8 +35,8 @@ struct Pair {
   friend constexpr auto operator<=>(const Pair&, const Pair&) = default;
 };
 
-/// A pair as one number that orders as pairs do: first in the high half, second in the low.
-constexpr std::uint64_t key(Pair pair) noexcept {
+/// The pair as one number that sorts as pairs do: first in the high half, second in the low half.
+[[nodiscard]] constexpr std::uint64_t key(Pair pair) noexcept {
   return std::uint64_t{index(pair.first)} << 32 | index(pair.second);
 }
 
@@ -50,25 +49,26 @@ inline constexpr std::size_t max_compared_pairs = 128;
 BROADSIDE_PUBLIC bool sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch);
 }  // namespace detail
 
-/// Sorts pairs by first, then by second id. O(n) for many pairs: a radix sort over the bits in which they
-/// differ. `scratch` is memory to keep between calls; what it holds afterwards is unspecified.
+/// Sorts pairs by their first and then by their second id. Many pairs are sorted in O(n), by a radix sort
+/// over the bits in which they differ. `scratch` is memory to keep between calls; its contents afterwards are
+/// unspecified.
 inline void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
   if (pairs.size() > detail::max_compared_pairs) scratch.resize(pairs.size());
   if (detail::sort_pairs(pairs, scratch)) pairs.swap(scratch);
 }
 
-/// The same in place, by comparison. `checkpoint` (executor.hpp) counts the comparisons, so that the caller
-/// can end a long sort. Throws what the checkpoint throws; the order is then unspecified.
+/// Sorts in place, by comparisons. `checkpoint` (executor.hpp) counts them, so that the caller can end a long
+/// sort. Exceptions from it pass through; the order is then unspecified.
 BROADSIDE_PUBLIC void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint);
 
-/// Takes pairs in chunks: writing one is inline, into a small buffer; consume() is called once a full chunk.
+/// Receives pairs. add() writes a pair to a small buffer; consume() is called for each full chunk of pairs.
 ///
-/// Finder and Tracker flush the sink they were given before they return. One thread at a time: a
-/// search by several threads collects what they find and calls consume() in the thread that called find(),
-/// with the pairs in the order in which one thread would have found them; unless the sink can be cloned.
+/// Finder and Tracker flush the sink before they return. A sink is used by one thread at a time: a search by
+/// several threads collects the pairs and calls consume() in the thread that called find(), with the pairs in
+/// the same order as by one thread. Sinks that can be cloned are an exception: see empty_clone().
 class BROADSIDE_PUBLIC PairSink {
  public:
-  /// The most pairs room() can be asked for at once.
+  /// The maximum of room().
   static constexpr std::size_t max_room = 512;
 
   virtual ~PairSink() = default;
@@ -79,42 +79,42 @@ class BROADSIDE_PUBLIC PairSink {
     buffer_[used_++] = a < b ? Pair{a, b} : Pair{b, a};
   }
 
-  /// Space for `count` <= max_room pairs, which a kernel writes at once and then commits. What is written
-  /// there must have first < second. The pointer holds until the next call of any member.
-  Pair* room(std::size_t count) {
+  /// Space for `count` <= max_room pairs, to be written all at once and then committed. Each pair must have
+  /// first < second. The pointer is valid until the next call of any member.
+  [[nodiscard]] Pair* room(std::size_t count) {
     if (buffer_.size() - used_ < count) flush();
     return buffer_.data() + used_;
   }
 
-  /// Says that the first `count` pairs of the last room() were written and count.
+  /// Adds the first `count` pairs that were written to the last room().
   void commit(std::size_t count) noexcept { used_ += count; }
 
-  /// Hands on what is in the buffer. Throws what consume() throws; that chunk then counts as handed on.
+  /// Passes the buffer to consume(). If consume() throws, that chunk counts as passed on.
   void flush() {
     if (const std::size_t count = std::exchange(used_, 0); count > 0) consume({buffer_.data(), count});
   }
 
-  /// Hands on what is in the buffer and then `pairs`, which must have first < second, in full chunks and
-  /// without copying them. Throws as flush() does.
+  /// Passes the buffer and then `pairs` to consume(), in full chunks and without copying. Each pair must have
+  /// first < second. Throws as flush() does.
   void put(std::span<const Pair> pairs) {
     flush();
     while (!pairs.empty()) {
-      const std::span<const Pair> chunk = pairs.first(std::min(pairs.size(), buffer_.size()));
-      consume(chunk);
-      pairs = pairs.subspan(chunk.size());
+      const std::size_t count = pairs.size() < buffer_.size() ? pairs.size() : buffer_.size();
+      consume(pairs.first(count));
+      pairs = pairs.subspan(count);
     }
   }
 
-  /// Forgets what is in the buffer: after an exception in the middle of a search.
+  /// Empties the buffer without passing it on, as after an exception in the middle of a search.
   void discard() noexcept { used_ = 0; }
 
-  /// A new sink of the same kind that has taken no pairs. A sink that makes the same of its pairs in whatever
-  /// order they come, such as a count, overrides this and merge(): then a search by several threads gives
-  /// each its own clone, and keeps no pairs. A null pointer, which is the standard: it cannot be cloned.
-  virtual std::unique_ptr<PairSink> empty_clone() const { return nullptr; }
+  /// A new sink of the same kind without pairs; null, the default, if the sink cannot be cloned. A sink that
+  /// does not depend on the order of pairs, such as a counter, overrides this and merge(). A search by
+  /// several threads then gives each thread its own clone and stores no pairs.
+  [[nodiscard]] virtual std::unique_ptr<PairSink> empty_clone() const { return nullptr; }
 
-  /// Takes over what a flushed clone of this sink has made of its pairs. In the thread that called find().
-  /// Throws std::logic_error where it is not overridden.
+  /// Adds the result of a clone of this sink, which has been flushed. Called by the thread that called
+  /// find(). Throws std::logic_error if it is not overridden.
   virtual void merge(PairSink& clone);
 
   /// For the library, which shares the work of its own filters among threads: this sink, if it is one of
@@ -123,13 +123,11 @@ class BROADSIDE_PUBLIC PairSink {
 
  protected:
   PairSink() = default;
-  /// A copy has the same pairs still to hand on.
-  PairSink(const PairSink& other) : used_(other.used_) {
-    std::copy_n(other.buffer_.begin(), used_, buffer_.begin());
-  }
+  /// A copy has the same pairs in its buffer.
+  PairSink(const PairSink& other) { *this = other; }
   PairSink& operator=(const PairSink& other) {
     used_ = other.used_;
-    std::copy_n(other.buffer_.begin(), used_, buffer_.begin());
+    for (std::size_t i = 0; i < used_; ++i) buffer_[i] = other.buffer_[i];
     return *this;
   }
 

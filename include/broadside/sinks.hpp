@@ -1,11 +1,9 @@
-// Ready-made sinks: pairs into a vector, into a function, counted, or hashed as a set.
+// Sinks that collect pairs in a vector, pass them to a function, count them, or hash them as a set.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -18,7 +16,7 @@
 namespace broadside {
 
 namespace detail {
-/// Asks the system for large pages, for memory that has not been written yet. A hint, which never fails.
+/// Asks the system for large pages for memory that has not been written yet. A hint; it never fails.
 BROADSIDE_PUBLIC void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
 }  // namespace detail
 
@@ -36,7 +34,8 @@ class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
   /// At least doubles the vector's capacity, and asks for large pages.
   void grow(std::size_t size) {
     std::vector<Pair> larger;
-    larger.reserve(std::max(size, 2 * pairs_->capacity()));
+    const std::size_t doubled = 2 * pairs_->capacity();
+    larger.reserve(size > doubled ? size : doubled);
     detail::prefer_large_pages(larger.data(), larger.capacity() * sizeof(Pair));
     larger.insert(larger.end(), pairs_->data(), pairs_->data() + pairs_->size());
     pairs_->swap(larger);
@@ -45,12 +44,14 @@ class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
   std::vector<Pair>* pairs_;
 };
 
-/// Counts pairs and keeps none. The count is complete once the search that fills the sink has returned.
+/// Counts pairs without storing them. The count is complete when the search has returned.
 class BROADSIDE_PUBLIC PairCounter final : public PairSink {
  public:
-  std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
-  std::unique_ptr<PairSink> empty_clone() const override { return std::make_unique<PairCounter>(); }
+  [[nodiscard]] std::unique_ptr<PairSink> empty_clone() const override {
+    return std::make_unique<PairCounter>();
+  }
   void merge(PairSink& clone) override { count_ += static_cast<PairCounter&>(clone).count_; }
 
  private:
@@ -59,18 +60,17 @@ class BROADSIDE_PUBLIC PairCounter final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-/// A function that takes one Pair, or a std::span<const Pair>, at each call. Its return value is ignored.
+/// A function of a Pair or of a std::span<const Pair>. Its return value is ignored.
 template <typename Function>
 concept PairCallback = std::invocable<Function&, Pair> || std::invocable<Function&, std::span<const Pair>>;
 
-/// What receives pairs: a PairSink or a function.
+/// A receiver of pairs: a PairSink or a function.
 template <typename Target>
-concept PairTarget = std::is_convertible_v < std::remove_reference_t<Target>
-*, PairSink* > || PairCallback<Target>;
+concept PairTarget = std::derived_from<std::remove_reference_t<Target>, PairSink> || PairCallback<Target>;
 
 /// Calls a function with each pair, or with each chunk of pairs, in the thread that called find().
-/// PairFunction<Function&> holds a reference and calls the caller's own function. If the function throws, the
-/// search ends and throws the same exception.
+/// PairFunction<Function&> stores a reference to the caller's function. An exception from the function ends
+/// the search and leaves find().
 template <PairCallback Function>
 class PairFunction final : public PairSink {
  public:
@@ -79,9 +79,9 @@ class PairFunction final : public PairSink {
  private:
   void consume(std::span<const Pair> pairs) override {
     if constexpr (std::invocable<Function&, Pair>) {
-      for (const Pair pair : pairs) static_cast<void>(std::invoke(function_, pair));
+      for (const Pair pair : pairs) static_cast<void>(function_(pair));
     } else {
-      static_cast<void>(std::invoke(function_, pairs));
+      static_cast<void>(function_(pairs));
     }
   }
 
@@ -92,7 +92,7 @@ namespace detail {
 /// Calls body(sink) with a sink that passes its pairs to `target`.
 template <PairTarget Target, typename Body>
 void with_sink(Target& target, const Body& body) {
-  if constexpr (std::is_convertible_v<Target*, PairSink*>) {
+  if constexpr (std::derived_from<Target, PairSink>) {
     body(static_cast<PairSink&>(target));
   } else {
     PairFunction<Target&> sink(target);
@@ -101,22 +101,24 @@ void with_sink(Target& target, const Body& body) {
 }
 }  // namespace detail
 
-/// One pair's contribution to the hash of a set: the finaliser of MurmurHash3 over its key.
-constexpr std::uint64_t hash(Pair pair) noexcept {
+/// A pair's contribution to the hash of a set: the finaliser of MurmurHash3 over its key.
+[[nodiscard]] constexpr std::uint64_t hash(Pair pair) noexcept {
   std::uint64_t bits = key(pair) + 0x9e3779b97f4a7c15U;
   bits = (bits ^ bits >> 33) * 0xff51afd7ed558ccdU;
   bits = (bits ^ bits >> 33) * 0xc4ceb9fe1a85ec53U;
   return bits ^ bits >> 33;
 }
 
-/// Hashes and counts pairs as a set: the same for any order, different for a pair that is missing, extra or
-/// repeated (but for a chance of 2^-64).
+/// Hashes and counts pairs as a set. The hash is the same for any order, and differs if a pair is missing,
+/// extra or repeated (except by a chance of 2^-64).
 class BROADSIDE_PUBLIC PairHasher final : public PairSink {
  public:
-  std::uint64_t hash() const noexcept { return hash_; }
-  std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] std::uint64_t hash() const noexcept { return hash_; }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
-  std::unique_ptr<PairSink> empty_clone() const override { return std::make_unique<PairHasher>(); }
+  [[nodiscard]] std::unique_ptr<PairSink> empty_clone() const override {
+    return std::make_unique<PairHasher>();
+  }
   void merge(PairSink& clone) override {
     const auto& other = static_cast<const PairHasher&>(clone);
     hash_ += other.hash_;

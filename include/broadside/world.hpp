@@ -17,6 +17,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
 #include "broadside/error.hpp"
 #include "broadside/export.hpp"
 #include "broadside/filter.hpp"

@@ -16,6 +16,7 @@
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/unread_formats.hpp"
 #include "lab/formats/write_file.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -51,7 +52,7 @@ std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
   for (const Format& format : formats()) {
     if (wanted(format)) known.push_back(format.name);
   }
-  return did_you_mean(name, known);
+  return core::did_you_mean(name, known);
 }
 
 /// The format that a file's content and extension tell; null if they tell none.
@@ -137,7 +138,7 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
   std::vector<std::string> known;
   for (const Part& part : format.parts) known.push_back(part.name);
   throw FileError(fmt::format("{}: boxes of '{}'{} in format {}; expected {}", name, options.boxes,
-                              did_you_mean(options.boxes, known), format.name,
+                              core::did_you_mean(options.boxes, known), format.name,
                               known.empty() ? "none to be asked for: it holds boxes"
                                             : fmt::format("one of: {}", fmt::join(known, ", "))));
 }

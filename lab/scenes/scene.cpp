@@ -18,6 +18,7 @@
 #include "lab/recordings/recordings.hpp"
 #include "lab/scenes/descriptions.hpp"
 #include "lab/scenes/motion.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -95,7 +96,7 @@ NamedScene find_scene(std::string_view text, const ReadOptions& files) {
     std::vector<std::string> known;
     for (const Scene& scene : scenes()) known.push_back(scene.name);
     throw InvalidSpec(fmt::format("unknown scene '{}'{}; expected a file or one of: {}", spec.name,
-                                  did_you_mean(spec.name, known), fmt::join(known, ", ")));
+                                  core::did_you_mean(spec.name, known), fmt::join(known, ", ")));
   }
   if (!found->missing.empty())
     throw InvalidSpec("scene '" + spec.name + "' cannot be made: " + found->missing);

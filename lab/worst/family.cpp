@@ -10,6 +10,7 @@
 #include "broadside/error.hpp"
 
 #include "lab/scenes/scatter.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -50,8 +51,8 @@ const InputFamily& find_family(std::string_view name) {
   if (found != all.end()) return *found;
   std::vector<std::string> known;
   for (const InputFamily& family : all) known.push_back(family.name);
-  throw InvalidSpec(fmt::format("unknown family '{}'{}; expected one of: {}", name, did_you_mean(name, known),
-                                fmt::join(known, ", ")));
+  throw InvalidSpec(fmt::format("unknown family '{}'{}; expected one of: {}", name,
+                                core::did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 Spec draw_family(const InputFamily& family, Random& random) {

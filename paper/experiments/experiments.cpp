@@ -10,6 +10,7 @@
 #include "broadside/error.hpp"
 
 #include "paper/experiments/descriptions.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab {
 
@@ -63,7 +64,7 @@ const Experiment& find_experiment(std::string_view text) {
     names.push_back(experiment.name);
   }
   throw InvalidSpec(fmt::format("no experiment '{}'{}; expected a name or number of: {}", text,
-                                did_you_mean(text, names), fmt::join(known, ", ")));
+                                core::did_you_mean(text, names), fmt::join(known, ", ")));
 }
 
 }  // namespace broadside::lab

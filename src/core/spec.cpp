@@ -9,6 +9,7 @@
 #include "core/former_names.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
+#include "core/suggestion.hpp"
 
 namespace broadside {
 namespace {
@@ -95,9 +96,9 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
     if (tunable == tunables.end()) {
       std::vector<std::string> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
-      throw InvalidSpec(
-          message({spec.name, ": unknown tunable '", name, "'", did_you_mean(name, names), "; expected ",
-                   names.empty() ? "" : "one of: ", listed(names), core::former_tunable(spec.name, name)}));
+      throw InvalidSpec(message({spec.name, ": unknown tunable '", name, "'", core::did_you_mean(name, names),
+                                 "; expected ", names.empty() ? "" : "one of: ", listed(names),
+                                 core::former_tunable(spec.name, name)}));
     }
     values_[static_cast<std::size_t>(tunable - tunables.begin())].second =
         checked(spec.name, *tunable, given);

@@ -26,8 +26,9 @@ const std::vector<Rule>& rules() {
   const std::string find =
       interface + R"(|"find/[a-z_]+\.hpp"|"kernels/last_test\.hpp"|"algorithms/registry\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
+  // A name that a user may have meant is an inline function of the library's.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
-                          R"(|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
+                          R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {

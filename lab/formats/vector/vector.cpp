@@ -18,6 +18,7 @@
 #include "lab/formats/quarantine.hpp"
 #include "lab/formats/text.hpp"
 #include "lab/formats/vector/gdal.hpp"
+#include "src/core/suggestion.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -83,7 +84,7 @@ OGRLayerH chosen_layer(GDALDatasetH dataset, const std::string& name, const std:
     throw FileError(fmt::format("{}: has no layer with geometries; expected features with bounds", file));
   if (!name.empty())
     throw FileError(fmt::format("{}: has no layer '{}'{}; expected one of: {}", file, name,
-                                did_you_mean(name, names), fmt::join(names, ", ")));
+                                core::did_you_mean(name, names), fmt::join(names, ", ")));
   if (names.size() > 1)
     throw FileError(fmt::format("{}: has {} layers; expected --layer with one of: {}", file, names.size(),
                                 fmt::join(names, ", ")));

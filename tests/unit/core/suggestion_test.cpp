@@ -1,4 +1,6 @@
 // The name that a message suggests for one that is not known.
+#include "core/suggestion.hpp"
+
 #include <string>
 #include <vector>
 
@@ -19,21 +21,21 @@ using testing::Throws;
 const std::vector<std::string> names = {"grid", "bvh", "quadtree", "sweep_and_prune"};
 
 TEST(DidYouMean, SuggestsTheNearestNameWithinTwoLetters) {
-  EXPECT_EQ(did_you_mean("gird", names), " (did you mean 'grid'?)");
-  EXPECT_EQ(did_you_mean("BVH", names), " (did you mean 'bvh'?)");
-  EXPECT_EQ(did_you_mean("bhv", names), " (did you mean 'bvh'?)");
-  EXPECT_EQ(did_you_mean("quatree", names), " (did you mean 'quadtree'?)");
-  EXPECT_EQ(did_you_mean("sweep-and-prune", names), " (did you mean 'sweep_and_prune'?)");
-  EXPECT_EQ(did_you_mean("sweep", names), " (did you mean 'sweep_and_prune'?)");
+  EXPECT_EQ(core::did_you_mean("gird", names), " (did you mean 'grid'?)");
+  EXPECT_EQ(core::did_you_mean("BVH", names), " (did you mean 'bvh'?)");
+  EXPECT_EQ(core::did_you_mean("bhv", names), " (did you mean 'bvh'?)");
+  EXPECT_EQ(core::did_you_mean("quatree", names), " (did you mean 'quadtree'?)");
+  EXPECT_EQ(core::did_you_mean("sweep-and-prune", names), " (did you mean 'sweep_and_prune'?)");
+  EXPECT_EQ(core::did_you_mean("sweep", names), " (did you mean 'sweep_and_prune'?)");
 }
 
 TEST(DidYouMean, SuggestsNothingFarAway) {
-  EXPECT_EQ(did_you_mean("octree", names), "");
-  EXPECT_EQ(did_you_mean("gr", names), "");
-  EXPECT_EQ(did_you_mean("x", names), "");
-  EXPECT_EQ(did_you_mean("", names), "");
-  EXPECT_EQ(did_you_mean(std::string(100'000, 'g'), names), "");
-  EXPECT_EQ(did_you_mean("grid", {}), "");
+  EXPECT_EQ(core::did_you_mean("octree", names), "");
+  EXPECT_EQ(core::did_you_mean("gr", names), "");
+  EXPECT_EQ(core::did_you_mean("x", names), "");
+  EXPECT_EQ(core::did_you_mean("", names), "");
+  EXPECT_EQ(core::did_you_mean(std::string(100'000, 'g'), names), "");
+  EXPECT_EQ(core::did_you_mean("grid", {}), "");
 }
 
 TEST(DidYouMean, IsAskedForUnknownAlgorithmsAndTunables) {

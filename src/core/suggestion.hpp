@@ -1,17 +1,18 @@
-// Names that a user may have meant, by edit distance.
+// did_you_mean(): a name that a user may have meant, by edit distance. Inline, because the program and the
+// lab use it as well, and a shared library does not export it.
+#pragma once
+
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "broadside/error.hpp"
+namespace broadside::core {
 
-#include "core/message.hpp"
-
-namespace broadside {
-namespace {
-
-std::string lower_case(std::string_view text) {
+inline std::string lower_case(std::string_view text) {
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -20,7 +21,7 @@ std::string lower_case(std::string_view text) {
 
 /// The least number of letters to insert, remove, replace or swap with the next one that makes `b` of `a`
 /// (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -37,27 +38,28 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return distance[a.size()][b.size()];
 }
 
-}  // namespace
-
-std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
+/// " (did you mean 'grid'?)" for the name in `known` that is closest to `found`: at most two letters are
+/// missing, extra, wrong or swapped (one if `found` has fewer than five), or it begins with `found`. Ignores
+/// case. Empty if no name is that close.
+inline std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
   // No name is longer; a longer text may be a whole file, whose distances would take long.
-  constexpr std::size_t most_letters = 64;
-  constexpr std::size_t least_beginning = 3;
-  if (found.size() > most_letters) return "";
+  constexpr std::size_t max_letters = 64;
+  constexpr std::size_t min_prefix = 3;
+  if (found.size() > max_letters) return {};
   const std::string wanted = lower_case(found);
-  const std::size_t most = found.size() < 5 ? 1 : 2;
-  std::size_t nearest = most + 1;
+  const std::size_t max_distance = found.size() < 5 ? 1 : 2;
+  std::size_t nearest = max_distance + 1;
   const std::string* meant = nullptr;
   for (const std::string& name : known) {
     const std::string candidate = lower_case(name);
     std::size_t distance = edit_distance(wanted, candidate);
-    if (wanted.size() >= least_beginning && candidate.starts_with(wanted))
-      distance = std::min(distance, most);
+    if (wanted.size() >= min_prefix && candidate.starts_with(wanted))
+      distance = std::min(distance, max_distance);
     if (distance >= nearest) continue;
     nearest = distance;
     meant = &name;
   }
-  return meant == nullptr ? "" : core::message({" (did you mean '", *meant, "'?)"});
+  return meant == nullptr ? std::string() : " (did you mean '" + *meant + "'?)";
 }
 
-}  // namespace broadside
+}  // namespace broadside::core
