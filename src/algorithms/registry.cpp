@@ -13,6 +13,7 @@
 #include "core/former_names.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
+#include "core/suggestion.hpp"
 
 namespace broadside {
 namespace {
@@ -65,7 +66,7 @@ const Algorithm& require_algorithm(std::string_view name) {
   if (const Algorithm* const algorithm = find_algorithm(name)) return *algorithm;
   std::vector<std::string> names;
   for (const Algorithm& algorithm : algorithms()) names.push_back(algorithm.name);
-  throw InvalidSpec(core::message({"unknown algorithm '", name, "'", did_you_mean(name, names),
+  throw InvalidSpec(core::message({"unknown algorithm '", name, "'", core::did_you_mean(name, names),
                                    "; expected one of: ", core::listed(names)}));
 }
 
