@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/filter_sink.hpp"
+#include "core/pair_set.hpp"
 #include "core/parallel.hpp"
 #include "kernels/observed_tests.hpp"
 
@@ -62,7 +63,7 @@ class FilteringSink final : public core::FilterSink {
  public:
   /// Of two sets if `right` is not null.
   FilteringSink(std::span<const Filter> left, const std::span<const Filter>* right,
-                const IgnoredPairs* ignored, PairSink& target)
+                const core::PairSet* ignored, PairSink& target)
       : FilterSink(target), left_(left), right_(right), ignored_(ignored) {}
 
   std::unique_ptr<FilterSink> onto(PairSink& target) const override {
@@ -85,7 +86,7 @@ class FilteringSink final : public core::FilterSink {
 
   std::span<const Filter> left_;
   const std::span<const Filter>* right_;
-  const IgnoredPairs* ignored_;
+  const core::PairSet* ignored_;  // null if there are none
 };
 
 /// Calls search(sink) with a filter, and flushes the filter.
@@ -120,8 +121,9 @@ template <int D, typename Real>
 std::optional<Statistics> Search<D, Real>::find(std::span<const Box<D, Real>> boxes,
                                                 const SearchOptions<D>& options, PairSink& pairs) {
   if (options.filters.empty()) return find_unfiltered(boxes, options, pairs);
-  return through(FilteringSink(options.filters.filters, nullptr, options.filters.ignored, pairs),
-                 [&](PairSink& sink) { return find_unfiltered(boxes, options, sink); });
+  return through(
+      FilteringSink(options.filters.filters, nullptr, core::PairSet::of(options.filters.ignored), pairs),
+      [&](PairSink& sink) { return find_unfiltered(boxes, options, sink); });
 }
 
 template <int D, typename Real>
