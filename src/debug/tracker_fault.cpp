@@ -33,12 +33,12 @@ std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, b
 }  // namespace
 
 template <int D, typename Real>
-EventPairs events_of(PairTracker<D, Real>& tracker, const Frame<D, Real>& frame) {
-  EventPairs events;
+std::optional<Statistics> take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
+                                      EventPairs& events) {
+  events = {};
   PairCollector begun(events.begun);
   PairCollector ended(events.ended);
-  tracker.update(frame, begun, ended);
-  return events;
+  return tracker.update(frame, begun, ended);
 }
 
 std::string text_of(const Fault& fault) {
@@ -59,16 +59,17 @@ std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expect
 }
 
 template <int D, typename Real>
-std::optional<Fault> fault_at_the_end(PairTracker<D, Real>& tracker, const History<D, Real>& history) {
+std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history) {
   try {
     Replay<D, Real> replay(history);
     Pairs held;
-    EventPairs events = events_of(tracker, replay.frame());
+    EventPairs events;
+    take_events(tracker, replay.frame(), events);
     for (const Step<D, Real>& step : history.steps) {
       const Pairs still = without(held, events.ended);
       held.clear();
       std::ranges::set_union(still, events.begun, std::back_inserter(held));
-      events = events_of(tracker, replay.next(step));
+      take_events(tracker, replay.next(step), events);
     }
     return fault_of(events, events_between(held, pairs_by_definition(replay.frame())));
   } catch (const std::exception&) {
@@ -77,9 +78,9 @@ std::optional<Fault> fault_at_the_end(PairTracker<D, Real>& tracker, const Histo
 }
 
 template <int D, typename Real>
-std::optional<History<D, Real>> smallest_fault(
-    History<D, Real> history, const std::function<std::unique_ptr<PairTracker<D, Real>>()>& make,
-    std::uint64_t most_tests) {
+std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
+                                               const std::function<Tracker<D, Real>()>& make,
+                                               std::uint64_t most_tests) {
   std::uint64_t tests = 0;
   const auto fails = [&](const History<D, Real>& some) {
     std::uint64_t changes = some.boxes.size();
@@ -87,8 +88,8 @@ std::optional<History<D, Real>> smallest_fault(
     const std::uint64_t places = places_of(some);
     // What a tracker does is not known: as if it took a hundred tests a change.
     tests += places * places / 2 + 100 * changes;
-    const auto tracker = make();
-    return tracker && fault_at_the_end(*tracker, some).has_value();
+    Tracker<D, Real> tracker = make();
+    return fault_at_the_end(tracker, some).has_value();
   };
   Replay<D, Real> replay(history);
   for (const Step<D, Real>& step : history.steps) replay.next(step);
@@ -101,23 +102,23 @@ std::optional<History<D, Real>> smallest_fault(
   return history;
 }
 
-template EventPairs events_of(PairTracker<2>&, const Frame<2>&);
-template EventPairs events_of(PairTracker<3>&, const Frame<3>&);
-template EventPairs events_of(PairTracker<2, double>&, const Frame<2, double>&);
-template EventPairs events_of(PairTracker<3, double>&, const Frame<3, double>&);
-template std::optional<Fault> fault_at_the_end(PairTracker<2>&, const History<2>&);
-template std::optional<Fault> fault_at_the_end(PairTracker<3>&, const History<3>&);
-template std::optional<Fault> fault_at_the_end(PairTracker<2, double>&, const History<2, double>&);
-template std::optional<Fault> fault_at_the_end(PairTracker<3, double>&, const History<3, double>&);
-template std::optional<History<2>> smallest_fault(History<2>,
-                                                  const std::function<std::unique_ptr<PairTracker<2>>()>&,
+template std::optional<Statistics> take_events(Tracker<2>&, const Frame<2>&, EventPairs&);
+template std::optional<Statistics> take_events(Tracker<3>&, const Frame<3>&, EventPairs&);
+template std::optional<Statistics> take_events(Tracker<2, double>&, const Frame<2, double>&, EventPairs&);
+template std::optional<Statistics> take_events(Tracker<3, double>&, const Frame<3, double>&, EventPairs&);
+template std::optional<Fault> fault_at_the_end(Tracker<2>&, const History<2>&);
+template std::optional<Fault> fault_at_the_end(Tracker<3>&, const History<3>&);
+template std::optional<Fault> fault_at_the_end(Tracker<2, double>&, const History<2, double>&);
+template std::optional<Fault> fault_at_the_end(Tracker<3, double>&, const History<3, double>&);
+template std::optional<History<2>> smallest_fault(History<2>, const std::function<Tracker<2>()>&,
                                                   std::uint64_t);
-template std::optional<History<3>> smallest_fault(History<3>,
-                                                  const std::function<std::unique_ptr<PairTracker<3>>()>&,
+template std::optional<History<3>> smallest_fault(History<3>, const std::function<Tracker<3>()>&,
                                                   std::uint64_t);
-template std::optional<History<2, double>> smallest_fault(
-    History<2, double>, const std::function<std::unique_ptr<PairTracker<2, double>>()>&, std::uint64_t);
-template std::optional<History<3, double>> smallest_fault(
-    History<3, double>, const std::function<std::unique_ptr<PairTracker<3, double>>()>&, std::uint64_t);
+template std::optional<History<2, double>> smallest_fault(History<2, double>,
+                                                          const std::function<Tracker<2, double>()>&,
+                                                          std::uint64_t);
+template std::optional<History<3, double>> smallest_fault(History<3, double>,
+                                                          const std::function<Tracker<3, double>()>&,
+                                                          std::uint64_t);
 
 }  // namespace broadside::core

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +18,10 @@ struct EventPairs {
   std::vector<Pair> ended;
 };
 
-/// What a tracker reports on a frame.
+/// Has a tracker take a frame, and sets `events` to what it reports.
 template <int D, typename Real>
-EventPairs events_of(PairTracker<D, Real>& tracker, const Frame<D, Real>& frame);
+std::optional<Statistics> take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
+                                      EventPairs& events);
 
 /// A pair that was reported wrongly.
 struct Fault {
@@ -41,13 +41,13 @@ std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expect
 
 /// What a tracker does wrong in a history's last frame. If it throws, that is another failure, and none here.
 template <int D, typename Real>
-std::optional<Fault> fault_at_the_end(PairTracker<D, Real>& tracker, const History<D, Real>& history);
+std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history);
 
 /// The smallest history found in whose last frame what `make` makes is at fault; empty if it is not on this
 /// one. Compares about that many pairs of boxes, and no clock is asked: another machine finds the same one.
 template <int D, typename Real>
-std::optional<History<D, Real>> smallest_fault(
-    History<D, Real> history, const std::function<std::unique_ptr<PairTracker<D, Real>>()>& make,
-    std::uint64_t most_tests);
+std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
+                                               const std::function<Tracker<D, Real>()>& make,
+                                               std::uint64_t most_tests);
 
 }  // namespace broadside::core

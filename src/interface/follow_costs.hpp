@@ -1,4 +1,4 @@
-// What the algorithms cost that follow boxes: the tuned numbers of track::UpdatePolicy, in one table.
+// What the algorithms cost that follow boxes: the tuned numbers of track::FollowPolicy, in one table.
 //
 // In nanoseconds of one machine; only ratios within an algorithm matter. `ways` of bench/motion shows what
 // comes of them: auto over the better of following and finding anew, 0.1 to 100 % of the boxes moving, and a

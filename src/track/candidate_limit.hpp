@@ -13,16 +13,23 @@
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/searcher.hpp"
 #include "broadside/sinks.hpp"
 
 #include "core/filter_sink.hpp"
-#include "core/lean.hpp"
 #include "kernels/overlap_flags.hpp"
 
-namespace broadside::core {
+namespace broadside::track {
 
 /// Thrown from a search that would exceed its limit of pairs or tests.
 struct LimitPassed {};
+
+/// Ends a search that gives up, as if it had passed a limit of tests.
+template <int D>
+class LimitedTests final : public Successor<D> {
+ public:
+  void finish(const typename Successor<D>::IsLeft& /*is_left*/) override { throw LimitPassed(); }
+};
 
 /// The maximum number of candidates: a constant, plus a number for each candidate that holds.
 struct CandidateLimit {
@@ -45,7 +52,7 @@ class CandidateCollector final : public PairSink {
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    if (!is_lean && limit_.candidates_per_holding > 0) {
+    if (limit_.candidates_per_holding > 0) {
       std::array<std::uint8_t, 2 * max_room> holds;
       kernels::set_overlap_flags(boxes_, pairs, holds.data());
       holding_ += static_cast<std::size_t>(std::count(holds.begin(), holds.begin() + pairs.size(), 1));
@@ -62,11 +69,11 @@ class CandidateCollector final : public PairSink {
 };
 
 /// Passes pairs on, and throws when all threads together have passed more than `most`.
-class LimitSink final : public FilterSink {
+class LimitSink final : public core::FilterSink {
  public:
   LimitSink(std::size_t most, PairSink& target) : FilterSink(target), most_(most), passed_(&count_) {}
 
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+  std::unique_ptr<core::FilterSink> onto(PairSink& target) const override {
     auto sink = std::make_unique<LimitSink>(most_, target);
     sink->passed_ = passed_;
     return sink;
@@ -84,4 +91,4 @@ class LimitSink final : public FilterSink {
   std::atomic<std::size_t>* passed_;  // count_ of the original sink
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::track

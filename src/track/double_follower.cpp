@@ -1,14 +1,12 @@
-// Boxes of doubles, followed by their floats.
-#include "doubles/double_follower.hpp"
+// DoubleFollower.
+#include "track/double_follower.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
 
-#include "interface/candidate_tracker.hpp"
-
-namespace broadside::algorithm {
+namespace broadside::track {
 namespace {
 
 /// False candidates a box that cost about what rounding all boxes anew does.
@@ -17,7 +15,7 @@ constexpr std::uint64_t most_false_candidates = 32;
 struct TooManyFalse {};
 
 /// Writes the events among the candidates, and counts false candidates. Throws TooManyFalse if there are more
-/// than `most`.
+/// than `max_false`.
 template <int D>
 class Candidates final : public PairSink {
  public:
@@ -53,7 +51,8 @@ class Candidates final : public PairSink {
 /// frame, all boxes are rounded anew. Events that were already written are harmless: an event may be written
 /// more than once.
 template <int D>
-void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
+std::optional<Statistics> DoubleFollower<D>::follow(const Change<D, double>& change, PairSink& begun,
+                                                    PairSink& ended) {
   const std::uint64_t most = most_false_candidates * change.now.size();
   if (!change.rebuild && false_candidates_ <= most) {
     try {
@@ -62,25 +61,31 @@ void DoubleFollower<D>::update_valid(const Change<D, double>& change, PairSink& 
     }
   }
   start(change);
-  follow(change, true, std::numeric_limits<std::uint64_t>::max(), begun, ended);
+  return follow(change, true, std::numeric_limits<std::uint64_t>::max(), begun, ended);
 }
 
-/// Follows the boxes; throws TooManyFalse if there are more than `most` false candidates.
+/// Follows the boxes; throws TooManyFalse if there are more than `max_false` false candidates.
 template <int D>
-void DoubleFollower<D>::follow(const Change<D, double>& change, bool starts, std::uint64_t most,
-                               PairSink& begun, PairSink& ended) {
+std::optional<Statistics> DoubleFollower<D>::follow(const Change<D, double>& change, bool starts,
+                                                    std::uint64_t max_false, PairSink& begun,
+                                                    PairSink& ended) {
   before_.resize(change.now.size(), absent_box<D>());
   now_.resize(change.now.size(), absent_box<D>());
   for (const BoxId id : change.changed) now_[index(id)] = rounded(change.now[index(id)]);
-  Candidates<D> candidates(change, most, begun, ended);
-  Statistics statistics = floats_->candidate_tracker()->candidates(
-      {.before = before_, .now = now_, .changed = change.changed, .flags = change.flags, .rebuild = starts},
-      candidates);
+  Candidates<D> candidates(change, max_false, begun, ended);
+  std::optional<Statistics> statistics = floats_->follow({.before = before_,
+                                                          .now = now_,
+                                                          .changed = change.changed,
+                                                          .flags = change.flags,
+                                                          .rebuild = starts,
+                                                          .wants_candidates = true,
+                                                          .workers = change.workers},
+                                                         candidates, candidates);
   candidates.flush();
-  statistics.hits = candidates.count();
+  if (statistics) statistics->hits = candidates.count();
   false_candidates_ += candidates.false_count();
   for (const BoxId id : change.changed) before_[index(id)] = now_[index(id)];
-  this->count(statistics);
+  return statistics;
 }
 
 /// Rounds all boxes of the frame before, by a rounding that suits this one.
@@ -108,7 +113,7 @@ Box<D> DoubleFollower<D>::rounded(const Box<D, double>& box) const {
 }
 
 template <int D>
-std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
+std::size_t DoubleFollower<D>::bytes() const noexcept {
   std::size_t bytes = (before_.capacity() + now_.capacity()) * sizeof(Box<D>);
   for (const core::QuantileRounding& rounding : quantiles_) bytes += rounding.bytes();
   return bytes + floats_->bytes();
@@ -117,4 +122,4 @@ std::size_t DoubleFollower<D>::algorithm_bytes() const noexcept {
 template class DoubleFollower<2>;
 template class DoubleFollower<3>;
 
-}  // namespace broadside::algorithm
+}  // namespace broadside::track

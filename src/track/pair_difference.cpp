@@ -1,5 +1,5 @@
 // The difference between the pairs of two frames, by their boxes.
-#include "interface/pair_difference.hpp"
+#include "track/pair_difference.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "kernels/overlap_flags.hpp"
 
-namespace broadside::core {
+namespace broadside::track {
 namespace {
 
 /// Pairs that one of several threads compares at a time.
@@ -47,14 +47,14 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
 
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
-                        std::span<const Pair> kept, const Workers& workers, Parallel& parallel,
-                        PairSink& begun, PairSink& ended) {
+                        std::span<const Pair> kept, core::Parallel& parallel, PairSink& begun,
+                        PairSink& ended) {
   const bool by_boxes = !has_changed_filter(change);
-  parallel.start(workers, (found.size() + kept.size()) / pairs_a_box);
+  parallel.start(change.workers, (found.size() + kept.size()) / pairs_per_box);
   const auto report = [&](std::span<const Pair> pairs, std::span<const Box<D, Real>> other_frame,
                           PairSink& sink, auto is_event) {
     const std::size_t all_parts = (pairs.size() + pairs_at_once - 1) / pairs_at_once;
-    parallel.search(all_parts, sink, [&](Range parts, std::size_t, PairSink& events) {
+    parallel.search(all_parts, sink, [&](core::Range parts, std::size_t, PairSink& events) {
       const std::size_t begin = parts.begin * pairs_at_once;
       const std::size_t end = std::min(parts.end * pairs_at_once, pairs.size());
       for_differing<D, Real>(change, pairs.subspan(begin, end - begin), other_frame, by_boxes,
@@ -73,12 +73,12 @@ void report_differences(const Change<D, Real>& change, std::span<const Pair> fou
 }
 
 template void report_differences(const Change<2>&, std::span<const Pair>, std::span<const Pair>,
-                                 const Workers&, Parallel&, PairSink&, PairSink&);
+                                 core::Parallel&, PairSink&, PairSink&);
 template void report_differences(const Change<3>&, std::span<const Pair>, std::span<const Pair>,
-                                 const Workers&, Parallel&, PairSink&, PairSink&);
+                                 core::Parallel&, PairSink&, PairSink&);
 template void report_differences(const Change<2, double>&, std::span<const Pair>, std::span<const Pair>,
-                                 const Workers&, Parallel&, PairSink&, PairSink&);
+                                 core::Parallel&, PairSink&, PairSink&);
 template void report_differences(const Change<3, double>&, std::span<const Pair>, std::span<const Pair>,
-                                 const Workers&, Parallel&, PairSink&, PairSink&);
+                                 core::Parallel&, PairSink&, PairSink&);
 
-}  // namespace broadside::core
+}  // namespace broadside::track

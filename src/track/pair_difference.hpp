@@ -4,15 +4,15 @@
 #include <cstddef>
 #include <span>
 
+#include "broadside/follower.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/tracker.hpp"
 
 #include "core/parallel.hpp"
 
-namespace broadside::core {
+namespace broadside::track {
 
 /// Pairs that are tested in the time that a search takes for a box.
-inline constexpr std::size_t pairs_a_box = 8;
+inline constexpr std::size_t pairs_per_box = 8;
 
 /// Writes what began and what ended, given `found`, all pairs that overlap now, and `kept`, all those that
 /// held in the frame before and perhaps others, each once or more often.
@@ -21,7 +21,7 @@ inline constexpr std::size_t pairs_a_box = 8;
 /// boxes at rest need no test. Most pairs go on, so that is tested first.
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
-                        std::span<const Pair> kept, const Workers& workers, Parallel& parallel,
-                        PairSink& begun, PairSink& ended);
+                        std::span<const Pair> kept, core::Parallel& parallel, PairSink& begun,
+                        PairSink& ended);
 
-}  // namespace broadside::core
+}  // namespace broadside::track

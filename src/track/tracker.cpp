@@ -1,345 +1,223 @@
-// PairTracker: what every tracker does around its algorithm.
+// Tracker.
 #include "broadside/tracker.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
+#include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
-#include "core/grow.hpp"
 #include "core/lean.hpp"
-#include "core/parallel.hpp"
 #include "core/sort_pairs.hpp"
 #include "interface/input_check.hpp"
+#include "track/tracker_state.hpp"
 
 namespace broadside {
 namespace {
 
 /// Changes whose boxes are copied in the time that a search takes for a box.
-constexpr std::size_t changes_a_box = 8;
+constexpr std::size_t changes_per_box = 8;
+
+/// The ways that an algorithm offers, by its settings.
+template <int D, typename Real>
+track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settings) {
+  const bool is_float = std::is_same_v<Real, float>;
+  const bool chooses =
+      std::ranges::find(algorithm.tunables, "update", &Tunable::name) != algorithm.tunables.end();
+  track::TrackerPlan<D> plan;
+  plan.tests_doubles = algorithm.tests_doubles;
+  plan.find_costs = algorithm.find_costs<D>();
+  if (is_float || algorithm.gives_candidates) {
+    for (const FollowerChoice<D>& choice : algorithm.followers<D>()) {
+      plan.structures.push_back({choice.name,
+                                 [make = choice.make, settings] { return make(settings); },
+                                 {choice.costs, choice.max_boxes}});
+    }
+  }
+  if (plan.structures.empty())
+    plan.update = Update::rebuild;
+  else
+    plan.update = chooses ? track::update_of(settings) : Update::follow;
+  plan.explains = chooses && !plan.structures.empty();
+  // Also where it is not used: it says whether the algorithm does the dimension.
+  std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);
+  if (plan.update != Update::follow) plan.searcher = std::move(searcher);
+  return plan;
+}
 
 }  // namespace
 
 template <int D, typename Real>
-class BROADSIDE_HIDDEN PairTracker<D, Real>::State {
- public:
-  void check(const Frame<D, Real>& frame) const {
-    core::check_frame(frame, before_.size(), dirty_, bad_input);
-  }
-  void update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once, PairSink& begun,
-              PairSink& ended);
-  Frame<D, Real> last_frame() const noexcept;
-  std::size_t bytes() const noexcept;
-  bool is_whole() const noexcept { return !dirty_; }
-  std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
+void Tracker<D, Real>::State::check(const Frame<D, Real>& frame) const {
+  core::check_frame(frame, frames_.size(), is_dirty_, bad_input);
+}
 
-  BadInput bad_input = BadInput::reject;
-  std::optional<Statistics> statistics;
-  Workers workers;
-
- private:
-  void take(const Frame<D, Real>& frame, bool rebuild, bool lists_once);
-  void take_ignored(const Frame<D, Real>& frame, bool rebuild);
-  void drop_ignored(const Change<D, Real>& change);
-  void keep(const Frame<D, Real>& frame) noexcept;
-
-  std::vector<Box<D, Real>> before_;  // the boxes of the last whole update
-  std::size_t taken_ = 0;             // how many boxes that had
-  std::vector<Box<D, Real>> now_;
-  std::vector<Filter> filters_before_;  // both empty until there are filters
-  std::vector<Filter> filters_now_;
-  IgnoredPairs ignored_;       // those of the last whole update
-  bool had_ignored_ = false;   // whether it was given a set
-  std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted
-  std::vector<BoxId> changed_;
-  std::vector<std::uint8_t> flags_;
-  std::vector<BoxId> invalid_;      // of the changed ones
-  std::vector<BoxId> quarantined_;  // those of the last whole update
-  std::vector<Pair> begun_;
-  std::vector<Pair> ended_;
-  std::vector<Pair> sorting_;
-  core::Parallel parallel_;
-  bool dirty_ = true;  // the last update did not end, or there was none
-};
-
-/// `lists_once`: no box is listed twice.
 template <int D, typename Real>
-void PairTracker<D, Real>::State::update(PairTracker& tracker, const Frame<D, Real>& frame, bool lists_once,
-                                         PairSink& begun, PairSink& ended) {
-  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
-  parallel_.start(workers, frame.changed.size() / changes_a_box);
-  take(frame, rebuild, lists_once);
-  take_ignored(frame, rebuild);
+std::optional<Statistics> Tracker<D, Real>::State::update(const Frame<D, Real>& frame, bool lists_once,
+                                                          PairSink& begun, PairSink& ended) {
+  const bool rebuild = std::exchange(is_dirty_, true);  // until the end of this update
+  parallel_.start(workers, frame.changed.size() / changes_per_box);
+  frames_.take(frame, rebuild, lists_once, parallel_);
+  ignored_.take(frame, rebuild);
+  find_events(frames_.change(rebuild, workers));
+  deliver(begun, ended);
+  frames_.keep(frame, parallel_);
+  is_dirty_ = false;
+  return statistics_;
+}
 
+/// Sets begun_ and ended_.
+template <int D, typename Real>
+void Tracker<D, Real>::State::find_events(const Change<D, Real>& change) {
   begun_.clear();
   ended_.clear();
-  statistics.reset();
-  const Change<D, Real> change{before_,         now_,         changed_, flags_, rebuild,
-                               filters_before_, filters_now_, &frame};
   {
     PairCollector begun_pairs(begun_);
     PairCollector ended_pairs(ended_);
-    tracker.update_valid(change, begun_pairs, ended_pairs);
+    statistics_ = updater_.update(change, begun_pairs, ended_pairs);
     begun_pairs.flush();
     ended_pairs.flush();
   }
-  drop_ignored(change);
+  ignored_.apply(change, begun_, ended_);
   core::sort_unique(begun_, sorting_);
   core::sort_unique(ended_, sorting_);
-  // The pairs that are ignored from now on come first.
-  const auto middle = std::partition(toggled_.begin(), toggled_.end(),
-                                     [this](Pair pair) { return !ignored_.contains(pair); });
-  const auto newly_ignored = static_cast<std::size_t>(middle - toggled_.begin());
-  const std::span<const Pair> newly = std::span(toggled_).first(newly_ignored);
-  const std::span<const Pair> no_longer = std::span(toggled_).subspan(newly_ignored);
+}
+
+/// All memory is taken before the events are delivered, so that nothing can fail after them.
+template <int D, typename Real>
+void Tracker<D, Real>::State::deliver(PairSink& begun, PairSink& ended) {
   try {
-    // All memory is taken before the events are delivered, so that nothing can fail after them.
-    for (const Pair pair : newly) ignored_.insert(pair);
-    quarantined_.reserve(quarantined_.size() + invalid_.size());
+    ignored_.insert();
+    frames_.prepare_to_keep();
     const core::CallersEnvironment callers;
     begun.put(begun_);
     ended.put(ended_);
   } catch (...) {
-    for (const Pair pair : newly) ignored_.erase(pair);
+    ignored_.undo_insert();
     begun.discard();
     ended.discard();
     throw;
   }
-  for (const Pair pair : no_longer) ignored_.erase(pair);
-  keep(frame);
-  dirty_ = false;
-}
-
-/// Sets now_, changed_, invalid_ and flags_, and makes everything as long as the longer frame.
-template <int D, typename Real>
-void PairTracker<D, Real>::State::take(const Frame<D, Real>& frame, bool rebuild, bool lists_once) {
-  const std::span<const Box<D, Real>> boxes = frame.boxes;
-  const std::size_t size = std::max(boxes.size(), taken_);
-  const bool had_filters = !filters_before_.empty();
-  core::resize_by_eighths(before_, size, absent_box<D, Real>());
-  core::resize_by_eighths(now_, size, absent_box<D, Real>());
-  if (!frame.filters.empty() || had_filters) {
-    core::resize_by_eighths(filters_before_, size);
-    core::resize_by_eighths(filters_now_, size);
-  }
-  // Flags are all 0 between two updates, unless the last one failed.
-  if (rebuild) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
-  core::resize_by_eighths(flags_, size);
-  changed_.clear();
-  invalid_.clear();
-  const auto copy = [&](std::size_t i) {
-    flags_[i] = 1;
-    now_[i] = i < boxes.size() ? boxes[i] : absent_box<D, Real>();
-    if (!filters_now_.empty()) filters_now_[i] = i < frame.filters.size() ? frame.filters[i] : Filter{};
-  };
-  const auto take = [&](std::size_t i) {
-    if (flags_[i] != 0) return;
-    copy(i);
-    changed_.push_back(BoxId(i));
-    if (!core::is_lean && core::is_invalid(now_[i])) {
-      now_[i] = absent_box<D, Real>();
-      invalid_.push_back(BoxId(i));
-    }
-  };
-  if (rebuild || frame.filters.empty() == had_filters) {
-    for (std::size_t i = 0; i < size; ++i) take(i);
-    return;
-  }
-  if (lists_once) {
-    changed_.assign(frame.changed.begin(), frame.changed.end());
-    parallel_.for_ranges(changed_.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i) copy(index(changed_[i]));
-    });
-  } else {
-    for (const BoxId id : frame.changed) {
-      // Another thread may have written to the list since it was checked.
-      const std::size_t place = index(id);
-      if (place < size) take(place);
-    }
-  }
-  for (std::size_t i = std::min(taken_, boxes.size()); i < size; ++i) take(i);
-}
-
-/// Sets toggled_.
-template <int D, typename Real>
-void PairTracker<D, Real>::State::take_ignored(const Frame<D, Real>& frame, bool rebuild) {
-  const auto is_ignored = [&frame](Pair pair) {
-    return frame.ignored != nullptr && frame.ignored->contains(pair);
-  };
-  toggled_.clear();
-  const auto take = [&](Pair pair) {
-    if (pair.second < pair.first) std::swap(pair.first, pair.second);
-    if (is_ignored(pair) != ignored_.contains(pair)) toggled_.push_back(pair);
-  };
-  if (rebuild || (frame.ignored != nullptr) != had_ignored_) {
-    ignored_.for_each(take);
-    if (frame.ignored != nullptr) frame.ignored->for_each(take);
-  } else {
-    for (const Pair pair : frame.ignored_changed) take(pair);
-  }
-  core::sort_unique(toggled_, sorting_);
-}
-
-/// Drops the events of ignored pairs, and adds events of pairs that became ignored or no longer are.
-template <int D, typename Real>
-void PairTracker<D, Real>::State::drop_ignored(const Change<D, Real>& change) {
-  if (toggled_.empty() && ignored_.empty()) return;
-  const auto is_dropped = [this](Pair pair) {
-    return ignored_.contains(pair) || std::ranges::binary_search(toggled_, pair);
-  };
-  std::erase_if(begun_, is_dropped);
-  std::erase_if(ended_, is_dropped);
-  for (const Pair pair : toggled_) {
-    if (index(pair.second) >= change.now.size()) continue;
-    if (ignored_.contains(pair)) {
-      if (change.holds(pair.first, pair.second)) begun_.push_back(pair);
-    } else {
-      if (change.held(pair.first, pair.second)) ended_.push_back(pair);
-    }
-  }
-}
-
-/// Makes this frame the one before, except for its ignored pairs. There is room in quarantined_.
-template <int D, typename Real>
-void PairTracker<D, Real>::State::keep(const Frame<D, Real>& frame) noexcept {
-  const std::size_t size = frame.boxes.size();
-  if (!core::is_lean && (!quarantined_.empty() || !invalid_.empty())) {
-    std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
-    quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
-    std::ranges::sort(quarantined_);
-  }
-  const auto keep_changed = [this](core::Range range, std::size_t) {
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      before_[index(changed_[i])] = now_[index(changed_[i])];
-      flags_[index(changed_[i])] = 0;
-    }
-  };
-  try {
-    parallel_.for_ranges(changed_.size(), keep_changed);
-  } catch (...) {  // the executor's, after some of its tasks
-    keep_changed({0, changed_.size()}, 0);
-  }
-  if (!filters_now_.empty()) {
-    for (const BoxId id : changed_) filters_before_[index(id)] = filters_now_[index(id)];
-    filters_before_.resize(frame.filters.size());
-    filters_now_.resize(frame.filters.size());
-  }
-  before_.resize(size);
-  now_.resize(size);
-  flags_.resize(size);
-  taken_ = size;
-  had_ignored_ = frame.ignored != nullptr;
+  ignored_.keep();
 }
 
 template <int D, typename Real>
-Frame<D, Real> PairTracker<D, Real>::State::last_frame() const noexcept {
-  // An update that failed may have made them longer.
-  const std::span<const Filter> filters = filters_before_;
-  return {std::span(before_).first(taken_),
-          {},
-          filters.first(filters.empty() ? 0 : taken_),
-          had_ignored_ ? &ignored_ : nullptr,
-          {}};
+Frame<D, Real> Tracker<D, Real>::State::last_frame() const noexcept {
+  return {frames_.last_boxes(), {}, frames_.last_filters(), ignored_.last(), {}};
 }
 
 template <int D, typename Real>
-std::size_t PairTracker<D, Real>::State::bytes() const noexcept {
-  return (before_.capacity() + now_.capacity()) * sizeof(Box<D, Real>) +
-         (filters_before_.capacity() + filters_now_.capacity()) * sizeof(Filter) +
-         (changed_.capacity() + invalid_.capacity() + quarantined_.capacity()) * sizeof(BoxId) +
-         flags_.capacity() +
-         (begun_.capacity() + ended_.capacity() + sorting_.capacity() + toggled_.capacity()) * sizeof(Pair) +
-         ignored_.bytes();
+std::size_t Tracker<D, Real>::State::bytes() const noexcept {
+  return frames_.bytes() + ignored_.bytes() + updater_.bytes() +
+         (begun_.capacity() + ended_.capacity() + sorting_.capacity()) * sizeof(Pair);
 }
 
 template <int D, typename Real>
-PairTracker<D, Real>::PairTracker() : state_(std::make_unique<State>()) {}
+Tracker<D, Real>::Tracker(const Algorithm& algorithm, const Spec& spec) {
+  const Settings settings = algorithm::settings_of(algorithm, spec);
+  state_ = std::make_unique<State>(plan_of<D, Real>(algorithm, settings),
+                                   algorithm::threads_of(algorithm, settings));
+}
 
 template <int D, typename Real>
-PairTracker<D, Real>::~PairTracker() = default;
+Tracker<D, Real>::Tracker(const Spec& spec) : Tracker(algorithm::require_algorithm(spec.name), spec) {}
 
 template <int D, typename Real>
-void PairTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+Tracker<D, Real>::Tracker(std::unique_ptr<Searcher<D>> searcher) {
+  if (!searcher) throw std::invalid_argument("Tracker was given a null searcher; expected a searcher");
+  track::TrackerPlan<D> plan;
+  plan.update = Update::rebuild;
+  plan.searcher = std::move(searcher);
+  plan.explains = false;
+  state_ = std::make_unique<State>(std::move(plan), 1);
+}
+
+template <int D, typename Real>
+Tracker<D, Real>::Tracker(std::unique_ptr<Follower<D>> follower) requires std::is_same_v<Real, float> {
+  if (!follower) throw std::invalid_argument("Tracker was given a null follower; expected a follower");
+  track::TrackerPlan<D> plan;
+  plan.update = Update::follow;
+  plan.structures.push_back({});
+  plan.follower = std::move(follower);
+  plan.explains = false;
+  state_ = std::make_unique<State>(std::move(plan), 1);
+}
+
+template <int D, typename Real>
+Tracker<D, Real>::Tracker(Tracker&& other) noexcept = default;
+template <int D, typename Real>
+Tracker<D, Real>& Tracker<D, Real>::operator=(Tracker&& other) noexcept = default;
+template <int D, typename Real>
+Tracker<D, Real>::~Tracker() = default;
+
+template <int D, typename Real>
+std::optional<Statistics> Tracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun,
+                                                   PairSink& ended) {
   const core::DefaultEnvironment environment;
   state_->check(frame);
-  state_->update(*this, frame, false, begun, ended);
+  return state_->update(frame, false, begun, ended);
 }
 
 template <int D, typename Real>
-void PairTracker<D, Real>::update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+std::optional<Statistics> Tracker<D, Real>::update_checked(const Frame<D, Real>& frame, PairSink& begun,
+                                                           PairSink& ended) {
   const core::DefaultEnvironment environment;
-  state_->update(*this, frame, true, begun, ended);
+  return state_->update(frame, true, begun, ended);
 }
 
 template <int D, typename Real>
-BadInput PairTracker<D, Real>::bad_input() const noexcept {
+BadInput Tracker<D, Real>::bad_input() const noexcept {
   return state_->bad_input;
 }
 
 template <int D, typename Real>
-void PairTracker<D, Real>::set_bad_input(BadInput bad_input) noexcept {
+void Tracker<D, Real>::set_bad_input(BadInput bad_input) noexcept {
   state_->bad_input = bad_input;
 }
 
 template <int D, typename Real>
-std::span<const BoxId> PairTracker<D, Real>::quarantined() const noexcept {
+std::span<const BoxId> Tracker<D, Real>::quarantined() const noexcept {
   return state_->quarantined();
 }
 
 template <int D, typename Real>
-Frame<D, Real> PairTracker<D, Real>::last_frame() const noexcept {
+Frame<D, Real> Tracker<D, Real>::last_frame() const noexcept {
   return state_->last_frame();
 }
 
 template <int D, typename Real>
-const BoxIndex<D, Real>* PairTracker<D, Real>::box_index() const noexcept {
-  return state_->is_whole() ? algorithm_index() : nullptr;
+const BoxIndex<D, Real>* Tracker<D, Real>::box_index() const noexcept {
+  return state_->box_index();
 }
 
 template <int D, typename Real>
-const std::optional<Statistics>& PairTracker<D, Real>::statistics() const noexcept {
-  return state_->statistics;
+std::string Tracker<D, Real>::explanation() const {
+  return state_->explanation();
 }
 
 template <int D, typename Real>
-std::size_t PairTracker<D, Real>::bytes() const noexcept {
-  return core::is_lean ? 0 : state_->bytes() + algorithm_bytes();
+std::size_t Tracker<D, Real>::bytes() const noexcept {
+  return core::is_lean ? 0 : state_->bytes();
 }
 
 template <int D, typename Real>
-const Workers& PairTracker<D, Real>::workers() const noexcept {
+const Workers& Tracker<D, Real>::workers() const noexcept {
   return state_->workers;
 }
 
 template <int D, typename Real>
-void PairTracker<D, Real>::set_workers(const Workers& workers) {
-  if constexpr (core::is_lean) return;
-  state_->workers = workers;
-  workers_changed();
+void Tracker<D, Real>::set_workers(const Workers& workers) {
+  if constexpr (!core::is_lean) state_->workers = workers;
 }
 
-template <int D, typename Real>
-void PairTracker<D, Real>::count(const std::optional<Statistics>& statistics) {
-  state_->statistics = statistics;
-}
-
-template <int D, typename Real>
-void PairTracker<D, Real>::update_with(PairTracker& other, const Change<D, Real>& change, PairSink& begun,
-                                       PairSink& ended) {
-  other.set_workers(workers());
-  other.state_->statistics.reset();
-  other.update_valid(change, begun, ended);
-  state_->statistics = other.state_->statistics;
-}
-
-template class PairTracker<2, float>;
-template class PairTracker<2, double>;
-template class PairTracker<3, float>;
-template class PairTracker<3, double>;
+template class Tracker<2, float>;
+template class Tracker<2, double>;
+template class Tracker<3, float>;
+template class Tracker<3, double>;
 
 }  // namespace broadside

@@ -1,19 +1,36 @@
-// FollowPolicy: whether a frame's changes are followed in a structure that stays, or all pairs found anew.
-#include "interface/follow_policy.hpp"
+// FollowPolicy and EnlargePolicy: which of its four ways a tracker goes in a frame.
+#include "track/update_policy.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/lean.hpp"
+#include "interface/follow_costs.hpp"
 
-namespace broadside::core {
+namespace broadside {
+
+Tunable core::update_tunable() {
+  return {.name = "update",
+          .summary = unless_lean(
+              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
+          .standard = "auto",
+          .type = Tunable::Type::choice,
+          .choices = {"follow", "rebuild"}};
+}
+
+namespace track {
 namespace {
 
 // The costs of tests beyond these were measured with 50,000 boxes, one in a hundred moving, in stacks of
 // plates, lines and clusters: docs/lab-notes.md.
 constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
-constexpr double cost_of_a_candidate = 15;  // a pair that boxes of doubles have to decide, in any structure
+
+/// A pair that boxes of doubles have to decide, in any structure; and one that a structure has to look at
+/// again in both frames, beyond the usual number for a mover.
+constexpr double cost_of_shared_candidate = 15;
+constexpr double cost_of_candidate = 5;
+constexpr double usual_candidates = 64;
 
 /// The part of the way back to its expected value that a structure's cost takes each time another one is
 /// weighed: the boxes may have changed.
@@ -25,64 +42,119 @@ constexpr std::size_t telling_movers = 64;
 /// Up to this number of changed boxes, a structure that follows goes on without a look at costs.
 constexpr std::size_t few_movers = 8;
 
-}  // namespace
+// Thresholds of enlarged boxes: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
 
-Tunable update_tunable() {
-  return {.name = "update",
-          .summary = unless_lean(
-              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
-          .standard = "auto",
-          .type = Tunable::Type::choice,
-          .choices = {"follow", "rebuild"}};
-}
+/// With fewer boxes, finding all pairs anew takes no longer than keeping candidates.
+constexpr std::size_t min_enlarged = 512;
+
+/// Of all boxes, the part that must move before they are enlarged.
+constexpr std::size_t many_movers = 8;
+
+/// The part below which they are no longer enlarged. Hysteresis: leave a bit later than you enter, so that a
+/// count near the limit does not flip each frame.
+constexpr std::size_t too_few_movers = 16;
+
+/// Candidates that are tested in the time that it takes to follow a mover without tests, and each of its
+/// tests; and the frames in a row in which following would have taken less before boxes are no longer
+/// enlarged.
+constexpr double candidates_per_mover = 96;
+constexpr double candidates_per_test = 1.5;
+constexpr std::size_t max_calm_frames = 8;
+
+/// Boxes that a mover is compared with, in the structure that compares all, in the time that it takes to test
+/// a candidate; with some room before boxes are no longer enlarged.
+constexpr double compared_per_candidate = 4;
+
+/// Of the changed boxes, the part that may leave their enlarged ones, and the frames over which it is
+/// averaged: boxes that move alike leave in the same frame.
+constexpr double max_left = 0.1;
+constexpr double averaged_frames = 16;
+constexpr std::size_t min_pause = 16;
+constexpr std::size_t max_pause = 1024;
+constexpr std::size_t max_pause_after_limit = 16 * max_pause;
+
+}  // namespace
 
 Update update_of(const Settings& settings) {
   if (settings.is_auto("update")) return Update::automatic;
   return settings.text("update") == "follow" ? Update::follow : Update::rebuild;
 }
 
-FollowPolicy::FollowPolicy(Update update, const FindCosts& finding, std::vector<FollowCosts> following)
-    : update_(update), finding_(finding), following_(std::move(following)), of_box_(finding.box) {
-  for (const FollowCosts& costs : following_) of_mover_.push_back(costs.mover);
+FollowPolicy::FollowPolicy(Update update, const FindCosts& finding, std::vector<StructureCosts> structures,
+                           bool shares_candidates)
+    : update_(update),
+      finding_(finding),
+      structures_(std::move(structures)),
+      shares_candidates_(shares_candidates),
+      of_box_(finding.box) {
+  for (const StructureCosts& structure : structures_) of_mover_.push_back(structure.costs.mover);
+  // The structure that compares all is for special cases.
+  const auto usual = std::ranges::find_if_not(structures_, &StructureCosts::compares_all);
+  if (usual != structures_.end()) current_ = static_cast<std::size_t>(usual - structures_.begin());
 }
 
 bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild) {
+  take_count(boxes);
+  if (structures_.empty()) return false;
   const auto movers = static_cast<double>(changed);
   const std::size_t best = cheapest();
   const double finding = static_cast<double>(boxes) * of_box_;
-  const auto following = [&](std::size_t structure) { return of_mover_[structure] + candidates_of_mover_; };
   break_even_ =
-      std::max(few_movers, static_cast<std::size_t>(finding / following(follows_ ? current_ : best)));
+      std::max(few_movers, static_cast<std::size_t>(finding / cost_of_mover(follows_ ? current_ : best)));
   if (update_ != Update::automatic) return update_ == Update::follow;
   // In the first frame all boxes are new, and after a failed one nothing is known.
   if (rebuild) return false;
   const bool is_best = follows_ && best == current_;
   if (changed <= few_movers && is_best) return true;
-  if (is_best) return finding > movers * following(current_);
-  const double now = follows_ ? std::min(finding, movers * following(current_)) : finding;
-  const double saving = now - movers * following(best);
+  if (is_best) return finding > movers * cost_of_mover(current_);
+  const double now = follows_ ? std::min(finding, movers * cost_of_mover(current_)) : finding;
+  const double saving = now - movers * cost_of_mover(best);
   const bool goes_on = follows_ && now < finding;
   if (saving <= 0) return goes_on;
   // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
   // soon as it would have paid: so little is lost where few and many boxes move in alternation.
   saved_ += saving;
   const double patience = best == current_ ? 1 : patience_;
-  if (saved_ < patience * static_cast<double>(boxes) * following_[best].start) return goes_on;
+  if (saved_ < patience * static_cast<double>(boxes) * structures_[best].costs.start) return goes_on;
   saved_ = 0;
   if (best != current_) use(best);
   return true;
 }
 
+/// Hysteresis: few boxes may become a quarter more before other structures are used.
+void FollowPolicy::take_count(std::size_t boxes) {
+  boxes_ = boxes;
+  const bool were_few = std::exchange(are_few_, false);
+  if (update_ != Update::automatic || structures_.size() < 2) return;
+  for (std::size_t i = 0; i < structures_.size(); ++i) {
+    const std::size_t max = structures_[i].max_boxes;
+    if (boxes > (were_few ? max + max / 4 : max)) continue;
+    are_few_ = true;
+    if (current_ == i) continue;
+    use(i);
+    settle();
+  }
+  if (were_few && !are_few_) lost();
+}
+
+double FollowPolicy::cost_of_mover(std::size_t structure) const {
+  const StructureCosts& known = structures_[structure];
+  const double alone = known.compares_all()
+                           ? known.costs.mover_alone + known.costs.further_test * static_cast<double>(boxes_)
+                           : of_mover_[structure];
+  return alone + of_shared_candidates_;
+}
+
 void FollowPolicy::found(std::size_t boxes, std::size_t pairs, const std::optional<Statistics>& statistics) {
   follows_ = false;
-  const auto a_box = [&](auto count) {
+  const auto per_box = [&](auto count) {
     return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, boxes));
   };
-  of_box_ = finding_.box + finding_.pair * a_box(pairs);
+  of_box_ = finding_.box + finding_.pair * per_box(pairs);
   if (!statistics) return;
-  const double tests = a_box(statistics->tests) - 2 * a_box(pairs);
+  const double tests = per_box(statistics->tests) - 2 * per_box(pairs);
   of_box_ += finding_.further_test * std::max(0.0, tests - usual_tests) +
-             finding_.further_reference * std::max(0.0, a_box(statistics->references) - usual_references);
+             finding_.further_reference * std::max(0.0, per_box(statistics->references) - usual_references);
 }
 
 void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>& statistics) {
@@ -90,26 +162,36 @@ void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>
   if (cheapest() == current_) saved_ = 0;
   if (!statistics) return;
   seen_movers_ += changed;
-  seen_tests_ += static_cast<double>(statistics->tests);
-  seen_hits_ += static_cast<double>(statistics->hits);
+  seen_.tests += statistics->tests;
+  seen_.hits += statistics->hits;
   if (seen_movers_ < telling_movers) return;
-  for (std::size_t i = 0; i < following_.size(); ++i)
-    of_mover_[i] += forgotten * (following_[i].mover - of_mover_[i]);
+  for (std::size_t i = 0; i < structures_.size(); ++i)
+    of_mover_[i] += forgotten * (structures_[i].costs.mover - of_mover_[i]);
   const auto movers = static_cast<double>(std::exchange(seen_movers_, 0));
-  const double tests = std::exchange(seen_tests_, 0) / movers;
-  const FollowCosts& costs = following_[current_];
+  const Statistics seen = std::exchange(seen_, {});
+  const double tests = static_cast<double>(seen.tests) / movers;
+  const double candidates = static_cast<double>(seen.hits) / movers;
+  const FollowCosts& costs = structures_[current_].costs;
   of_mover_[current_] = costs.mover_alone + costs.test * std::min(tests, usual_tests) +
                         costs.further_test * std::max(0.0, tests - usual_tests);
-  candidates_of_mover_ = cost_of_a_candidate * std::exchange(seen_hits_, 0) / movers;
+  if (shares_candidates_)
+    of_shared_candidates_ = cost_of_shared_candidate * candidates;
+  else
+    of_mover_[current_] += cost_of_candidate * std::max(0.0, candidates - usual_candidates);
 }
 
-void FollowPolicy::lost() {
+void FollowPolicy::lost() noexcept {
   follows_ = false;
   saved_ = 0;
 }
 
 std::size_t FollowPolicy::cheapest() const {
-  return static_cast<std::size_t>(std::ranges::min_element(of_mover_) - of_mover_.begin());
+  if (are_few_) return current_;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < structures_.size(); ++i) {
+    if (cost_of_mover(i) < cost_of_mover(best)) best = i;
+  }
+  return best;
 }
 
 void FollowPolicy::use(std::size_t structure) {
@@ -117,8 +199,48 @@ void FollowPolicy::use(std::size_t structure) {
   current_ = structure;
   patience_ *= 2;
   seen_movers_ = 0;
-  seen_tests_ = 0;
-  seen_hits_ = 0;
+  seen_ = {};
 }
 
-}  // namespace broadside::core
+bool EnlargePolicy::tries(std::size_t boxes, std::size_t changed) {
+  if (boxes < min_enlarged || changed < boxes / many_movers) return false;
+  if (pause_ == 0) return true;
+  --pause_;
+  return false;
+}
+
+void EnlargePolicy::started() noexcept {
+  left_share_ = 0;
+  calm_frames_ = 0;
+  lasted_ = 0;
+}
+
+bool EnlargePolicy::goes_on(const EnlargedFrame& frame) {
+  ++lasted_;
+  const auto boxes = static_cast<double>(frame.boxes);
+  const auto changed = static_cast<double>(frame.changed);
+  const auto candidates = static_cast<double>(frame.candidates);
+  // A mover has the candidates of which it is the first, and those of which it is the second.
+  double following = changed * (candidates_per_mover + candidates_per_test * 2 * candidates / boxes);
+  if (may_compare_all_) following = std::min(following, changed * boxes / compared_per_candidate);
+  const bool is_calm = following < candidates || frame.changed < frame.boxes / too_few_movers;
+  calm_frames_ = is_calm ? calm_frames_ + 1 : 0;
+  left_share_ += (static_cast<double>(frame.left) / changed - left_share_) / averaged_frames;
+  if (left_share_ <= max_left && calm_frames_ < max_calm_frames) return true;
+  give_up(lasted_ > next_pause_ ? min_pause : std::min(2 * next_pause_, max_pause));
+  return false;
+}
+
+/// A try that ends at a limit costs about as much as one that succeeds. The pause makes that less than a
+/// hundredth of the cost of the frames until the next try. It doubles with each failure in a row, because the
+/// same boxes will most likely exceed the limit again.
+void EnlargePolicy::limit_passed() noexcept {
+  give_up(std::clamp(2 * next_pause_, max_pause, max_pause_after_limit));
+}
+
+void EnlargePolicy::out_of_memory() noexcept { give_up(max_pause); }
+
+void EnlargePolicy::interrupted() noexcept { give_up(min_pause); }
+
+}  // namespace track
+}  // namespace broadside

@@ -1,4 +1,7 @@
-// FollowPolicy: whether a frame's changes are followed in a structure that stays, or all pairs found anew.
+// FollowPolicy and EnlargePolicy: which of its four ways a tracker goes in a frame.
+//
+// Both decide by counts alone, of boxes, changes, tests and pairs, so that the same history always goes the
+// same way.
 #pragma once
 
 #include <cstddef>
@@ -7,39 +10,30 @@
 #include <vector>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/searcher.hpp"
 
-namespace broadside::core {
+namespace broadside::track {
 
-/// How a tracker updates: the values of its tunable `update`.
-enum class Update { automatic, follow, rebuild };
-
-Tunable update_tunable();
+/// The value of the tunable `update`.
 Update update_of(const Settings& settings);
 
-/// The cost of following boxes in a structure, in nanoseconds of one machine: only ratios matter.
-struct FollowCosts {
-  double start;         ///< to build the structure, a box
-  double mover;         ///< to follow a box that moves, before any was followed
-  double mover_alone;   ///< to follow a box that moves, without its tests
-  double test;          ///< each of a mover's first 64 tests
-  double further_test;  ///< each further one
+/// What is known of a structure that follows boxes, as FollowerChoice states it.
+struct StructureCosts {
+  FollowCosts costs{};
+  std::size_t max_boxes = 0;
+
+  bool compares_all() const noexcept { return max_boxes > 0; }
 };
 
-/// The cost of finding all pairs anew, likewise.
-struct FindCosts {
-  double box;                     ///< a box, without its pairs, with 64 tests and 4 references
-  double further_test = 0.5;      ///< each further test of a box
-  double further_reference = 30;  ///< each further reference to a box
-  double pair = 7;
-};
-
-/// Decides by counts alone, of boxes, of changes and of tests, so that the same history always goes the same
-/// way. May choose among several structures. Cost of a frame: near the lesser of the two ways', and never
-/// much more than finding all pairs anew, since a structure whose movers make too many tests is not followed.
+/// Whether a frame's changes are followed, and in which structure, or all pairs found anew. Cost of a frame:
+/// near the lesser of the two ways', and never much more than finding all pairs anew, since a structure whose
+/// movers make too many tests is not followed.
 class FollowPolicy {
  public:
-  FollowPolicy(Update update, const FindCosts& finding, std::vector<FollowCosts> following);
+  /// `shares_candidates`: the same pairs have to be looked at again in every structure, as those of boxes of
+  /// doubles do.
+  FollowPolicy(Update update, const FindCosts& finding, std::vector<StructureCosts> structures,
+               bool shares_candidates = false);
 
   /// Whether the next frame is to be followed, in the structure of number current(). `rebuild` says that
   /// nothing of the frame before is known.
@@ -52,7 +46,7 @@ class FollowPolicy {
   void followed(std::size_t changed, const std::optional<Statistics>& statistics);
 
   /// Says that no structure has the boxes of the last frame.
-  void lost();
+  void lost() noexcept;
 
   /// The structure in use, and the one that costs least by what is known. use() gives up one for another.
   std::size_t current() const noexcept { return current_; }
@@ -67,24 +61,71 @@ class FollowPolicy {
   /// Whether the structure has the boxes of the last frame.
   bool is_following() const noexcept { return follows_; }
 
+  /// Whether the boxes of the last frame were so few that only the structure that compares all is used.
+  bool are_few() const noexcept { return are_few_; }
+
   /// Up to how many changed boxes following cost less, in the last frame.
   std::size_t break_even() const noexcept { return break_even_; }
 
  private:
+  double cost_of_mover(std::size_t structure) const;
+  void take_count(std::size_t boxes);
+
   Update update_;
   FindCosts finding_;
-  std::vector<FollowCosts> following_;
-  std::vector<double> of_mover_;    // by structure: the cost of a mover when it was last used, or expected
-  double candidates_of_mover_ = 0;  // what a mover's candidates cost besides, in any structure
-  double of_box_;                   // the cost of finding all pairs anew, a box
+  std::vector<StructureCosts> structures_;
+  bool shares_candidates_;
+  std::vector<double> of_mover_;     // by structure: the cost of a mover when it was last used, or expected
+  double of_shared_candidates_ = 0;  // what a mover's candidates cost besides, in any structure
+  double of_box_;                    // the cost of finding all pairs anew, a box
+  std::size_t boxes_ = 0;            // of the last frame
+  bool are_few_ = false;
   bool follows_ = false;
   std::size_t current_ = 0;
   double saved_ = 0;     // what following would have saved since it was last done, or another structure
   double patience_ = 1;  // hysteresis: grows with each change of structures, so that they do not take turns
   std::uint64_t seen_movers_ = 0;  // since the structure was last weighed
-  double seen_tests_ = 0;
-  double seen_hits_ = 0;
+  Statistics seen_{};              // likewise
   std::size_t break_even_ = 0;
 };
 
-}  // namespace broadside::core
+/// What a frame of enlarged boxes took.
+struct EnlargedFrame {
+  std::size_t boxes = 0;
+  std::size_t changed = 0;     ///< boxes
+  std::size_t left = 0;        ///< of them, those that left their enlarged ones
+  std::size_t candidates = 0;  ///< pairs of enlarged boxes
+};
+
+/// Whether boxes are enlarged: while many move and hardly any moves far.
+class EnlargePolicy {
+ public:
+  /// `may_compare_all`: a structure that compares all boxes is at hand.
+  explicit EnlargePolicy(bool may_compare_all) : may_compare_all_(may_compare_all) {}
+
+  /// Whether to enlarge the boxes after a frame that was handled otherwise, if these moved little enough.
+  bool tries(std::size_t boxes, std::size_t changed);
+
+  void started() noexcept;
+
+  /// Whether boxes stay enlarged. If not, the next try is not soon.
+  bool goes_on(const EnlargedFrame& frame);
+
+  /// Says that there would be too many candidates, that there was no memory for them, or that the search for
+  /// them was ended.
+  void limit_passed() noexcept;
+  void out_of_memory() noexcept;
+  void interrupted() noexcept;
+
+ private:
+  void give_up(std::size_t pause) noexcept { pause_ = next_pause_ = pause; }
+
+  bool may_compare_all_;
+  double left_share_ = 0;        // of the changed boxes, on average
+  std::size_t calm_frames_ = 0;  // in a row, in which following would have cost less
+  std::size_t pause_ = 1;        // frames with many movers until the next try
+  std::size_t next_pause_ = 0;   // hysteresis: grows with each try that did not last
+  std::size_t lasted_ = 0;       // frames of this try
+};
+
+}  // namespace broadside::track

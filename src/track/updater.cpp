@@ -1,233 +1,126 @@
-// AdaptiveTracker.
-//
-// When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
-// as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
-// memory", VLDB 2013). A frame that finds all pairs anew needs those of the frame before, to tell which
-// ended. They are not kept up to date while boxes are followed, which would cost more than it saves: the
-// first frame that finds all pairs anew finds those of the frame before as well.
-#include "interface/adaptive_tracker.hpp"
+// Updater.
+#include "track/updater.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
+#include <new>
 #include <utility>
 
-#include "broadside/sinks.hpp"
+#include "core/number_text.hpp"
+#include "track/candidate_limit.hpp"
 
-#include "core/grow.hpp"
-#include "core/lean.hpp"
-#include "core/sample.hpp"
-#include "interface/candidate_limit.hpp"
-#include "interface/pair_difference.hpp"
-#include "interface/yielding.hpp"
-
-namespace broadside::core {
+namespace broadside::track {
 namespace {
 
-/// Boxes that are followed at first to see what a mover costs.
-constexpr std::size_t tried_movers = 64;
-
-/// Up to this many boxes, comparing each mover with all others costs less than keeping cells. Hysteresis:
-/// leave a bit later than you enter, so that a count near the limit does not flip it each frame.
-constexpr std::size_t boxes_for_brute_force = 320;
-constexpr std::size_t most_boxes_for_brute_force = 400;
-
-template <int D, typename Real>
-std::vector<FollowCosts> costs_of(const std::vector<Follower<D, Real>>& followers) {
-  std::vector<FollowCosts> costs;
-  for (const Follower<D, Real>& follower : followers) costs.push_back(follower.costs);
-  return costs;
+template <int D>
+bool may_compare_all(const TrackerPlan<D>& plan) {
+  return std::ranges::any_of(plan.structures, [](const auto& one) { return one.costs.compares_all(); });
 }
 
 }  // namespace
 
 template <int D, typename Real>
-AdaptiveTracker<D, Real>::AdaptiveTracker(Update update, std::unique_ptr<PairFinder<D, Real>> finder,
-                                          const FindCosts& finding, std::vector<Follower<D, Real>> followers,
-                                          std::unique_ptr<PairTracker<D, Real>> for_few)
-    : finder_(std::move(finder)),
-      followers_(std::move(followers)),
-      for_few_(std::move(for_few)),
-      policy_(update, finding, costs_of(followers_)) {}
+Updater<D, Real>::Updater(TrackerPlan<D> plan)
+    : may_enlarge_(plan.may_enlarge()), policy_(may_compare_all(plan)), pairs_(std::move(plan)) {}
 
 template <int D, typename Real>
-void AdaptiveTracker<D, Real>::update_valid(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  changed_ = change.changed.size();
-  const bool has_few = std::exchange(were_few_, are_few(change.now.size()));
-  if (were_few_) {
-    Change<D, Real> seen = change;
-    seen.rebuild |= !has_few;
-    policy_.lost();
-    has_pairs_ = false;
-    this->update_with(*for_few_, seen, begun, ended);
+std::optional<Statistics> Updater<D, Real>::update(const Change<D, Real>& change, PairSink& begun,
+                                                   PairSink& ended) {
+  was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
+  if (was_enlarged_) return statistics_;
+  update_exactly(change, begun, ended);
+  if (may_enlarge_ && !change.rebuild && !pairs_.has_compared_all() &&
+      policy_.tries(change.now.size(), change.changed.size()))
+    enlarge(change);
+  return statistics_;
+}
+
+template <int D, typename Real>
+void Updater<D, Real>::update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  if (boxes_ == Boxes::exact) {
+    statistics_ = pairs_.update(change, begun, ended);
     return;
   }
-  was_followed_ = policy_.follows(change.now.size(), changed_, change.rebuild);
-  if (was_followed_) {
-    follow(change, begun, ended);
-  } else {
-    rebuild(change, begun, ended);
-    // After a first frame come others, most often with few changes: what follows them is made ready with it,
-    // so that the second frame does not take longer than those after it.
-    if (change.rebuild && policy_.update() == Update::automatic) start_following(change.now);
-  }
+  candidates_.release();
+  pairs_.forget();
+  pairs_.limit_pairs(no_limit);
+  boxes_ = Boxes::exact;
+  Change<D, Real> exact = change;
+  exact.rebuild = true;
+  statistics_ = pairs_.update(exact, begun, ended);
 }
 
-/// The structure in use. One that has not started keeps no memory.
+/// Enlarges the boxes after a frame that was handled otherwise, if they moved little enough.
 template <int D, typename Real>
-PairTracker<D, Real>& AdaptiveTracker<D, Real>::follower() {
-  if (!follower_ || follower_number_ != policy_.current()) {
-    follower_ = followers_[policy_.current()].make();
-    follower_number_ = policy_.current();
-  }
-  return *follower_;
-}
-
-/// Starts the structure that costs least, by trying one after the other.
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::start_following(std::span<const Box<D, Real>> boxes) {
-  const std::optional<Statistics> statistics = this->statistics();
-  std::vector<std::uint8_t> was_tried(followers_.size());
-  do {
-    // The last one may be one that was tried, and turned out to be the best.
-    policy_.use(policy_.cheapest());
-    try_out(boxes);
-  } while (std::exchange(was_tried[policy_.current()], std::uint8_t{1}) == 0 &&
-           policy_.cheapest() != policy_.current());
-  policy_.settle();
-  this->count(statistics);
-}
-
-/// Starts the structure without a few boxes, which it then takes in: that tells what a mover costs.
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::try_out(std::span<const Box<D, Real>> boxes) {
-  std::vector<Box<D, Real>> before(boxes.begin(), boxes.end());
-  std::vector<std::uint8_t> flags(boxes.size());
-  std::vector<BoxId> changed;
-  for (std::size_t i = 0; i < std::min(tried_movers, boxes.size()); ++i) {
-    const std::size_t place = sampled_place(i, boxes.size());
-    if (!is_present(boxes[place]) || std::exchange(flags[place], 1) != 0) continue;
-    before[place] = absent_box<D, Real>();
-    changed.push_back(BoxId(place));
-  }
-  PairCounter none;
-  const std::vector<std::uint8_t> no_flags(boxes.size());
-  this->update_with(follower(), {before, before, {}, no_flags, true}, none, none);
-  policy_.followed(0, this->statistics());
-  this->update_with(follower(), {before, boxes, changed, flags, false}, none, none);
-  policy_.followed(changed.size(), this->statistics());
-}
-
-template <int D, typename Real>
-bool AdaptiveTracker<D, Real>::are_few(std::size_t boxes) const {
-  return for_few_ && policy_.update() == Update::automatic &&
-         boxes <= (were_few_ ? most_boxes_for_brute_force : boxes_for_brute_force);
-}
-
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::rebuild(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  const auto find_into = [this](std::vector<Pair>& pairs, std::span<const Box<D, Real>> boxes,
-                                std::span<const Filter> filters) {
-    pairs.clear();
-    CandidateCollector<D, Real> collector(pairs, {most_pairs_});
-    if (is_limited())
-      find_within_limits(boxes, filters, collector);
-    else
-      finder_->find(boxes, collector);
-  };
-  if (change.rebuild || !has_pairs_) find_into(pairs_, change.before, change.filters_before);
-  find_into(found_, change.now, change.filters_now);
-  report_differences<D, Real>(change, found_, pairs_, this->workers(), parallel_, begun, ended);
-  std::swap(pairs_, found_);
-  has_pairs_ = true;
-  this->count(finder_->statistics());
-  policy_.found(change.now.size(), pairs_.size(), this->statistics());
-}
-
-/// The number of tests is limited only if the finder can give up. If an algorithm that chooses gives up,
-/// another one continues.
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::find_within_limits(std::span<const Box<D, Real>> boxes,
-                                                  std::span<const Filter> filters, PairSink& pairs) {
-  this->count(std::nullopt);
-  Yielding<D>* const yielding = finder_->yielding();
-  if (yielding != nullptr) yielding->let_yield(true);
-  const auto end = [&] {
-    if (yielding != nullptr) yielding->let_yield(false);
-    this->count(finder_->statistics());
+void Updater<D, Real>::enlarge(const Change<D, Real>& change) {
+  const std::optional<core::Margins<D, Real>> margins = core::margins_for(change);
+  if (!margins) return;
+  Statistics statistics = statistics_.value_or(Statistics{});
+  bool changes_pairs = false;
+  const auto give_up = [&] {
+    if (changes_pairs) boxes_ = Boxes::ending;
+    stop_enlarging();
   };
   try {
-    finder_->find(boxes, pairs, {.filters = filters});
-  } catch (...) {
-    end();
+    statistics.tests += candidates_.start(change, *margins, pairs_, changes_pairs);
+    boxes_ = Boxes::enlarged;
+    policy_.started();
+  } catch (const LimitPassed&) {
+    statistics.tests += candidates_.candidate_count();  // those that are known
+    policy_.limit_passed();
+    give_up();
+  } catch (const std::bad_alloc&) {
+    // The frame itself is whole.
+    policy_.out_of_memory();
+    give_up();
+  } catch (...) {  // thrown by a checkpoint or an executor
+    policy_.interrupted();
+    give_up();
     throw;
   }
-  end();
-  if (yielding != nullptr && yielding->has_yielded()) throw LimitPassed();
+  statistics_ = statistics;
 }
 
+/// Returns false if there would be too many candidates. It has then reported no event of this frame, and the
+/// enlarged boxes are gone.
 template <int D, typename Real>
-void AdaptiveTracker<D, Real>::start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs) {
-  forget();
-  were_few_ = false;
-  policy_.found(boxes.size(), pairs, finder_->statistics());
-  start_following(boxes);
-}
-
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::forget() noexcept {
-  give_back(pairs_, found_);
-  has_pairs_ = false;
-  follower_.reset();
-  was_followed_ = false;
-  policy_.lost();
-}
-
-template <int D, typename Real>
-void AdaptiveTracker<D, Real>::follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-  Change<D, Real> followed = change;
-  followed.rebuild |= !policy_.is_following();
-  this->update_with(follower(), followed, begun, ended);
-  has_pairs_ = false;
-  policy_.followed(changed_, this->statistics());
-}
-
-template <int D, typename Real>
-std::string AdaptiveTracker<D, Real>::explanation() const {
-  if constexpr (core::is_lean) return {};
-  if (were_few_) return "brute_force, since so few boxes need no cells; " + for_few_->explanation();
-  const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
-  const std::string break_even = std::to_string(policy_.break_even());
-  const bool is_asked_for = policy_.update() != Update::automatic;
-  if (was_followed_) {
-    return "followed by " + std::string(followers_[policy_.current()].name) + ", since " + changed +
-           (is_asked_for ? ", as asked for"
-                         : ", and up to " + break_even + " that costs less than finding all pairs anew");
+bool Updater<D, Real>::update_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+  try {
+    statistics_ = candidates_.update(change, pairs_, begun, ended);
+  } catch (const LimitPassed&) {
+    policy_.limit_passed();
+    stop_enlarging();
+    return false;
   }
-  const std::string by = finder_->explanation();
-  std::string found = "all pairs found anew" + (by.empty() ? "" : " by " + by);
-  if (is_asked_for) return found;
-  return found + "; " + changed + ", and it pays to follow boxes up to " + break_even;
+  if (change.changed.empty()) return true;
+  // Fewer candidates are allowed once pairs have ended.
+  const bool exceeds_limit = candidates_.exceeds_limit();
+  if (exceeds_limit) policy_.limit_passed();
+  if (exceeds_limit || !policy_.goes_on(candidates_.last())) stop_enlarging();
+  return true;
 }
 
-/// A follower that was only made ready for the next frame has seen no filters, so its index cannot be used
-/// yet.
+/// From the next frame on, pairs are those of the boxes themselves.
 template <int D, typename Real>
-const BoxIndex<D, Real>* AdaptiveTracker<D, Real>::algorithm_index() const noexcept {
-  return were_few_ || !was_followed_ ? nullptr : this->index_of(*follower_);
+void Updater<D, Real>::stop_enlarging() noexcept {
+  if (boxes_ == Boxes::enlarged) boxes_ = Boxes::ending;
+  candidates_.release();
+  if (boxes_ == Boxes::ending) pairs_.forget();
 }
 
 template <int D, typename Real>
-std::size_t AdaptiveTracker<D, Real>::algorithm_bytes() const noexcept {
-  if constexpr (is_lean) return 0;
-  std::size_t bytes = (pairs_.capacity() + found_.capacity()) * sizeof(Pair);
-  if (for_few_) bytes += this->kept_bytes(*for_few_);
-  if (follower_) bytes += this->kept_bytes(*follower_);
-  return bytes;
+std::string Updater<D, Real>::explanation() const {
+  if (!was_enlarged_) return pairs_.explanation();
+  const EnlargedFrame& frame = candidates_.last();
+  return std::to_string(frame.candidates) + " pairs of boxes enlarged by " +
+         core::text_of(std::round(1000 * static_cast<double>(candidates_.margins().relative)) / 10) +
+         " % of their shortest side were tested, since only " + std::to_string(frame.left) + " of the " +
+         std::to_string(frame.changed) + " boxes that changed left their enlarged ones";
 }
 
-template class AdaptiveTracker<2, float>;
-template class AdaptiveTracker<3, float>;
-template class AdaptiveTracker<2, double>;
-template class AdaptiveTracker<3, double>;
+template class Updater<2, float>;
+template class Updater<3, float>;
+template class Updater<2, double>;
+template class Updater<3, double>;
 
-}  // namespace broadside::core
+}  // namespace broadside::track

@@ -68,7 +68,7 @@ std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
 template <int D>
 detail::Vector<FollowerChoice<D>> followers() {
   return {{"brute_force", [](const Settings&) { return make_brute_force_follower<D>(); },
-           core::brute_force_following}};
+           core::brute_force_following, 1}};
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+// FindAnew: finds all pairs of a frame and reports how they differ from those of the frame before.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadside/filter.hpp"
+#include "broadside/follower.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/searcher.hpp"
+
+#include "core/parallel.hpp"
+#include "find/search.hpp"
+
+namespace broadside::track {
+
+inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+
+/// Keeps the pairs of the last frame. They are not kept up to date while frames are handled otherwise, which
+/// would cost more than it saves: the next frame then finds those of the frame before as well.
+///
+/// A pair that filters refuse is neither kept nor counted.
+template <int D, typename Real>
+class FindAnew {
+ public:
+  FindAnew(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles)
+      : search_(std::move(searcher), tests_doubles) {}
+
+  /// Writes the events of a change. Throws LimitPassed where `max_pairs` is not no_limit and there are more
+  /// pairs, or a search makes far more tests than the numbers of boxes and pairs justify.
+  std::optional<Statistics> update(const Change<D, Real>& change, std::size_t max_pairs, PairSink& begun,
+                                   PairSink& ended);
+
+  /// Writes all pairs. Throws LimitPassed where the search makes far more tests than justified.
+  std::optional<Statistics> find_within_limits(std::span<const Box<D, Real>> boxes,
+                                               std::span<const Filter> filters, const Workers& workers,
+                                               PairSink& pairs);
+
+  /// The number of pairs after an update().
+  std::size_t pair_count() const noexcept { return pairs_.size(); }
+
+  /// Says that a frame is handled otherwise; forget() also releases the memory.
+  void skip() noexcept { has_pairs_ = false; }
+  void forget() noexcept;
+
+  std::string explanation() const { return search_.explanation(); }
+  std::size_t bytes() const noexcept { return (pairs_.capacity() + found_.capacity()) * sizeof(Pair); }
+
+ private:
+  std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters,
+                                 const Workers& workers, std::size_t max_pairs, std::vector<Pair>& pairs);
+
+  find::Search<D, Real> search_;
+  std::vector<Pair> pairs_;  // those of the last frame, if has_pairs_
+  std::vector<Pair> found_;
+  core::Parallel parallel_;
+  bool has_pairs_ = false;
+};
+
+}  // namespace broadside::track

@@ -1,0 +1,192 @@
+// FollowOrFind.
+#include "track/follow_or_find.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "broadside/sinks.hpp"
+
+#include "core/lean.hpp"
+#include "core/sample.hpp"
+
+namespace broadside::track {
+namespace {
+
+/// Boxes that are followed at first to see what a mover costs.
+constexpr std::size_t tried_movers = 64;
+
+template <int D>
+std::vector<StructureCosts> costs_of(const std::vector<Structure<D>>& structures) {
+  std::vector<StructureCosts> costs;
+  for (const Structure<D>& structure : structures) costs.push_back(structure.costs);
+  return costs;
+}
+
+}  // namespace
+
+template <int D>
+bool TrackerPlan<D>::may_enlarge() const noexcept {
+  const auto compares_all = [](const Structure<D>& structure) { return structure.costs.compares_all(); };
+  return !core::is_lean && update == Update::automatic && !std::ranges::all_of(structures, compares_all);
+}
+
+template <int D, typename Real>
+FollowOrFind<D, Real>::FollowOrFind(TrackerPlan<D> plan)
+    : structures_(std::move(plan.structures)),
+      explains_(plan.explains),
+      policy_(plan.update, plan.find_costs, costs_of(structures_), !std::is_same_v<Real, float>) {
+  if (plan.follower) follower_ = followed(std::move(plan.follower));
+  if (plan.searcher) find_anew_.emplace(std::move(plan.searcher), plan.tests_doubles);
+}
+
+template <int D, typename Real>
+std::optional<Statistics> FollowOrFind<D, Real>::update(const Change<D, Real>& change, PairSink& begun,
+                                                        PairSink& ended) {
+  changed_ = change.changed.size();
+  was_followed_ = policy_.follows(change.now.size(), changed_, change.rebuild);
+  if (was_followed_) return follow(change, begun, ended);
+  const std::optional<Statistics> statistics = find_anew_->update(change, max_pairs_, begun, ended);
+  policy_.found(change.now.size(), find_anew_->pair_count(), statistics);
+  // After a first frame come others, most often with few changes: what follows them is made ready with it,
+  // so that the second frame does not take longer than those after it.
+  if (change.rebuild && policy_.update() == Update::automatic && !structures_.empty())
+    start_following(change.now, change.workers);
+  return statistics;
+}
+
+template <int D, typename Real>
+std::optional<Statistics> FollowOrFind<D, Real>::follow(const Change<D, Real>& change, PairSink& begun,
+                                                        PairSink& ended) {
+  Change<D, Real> followed = change;
+  followed.rebuild |= !policy_.is_following();
+  const std::optional<Statistics> statistics = follower().follow(followed, begun, ended);
+  if (find_anew_) find_anew_->skip();
+  policy_.followed(changed_, statistics);
+  return statistics;
+}
+
+/// The structure in use. One that has not started keeps no memory.
+template <int D, typename Real>
+auto FollowOrFind<D, Real>::follower() -> Followed& {
+  if (!follower_ || follower_number_ != policy_.current()) {
+    follower_ = followed(structures_[policy_.current()].make());
+    follower_number_ = policy_.current();
+  }
+  return *follower_;
+}
+
+template <int D, typename Real>
+auto FollowOrFind<D, Real>::followed(std::unique_ptr<Follower<D>> follower) -> std::unique_ptr<Followed> {
+  if (!follower) throw std::invalid_argument("Tracker was given a null follower; expected a follower");
+  if constexpr (std::is_same_v<Real, float>)
+    return follower;
+  else
+    return std::make_unique<DoubleFollower<D>>(std::move(follower));
+}
+
+/// Starts the structure that costs least, by trying one after the other.
+template <int D, typename Real>
+void FollowOrFind<D, Real>::start_following(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+  std::vector<std::uint8_t> was_tried(structures_.size());
+  do {
+    // The last one may be one that was tried, and turned out to be the best.
+    policy_.use(policy_.cheapest());
+    try_out(boxes, workers);
+  } while (std::exchange(was_tried[policy_.current()], std::uint8_t{1}) == 0 &&
+           policy_.cheapest() != policy_.current());
+  policy_.settle();
+}
+
+/// Starts the structure without a few boxes, which it then takes in: that tells what a mover costs.
+template <int D, typename Real>
+void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+  std::vector<Box<D, Real>> before(boxes.begin(), boxes.end());
+  std::vector<std::uint8_t> flags(boxes.size());
+  std::vector<BoxId> changed;
+  for (std::size_t i = 0; i < std::min(tried_movers, boxes.size()); ++i) {
+    const std::size_t place = core::sampled_place(i, boxes.size());
+    if (!is_present(boxes[place]) || std::exchange(flags[place], 1) != 0) continue;
+    before[place] = absent_box<D, Real>();
+    changed.push_back(BoxId(place));
+  }
+  PairCounter none;
+  const std::vector<std::uint8_t> no_flags(boxes.size());
+  const Change<D, Real> start{
+      .before = before, .now = before, .changed = {}, .flags = no_flags, .rebuild = true, .workers = workers};
+  policy_.followed(0, follower().follow(start, none, none));
+  const Change<D, Real> taken{
+      .before = before, .now = boxes, .changed = changed, .flags = flags, .workers = workers};
+  policy_.followed(changed.size(), follower().follow(taken, none, none));
+}
+
+template <int D, typename Real>
+std::optional<Statistics> FollowOrFind<D, Real>::find_within_limits(std::span<const Box<D, Real>> boxes,
+                                                                    std::span<const Filter> filters,
+                                                                    const Workers& workers, PairSink& pairs) {
+  return find_anew_->find_within_limits(boxes, filters, workers, pairs);
+}
+
+template <int D, typename Real>
+void FollowOrFind<D, Real>::start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,
+                                     const std::optional<Statistics>& statistics, const Workers& workers) {
+  forget();
+  policy_.found(boxes.size(), pairs, statistics);
+  start_following(boxes, workers);
+}
+
+template <int D, typename Real>
+void FollowOrFind<D, Real>::forget() noexcept {
+  if (find_anew_) find_anew_->forget();
+  follower_.reset();
+  was_followed_ = false;
+  policy_.lost();
+}
+
+template <int D, typename Real>
+bool FollowOrFind<D, Real>::has_compared_all() const noexcept {
+  return was_followed_ && structures_[policy_.current()].costs.compares_all();
+}
+
+template <int D, typename Real>
+std::string FollowOrFind<D, Real>::explanation() const {
+  if constexpr (core::is_lean) return {};
+  if (!explains_) return find_anew_ ? find_anew_->explanation() : std::string();
+  std::string text;
+  if (policy_.are_few()) text = structures_[policy_.current()].name + ", since so few boxes need no cells; ";
+  const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
+  const std::string break_even = std::to_string(policy_.break_even());
+  const bool is_asked_for = policy_.update() != Update::automatic;
+  if (was_followed_) {
+    return text + "followed by " + structures_[policy_.current()].name + ", since " + changed +
+           (is_asked_for ? ", as asked for"
+                         : ", and up to " + break_even + " that costs less than finding all pairs anew");
+  }
+  const std::string by = find_anew_ ? find_anew_->explanation() : std::string();
+  text += "all pairs found anew" + (by.empty() ? "" : " by " + by);
+  if (is_asked_for) return text;
+  return text + "; " + changed + ", and it pays to follow boxes up to " + break_even;
+}
+
+template <int D, typename Real>
+const BoxIndex<D, Real>* FollowOrFind<D, Real>::box_index() const noexcept {
+  if constexpr (std::is_same_v<Real, float>)
+    return was_followed_ && follower_ ? follower_->box_index() : nullptr;
+  else
+    return nullptr;
+}
+
+template <int D, typename Real>
+std::size_t FollowOrFind<D, Real>::bytes() const noexcept {
+  return (find_anew_ ? find_anew_->bytes() : 0) + (follower_ ? follower_->bytes() : 0);
+}
+
+template struct TrackerPlan<2>;
+template struct TrackerPlan<3>;
+template class FollowOrFind<2, float>;
+template class FollowOrFind<3, float>;
+template class FollowOrFind<2, double>;
+template class FollowOrFind<3, double>;
+
+}  // namespace broadside::track

@@ -1,0 +1,109 @@
+// FollowOrFind: follows what changed in a structure that stays, or finds all pairs anew, whichever costs less
+// in this frame.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/follower.hpp"
+
+#include "track/double_follower.hpp"
+#include "track/find_anew.hpp"
+#include "track/update_policy.hpp"
+
+namespace broadside::track {
+
+/// A structure that may follow boxes.
+template <int D>
+struct Structure {
+  std::string name;
+  std::function<std::unique_ptr<Follower<D>>()> make;
+  StructureCosts costs{};
+};
+
+/// What a tracker brings its pairs up to date by.
+template <int D>
+struct TrackerPlan {
+  Update update = Update::automatic;
+  std::vector<Structure<D>> structures{};   ///< may be empty
+  std::unique_ptr<Follower<D>> follower{};  ///< of the first structure, if it is made already
+  std::unique_ptr<Searcher<D>> searcher{};  ///< may be null where `update` is `follow`
+  bool tests_doubles = false;               ///< whether the searcher does
+  FindCosts find_costs{};
+  bool explains = true;  ///< whether there is more than one way
+
+  /// Whether boxes may be enlarged: where structures other than one that compares all are followed by choice.
+  bool may_enlarge() const noexcept;
+};
+
+/// Three of a tracker's ways: a structure that compares all boxes, one that follows them, and finding anew.
+///
+/// When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
+/// as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
+/// memory", VLDB 2013). One structure is kept at a time; where there are several, another takes over when the
+/// first makes many tests.
+template <int D, typename Real>
+class FollowOrFind {
+ public:
+  explicit FollowOrFind(TrackerPlan<D> plan);
+
+  /// Writes the events of a change. One may be written more than once.
+  std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+
+  /// Finds all pairs that the filters accept. Throws LimitPassed if that takes far more tests than the
+  /// numbers of boxes and pairs justify, and throws what the sink throws.
+  std::optional<Statistics> find_within_limits(std::span<const Box<D, Real>> boxes,
+                                               std::span<const Filter> filters, const Workers& workers,
+                                               PairSink& pairs);
+
+  /// To be called after find_within_limits(), with the number of pairs it found and what it did: prepares to
+  /// follow these boxes from the next update on.
+  void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,
+                const std::optional<Statistics>& statistics, const Workers& workers);
+
+  /// From now on, an update that finds all pairs anew keeps at most `max` pairs. If it finds more, or makes
+  /// too many tests (see above), it throws LimitPassed, and the next update must be a rebuild.
+  void limit_pairs(std::size_t max) noexcept { max_pairs_ = max; }
+
+  /// Releases the memory for the last frame. The next update must be a rebuild.
+  void forget() noexcept;
+
+  /// Whether the last update compared all boxes.
+  bool has_compared_all() const noexcept;
+
+  std::string explanation() const;
+
+  /// The index of the structure that followed the last frame. One that was only made ready for the next frame
+  /// has seen no filters, so its index cannot be used yet.
+  const BoxIndex<D, Real>* box_index() const noexcept;
+
+  std::size_t bytes() const noexcept;
+
+ private:
+  using Followed = std::conditional_t<std::is_same_v<Real, float>, Follower<D>, DoubleFollower<D>>;
+
+  std::optional<Statistics> follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void start_following(std::span<const Box<D, Real>> boxes, const Workers& workers);
+  void try_out(std::span<const Box<D, Real>> boxes, const Workers& workers);
+  Followed& follower();
+  static std::unique_ptr<Followed> followed(std::unique_ptr<Follower<D>> follower);
+
+  std::vector<Structure<D>> structures_;
+  bool explains_;
+  FollowPolicy policy_;
+  std::unique_ptr<Followed> follower_;  // null: none was needed yet
+  std::size_t follower_number_ = 0;
+  std::optional<FindAnew<D, Real>> find_anew_;  // none where all frames are followed
+  std::size_t max_pairs_ = no_limit;
+  std::size_t changed_ = 0;    // of the last update
+  bool was_followed_ = false;  // whether the last frame was
+};
+
+}  // namespace broadside::track
