@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -88,9 +89,26 @@ class MortonCurve {
 
 /// Up to 32 bits of code are sorted as such; more, as 64.
 template <int D, typename Key>
-class KarrasLbvh final : public PairFinder<D> {
+class KarrasLbvh final : public Searcher<D> {
  public:
   explicit KarrasLbvh(int axis_bits) : axis_bits_(axis_bits) {}
+
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
+    const MortonCurve<D> curve(boxes, axis_bits_);
+    const std::size_t left = input.left_count;
+    sort(curve, boxes, left, boxes.size());
+    const std::size_t leaves = codes_.size();
+    if (leaves > 1) build();
+    Checkpoint checkpoint(input.workers.checkpoint);
+    if (left > 0) {
+      if (leaves > 0) search_from_left(curve, boxes.first(left), checkpoint, pairs);
+    } else {
+      for (std::size_t i = 0; i + 1 < leaves; ++i)
+        checkpoint.count(search(leaf_boxes_[i], ids_[i], i + 1, pairs));
+    }
+    return std::nullopt;
+  }
 
  private:
   /// An internal node. A child is an internal node's place, or a leaf's with `leaf_bit`.
@@ -105,21 +123,6 @@ class KarrasLbvh final : public PairFinder<D> {
   static constexpr std::uint32_t leaf_bit = 0x80000000U;
   // Codes have up to 64 bits and places 32: each level of the tree shares at least one bit more.
   static constexpr std::size_t most_levels = 96;
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    const MortonCurve<D> curve(boxes, axis_bits_);
-    const std::size_t left = this->left_count();
-    sort(curve, boxes, left, boxes.size());
-    const std::size_t leaves = codes_.size();
-    if (leaves > 1) build();
-    if (left > 0) {
-      if (leaves > 0) search_from_left(curve, boxes.first(left), pairs);
-      return;
-    }
-    Checkpoint checkpoint(this->workers().checkpoint);
-    for (std::size_t i = 0; i + 1 < leaves; ++i)
-      checkpoint.count(search(leaf_boxes_[i], ids_[i], i + 1, pairs));
-  }
 
   /// The leaves: `boxes` from `begin` to `end` in the order of their codes.
   void sort(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, std::size_t begin, std::size_t end) {
@@ -238,11 +241,11 @@ class KarrasLbvh final : public PairFinder<D> {
     }
   }
 
-  void search_from_left(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, PairSink& pairs) {
+  void search_from_left(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, Checkpoint& checkpoint,
+                        PairSink& pairs) {
     const auto entries = left_sorter_.entries(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       entries[i] = {static_cast<Key>(curve.code(boxes[i])), static_cast<std::uint32_t>(i)};
-    Checkpoint checkpoint(this->workers().checkpoint);
     for (const auto& entry : left_sorter_.sort()) {
       const Box<D>& box = boxes[entry.place];
       if (codes_.size() > 1)
@@ -263,7 +266,7 @@ class KarrasLbvh final : public PairFinder<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make(const Settings& settings) {
   if (settings.text("code") == "64") return std::make_unique<KarrasLbvh<D, std::uint64_t>>(64 / D);
   return std::make_unique<KarrasLbvh<D, std::uint32_t>>(32 / D);
 }
@@ -281,8 +284,8 @@ Algorithm karras_lbvh() {
                     .standard = "32",
                     .type = Tunable::Type::choice,
                     .choices = {"32", "64"}}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
       .most_boxes = (std::size_t{1} << 31) - 1,
   };
 }

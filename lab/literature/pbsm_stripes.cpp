@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,17 +63,15 @@ struct Reference {
 };
 
 template <int D>
-class PbsmStripes final : public PairFinder<D> {
+class PbsmStripes final : public Searcher<D> {
  public:
   /// `width` is a stripe's, in mean extents.
   explicit PbsmStripes(double width) : width_(width) {}
 
- private:
-  using Run = std::span<const Reference<D>>;
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    if (boxes.empty()) return;
-    const std::size_t left = this->left_count();
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
+    if (boxes.empty()) return std::nullopt;
+    const std::size_t left = input.left_count;
     for (int axis = 0; axis < D; ++axis) extents_[axis] = extent_of(boxes, axis);
     choose_axes(boxes, left);
     const Extent& extent = extents_[partition_axis_];
@@ -82,7 +81,7 @@ class PbsmStripes final : public PairFinder<D> {
     const auto most = static_cast<double>(boxes.size());
     stripes_ = extent.cut(finite ? static_cast<std::size_t>(std::min(stripes, most)) : 1);
 
-    Checkpoint checkpoint(this->workers().checkpoint);
+    Checkpoint checkpoint(input.workers.checkpoint);
     if (left == 0) {
       partition(boxes, 0, boxes.size(), left_);
       for (std::size_t stripe = 0; stripe < stripes_.cells; ++stripe)
@@ -93,7 +92,11 @@ class PbsmStripes final : public PairFinder<D> {
       for (std::size_t stripe = 0; stripe < stripes_.cells; ++stripe)
         join(left_.run(stripe), right_.run(stripe), checkpoint, pairs);
     }
+    return std::nullopt;
   }
+
+ private:
+  using Run = std::span<const Reference<D>>;
 
   static Extent extent_of(std::span<const Box<D>> boxes, int axis) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -240,7 +243,7 @@ class PbsmStripes final : public PairFinder<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make(const Settings& settings) {
   return std::make_unique<PbsmStripes<D>>(settings.number("width"));
 }
 
@@ -258,8 +261,8 @@ Algorithm pbsm_stripes() {
                     .type = Tunable::Type::number,
                     .least = 0.5,
                     .most = 1e9}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
   };
 }
 

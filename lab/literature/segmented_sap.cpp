@@ -6,7 +6,7 @@
 // a region's boxes come or go in one frame, they do so as a batch: lists are merged or thinned in one pass,
 // and one sweep finds the pairs in which they are.
 //
-// Where this differs: pairs found in several regions are sorted out by the tracker's interface, which takes
+// Where this differs: pairs found in several regions are sorted out by the Tracker, which takes
 // an event twice, and in a search from nothing by the region of the greater minima, where the paper counts
 // them in a table. A search from nothing, which is one batch into empty lists, sorts the one axis that it
 // sweeps. The grid's size is chosen from a sample: fewer regions than asked for where boxes would be in too
@@ -28,9 +28,19 @@ namespace broadside::lab::literature {
 namespace {
 
 template <int D>
-class SegmentedSap final : public PairFinder<D> {
+class SegmentedSap final : public Searcher<D> {
  public:
   explicit SegmentedSap(double boxes_a_region) : boxes_a_region_(boxes_a_region) {}
+
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const Regions<D> regions(input.boxes, static_cast<double>(input.boxes.size()) / boxes_a_region_);
+    file(input.boxes, regions);
+    Checkpoint checkpoint(input.workers.checkpoint);
+    for (std::size_t region = 0; region + 1 < begins_.size(); ++region)
+      sweep(std::span<const Member>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
+            input.left_count, checkpoint, pairs);
+    return std::nullopt;
+  }
 
  private:
   /// A box in a region. A pair is reported in the region that holds the greater of its minima on each axis:
@@ -40,16 +50,6 @@ class SegmentedSap final : public PairFinder<D> {
     std::uint32_t id;
     std::uint32_t begins_before;  // a bit for each axis
   };
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    const Regions<D> regions(boxes, static_cast<double>(boxes.size()) / boxes_a_region_);
-    file(boxes, regions);
-    const std::size_t left = this->left_count();
-    Checkpoint checkpoint(this->workers().checkpoint);
-    for (std::size_t region = 0; region + 1 < begins_.size(); ++region)
-      sweep(std::span<const Member>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
-            left, checkpoint, pairs);
-  }
 
   /// The members of each region, in the order of their minima on the first axis.
   void file(std::span<const Box<D>> boxes, const Regions<D>& regions) {
@@ -94,10 +94,39 @@ class SegmentedSap final : public PairFinder<D> {
 };
 
 template <int D>
-class SegmentedSapTracker final : public PairTracker<D> {
+class SegmentedSapFollower final : public Follower<D> {
  public:
-  SegmentedSapTracker(double boxes_a_region, std::size_t segment, double batch)
+  SegmentedSapFollower(double boxes_a_region, std::size_t segment, double batch)
       : boxes_a_region_(boxes_a_region), segment_(segment), batch_(batch) {}
+
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    if (change.rebuild || needs_new_regions(change)) build(change);
+    load_ = load_after(change);
+    Checkpoint checkpoint(change.workers.checkpoint);
+    const auto look_at = [&](std::uint32_t a, std::uint32_t b) {
+      checkpoint.count(1);
+      change.report(BoxId{a}, BoxId{b}, begun, ended);
+    };
+    in_batch_.resize(change.now.size());
+    leaving_.clear();
+    entering_.clear();
+    for (const BoxId id : change.changed) move(index(id), change, look_at);
+    transfer(leaving_, change.before, false, look_at);
+    transfer(entering_, change.now, true, look_at);
+    if (change.filters_before.empty() && change.filters_now.empty()) return std::nullopt;
+    for (const BoxId id : change.changed) {
+      if (is_present(change.now[index(id)])) look_around(index(id), change.now[index(id)], look_at);
+    }
+    return std::nullopt;
+  }
+
+  std::size_t bytes() const noexcept override {
+    std::size_t bytes = 0;
+    for (const Lists& lists : lists_) {
+      for (const IntervalList& list : lists) bytes += list.bytes();
+    }
+    return bytes;
+  }
 
  private:
   using Lists = std::vector<IntervalList>;  // one an axis
@@ -115,34 +144,6 @@ class SegmentedSapTracker final : public PairTracker<D> {
     std::size_t boxes = 0;
     std::size_t references = 0;
   };
-
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
-    if (change.rebuild || needs_new_regions(change)) build(change);
-    load_ = load_after(change);
-    Checkpoint checkpoint(this->workers().checkpoint);
-    const auto look_at = [&](std::uint32_t a, std::uint32_t b) {
-      checkpoint.count(1);
-      change.report(BoxId{a}, BoxId{b}, begun, ended);
-    };
-    in_batch_.resize(change.now.size());
-    leaving_.clear();
-    entering_.clear();
-    for (const BoxId id : change.changed) move(index(id), change, look_at);
-    transfer(leaving_, change.before, false, look_at);
-    transfer(entering_, change.now, true, look_at);
-    if (change.filters_before.empty() && change.filters_now.empty()) return;
-    for (const BoxId id : change.changed) {
-      if (is_present(change.now[index(id)])) look_around(index(id), change.now[index(id)], look_at);
-    }
-  }
-
-  std::size_t algorithm_bytes() const noexcept override {
-    std::size_t bytes = 0;
-    for (const Lists& lists : lists_) {
-      for (const IntervalList& list : lists) bytes += list.bytes();
-    }
-    return bytes;
-  }
 
   void add_to(Load& load, const Box<D>& box, int sign) const {
     if (!is_present(box)) return;
@@ -366,15 +367,15 @@ class SegmentedSapTracker final : public PairTracker<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make(const Settings& settings) {
   return std::make_unique<SegmentedSap<D>>(settings.number("region"));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
-  return std::make_unique<SegmentedSapTracker<D>>(settings.number("region"),
-                                                  static_cast<std::size_t>(settings.integer("segment")),
-                                                  settings.number("batch"));
+std::unique_ptr<Follower<D>> make_follower(const Settings& settings) {
+  return std::make_unique<SegmentedSapFollower<D>>(settings.number("region"),
+                                                   static_cast<std::size_t>(settings.integer("segment")),
+                                                   settings.number("batch"));
 }
 
 }  // namespace
@@ -403,10 +404,10 @@ Algorithm segmented_sap() {
                     .type = Tunable::Type::number,
                     .least = 0,
                     .most = 1e9}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracking<2>,
-      .tracker_3d = make_tracking<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
+      .followers_2d = {{.name = "interval lists", .make = make_follower<2>}},
+      .followers_3d = {{.name = "interval lists", .make = make_follower<3>}},
       .most_boxes = IntervalEnd::most_ids,
   };
 }

@@ -13,12 +13,13 @@
 // one side would be empty. Boxes are not enlarged by a margin: all pairs must be exact.
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "lab/literature/kd_tree.hpp"
 #include "lab/literature/literature.hpp"
-#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peer_follower.hpp"
 
 namespace broadside::lab::literature {
 namespace {
@@ -33,28 +34,29 @@ void add_present(KdTree<D>& tree, std::span<const Box<D>> boxes) {
 }
 
 template <int D>
-class SerpaKdTree final : public PairFinder<D> {
+class SerpaKdTree final : public Searcher<D> {
  public:
   explicit SerpaKdTree(std::size_t leaf_boxes) : tree_(leaf_boxes) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    add_present(tree_, boxes);
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    add_present(tree_, input.boxes);
     // A flag for the boxes of the left set.
-    is_left_.assign(this->left_count(), 1);
-    if (!is_left_.empty()) is_left_.resize(boxes.size());
-    Checkpoint checkpoint(this->workers().checkpoint);
-    tree_.search(boxes, is_left_, !is_left_.empty(), checkpoint, pairs);
+    is_left_.assign(input.left_count, 1);
+    if (!is_left_.empty()) is_left_.resize(input.boxes.size());
+    Checkpoint checkpoint(input.workers.checkpoint);
+    tree_.search(input.boxes, is_left_, !is_left_.empty(), checkpoint, pairs);
+    return std::nullopt;
   }
 
+ private:
   KdTree<D> tree_;
   std::vector<std::uint8_t> is_left_;
 };
 
 template <int D>
-class SerpaKdTracker final : public peers::PeerTracker<D> {
+class SerpaKdFollower final : public peers::PeerFollower<D> {
  public:
-  explicit SerpaKdTracker(std::size_t leaf_boxes) : tree_(leaf_boxes) {}
+  explicit SerpaKdFollower(std::size_t leaf_boxes) : tree_(leaf_boxes) {}
 
  private:
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>>) override { add_present(tree_, boxes); }
@@ -76,7 +78,7 @@ class SerpaKdTracker final : public peers::PeerTracker<D> {
   }
 
   void collide(const Change<D>& change, PairSink& pairs) override {
-    Checkpoint checkpoint(this->workers().checkpoint);
+    Checkpoint checkpoint(change.workers.checkpoint);
     tree_.search(change.now, change.flags, false, checkpoint, pairs);
   }
 
@@ -88,13 +90,13 @@ std::size_t leaf_boxes(const Settings& settings) {
 }
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make(const Settings& settings) {
   return std::make_unique<SerpaKdTree<D>>(leaf_boxes(settings));
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_tracking(const Settings& settings) {
-  return std::make_unique<SerpaKdTracker<D>>(leaf_boxes(settings));
+std::unique_ptr<Follower<D>> make_follower(const Settings& settings) {
+  return std::make_unique<SerpaKdFollower<D>>(leaf_boxes(settings));
 }
 
 }  // namespace
@@ -111,10 +113,10 @@ Algorithm serpa_kd_tree() {
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1e9}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
-      .tracker_2d = make_tracking<2>,
-      .tracker_3d = make_tracking<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
+      .followers_2d = {{.name = "KD-tree", .make = make_follower<2>}},
+      .followers_3d = {{.name = "KD-tree", .make = make_follower<3>}},
   };
 }
 

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -106,16 +107,16 @@ class Buckets {
 };
 
 template <int D>
-class TerdimanBoxPruning final : public PairFinder<D> {
+class TerdimanBoxPruning final : public Searcher<D> {
  public:
   /// `axis` is the sweep axis; -1: that on which centres vary most.
   explicit TerdimanBoxPruning(int axis) : axis_(axis) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
     const int axis = axis_ >= 0 ? axis_ : widest_axis(boxes);
-    const std::size_t left_count = this->left_count();
-    Checkpoint checkpoint(this->workers().checkpoint);
+    const std::size_t left_count = input.left_count;
+    Checkpoint checkpoint(input.workers.checkpoint);
     left_.fill(boxes, 0, left_count == 0 ? boxes.size() : left_count, axis);
     if (left_count > 0) {
       right_.fill(boxes, left_count, boxes.size(), axis);
@@ -125,13 +126,15 @@ class TerdimanBoxPruning final : public PairFinder<D> {
             sweep(left_.sorted[i], right_.sorted[j], checkpoint, pairs);
         }
       }
-      return;
+      return std::nullopt;
     }
     for (const SortedBoxes<D>& bucket : left_.sorted) sweep(bucket, checkpoint, pairs);
     for (std::size_t i = 0; i < crossing<D>; ++i)
       sweep(left_.sorted[i], left_.sorted[crossing<D>], checkpoint, pairs);
+    return std::nullopt;
   }
 
+ private:
   static int widest_axis(std::span<const Box<D>> boxes) {
     Centres<D> centres;
     for (const Box<D>& box : boxes) centres.add(box);
@@ -144,7 +147,7 @@ class TerdimanBoxPruning final : public PairFinder<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make(const Settings& settings) {
   if (settings.is_auto("axis")) return std::make_unique<TerdimanBoxPruning<D>>(-1);
   const int axis = settings.text("axis")[0] - 'x';
   if (axis >= D) throw InvalidSpec("axis 'z' in 2D; expected x or y");
@@ -164,8 +167,8 @@ Algorithm terdiman_box_pruning() {
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"auto", "x", "y", "z"}}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
   };
 }
 

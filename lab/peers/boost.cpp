@@ -1,4 +1,4 @@
-// Boost.Geometry's R-tree as a finder, and its queries.
+// Boost.Geometry's R-tree as a searcher, and its queries.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -45,14 +45,10 @@ BoostBox<D> boost_box(const Box<D>& box) {
 }
 
 template <int D>
-class BoostRtree final : public PairFinder<D>, public TearDown {
+class BoostRtree final : public Searcher<D>, public TearDown {
  public:
-  void tear_down() override { tree_.reset(); }
-
- private:
-  using Value = typename BoostTree<D>::value_type;
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
     tear_down();
     values_.clear();
     values_.reserve(boxes.size());
@@ -66,7 +62,13 @@ class BoostRtree final : public PairFinder<D>, public TearDown {
       };
       tree_->query(geometry::index::intersects(value.first), boost::make_function_output_iterator(report));
     }
+    return std::nullopt;
   }
+
+  void tear_down() override { tree_.reset(); }
+
+ private:
+  using Value = typename BoostTree<D>::value_type;
 
   std::vector<Value> values_;
   std::optional<BoostTree<D>> tree_;  // of the last search
@@ -112,8 +114,8 @@ Algorithm boost_rtree() {
       .summary = "Boost.Geometry's R-tree, packed, and a query for each box",
       .source = "Boost.Geometry.Index, after Leutenegger et al. 1997 and Garcia et al. 1998",
       .version = "Boost " + std::to_string(version / 100'000) + "." + std::to_string(version / 100 % 1000),
-      .finder_2d = [](const Settings&) { return std::make_unique<BoostRtree<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<BoostRtree<3>>(); },
+      .searcher_2d = [](const Settings&) { return std::make_unique<BoostRtree<2>>(); },
+      .searcher_3d = [](const Settings&) { return std::make_unique<BoostRtree<3>>(); },
       .infinite_boxes = false,  // it compares their centres
       .largest_coordinate = std::numeric_limits<float>::max(),
   };

@@ -43,8 +43,20 @@ b2AABB scaled(const Box2& box, float scale) {
 void* user_data(BoxId id) { return std::bit_cast<void*>(std::uintptr_t{index(id)}); }
 BoxId id_of(void* data) { return BoxId(std::bit_cast<std::uintptr_t>(data)); }
 
-class Box2dFinder final : public PairFinder<2>, public TearDown {
+class Box2dSearcher final : public Searcher<2>, public TearDown {
  public:
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
+    const std::span<const Box2> boxes = input.boxes;
+    b2BroadPhase& broad_phase = broad_phase_.emplace();
+    const float scale = scale_of(boxes);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      broad_phase.CreateProxy(scaled(boxes[i], scale), user_data(BoxId(i)));
+    Report report{boxes, CallbackSink(pairs)};
+    broad_phase.UpdatePairs(&report);
+    report.pairs.finish();
+    return std::nullopt;
+  }
+
   void tear_down() override { broad_phase_.reset(); }
 
  private:
@@ -60,34 +72,14 @@ class Box2dFinder final : public PairFinder<2>, public TearDown {
     }
   };
 
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
-    b2BroadPhase& broad_phase = broad_phase_.emplace();
-    const float scale = scale_of(boxes);
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      broad_phase.CreateProxy(scaled(boxes[i], scale), user_data(BoxId(i)));
-    Report report{boxes, CallbackSink(pairs)};
-    broad_phase.UpdatePairs(&report);
-    report.pairs.finish();
-  }
-
   std::optional<b2BroadPhase> broad_phase_;  // of the last search
 };
 
 /// Follows b2ContactManager: pairs of fat boxes are contacts, which are looked at again in every frame; the
 /// broad phase tells those of boxes that left their margins.
-class Box2dTracker final : public PairTracker<2> {
- private:
-  struct Contacts {
-    std::vector<Pair>& pairs;
-
-    void AddPair(void* first, void* second) {  // NOLINT(readability-identifier-naming): Box2D's name
-      const BoxId a = id_of(first);
-      const BoxId b = id_of(second);
-      pairs.push_back({std::min(a, b), std::max(a, b)});
-    }
-  };
-
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+class Box2dFollower final : public Follower<2> {
+ public:
+  std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild) build(change);
     moved_.assign(change.now.size(), 0);
     proxies_.resize(std::max(proxies_.size(), change.now.size()), b2BroadPhase::e_nullProxy);
@@ -119,7 +111,19 @@ class Box2dTracker final : public PairTracker<2> {
       const Pair pair = contacts_[i];
       change.report(pair.first, pair.second, begun, ended);
     }
+    return std::nullopt;
   }
+
+ private:
+  struct Contacts {
+    std::vector<Pair>& pairs;
+
+    void AddPair(void* first, void* second) {  // NOLINT(readability-identifier-naming): Box2D's name
+      const BoxId a = id_of(first);
+      const BoxId b = id_of(second);
+      pairs.push_back({std::min(a, b), std::max(a, b)});
+    }
+  };
 
   /// Starts with the boxes of `change.before`.
   void build(const Change<2>& change) {
@@ -184,8 +188,9 @@ Algorithm box2d_tree() {
       .source = "Box2D, b2BroadPhase and b2DynamicTree, after Presson's btDbvt",
       .kind = AlgorithmKind::peer,
       .version = "Box2D " BROADSIDE_BOX2D_VERSION,
-      .finder_2d = [](const Settings&) { return std::make_unique<Box2dFinder>(); },
-      .tracker_2d = [](const Settings&) { return std::make_unique<Box2dTracker>(); },
+      .searcher_2d = [](const Settings&) { return std::make_unique<Box2dSearcher>(); },
+      .followers_2d = {{.name = "b2BroadPhase",
+                        .make = [](const Settings&) { return std::make_unique<Box2dFollower>(); }}},
       .infinite_boxes = false,
       .own_allocator = true,
   };

@@ -35,13 +35,13 @@ std::unique_ptr<Proxies<D>> proxies() {
 }
 
 template <int D>
-std::unique_ptr<PairFinder<D>> finder(const Settings&) {
-  return std::make_unique<ProxyFinder<D>>(proxies<D>());
+std::unique_ptr<Searcher<D>> make_sweep_searcher(const Settings&) {
+  return std::make_unique<ProxySearcher<D>>(proxies<D>());
 }
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_sweep_tracker(const Settings&) {
-  return std::make_unique<ProxyTracker<D>>(proxies<D>());
+std::unique_ptr<Follower<D>> make_sweep_follower(const Settings&) {
+  return std::make_unique<ProxyFollower<D>>(proxies<D>());
 }
 
 }  // namespace
@@ -52,10 +52,10 @@ Algorithm bullet_axis_sweep() {
       .summary = "Bullet's incremental sweep and prune on three axes, in 32 bits",
       .source = "Bullet, bt32BitAxisSweep3",
       .version = bullet_version(),
-      .finder_2d = finder<2>,
-      .finder_3d = finder<3>,
-      .tracker_2d = make_sweep_tracker<2>,
-      .tracker_3d = make_sweep_tracker<3>,
+      .searcher_2d = make_sweep_searcher<2>,
+      .searcher_3d = make_sweep_searcher<3>,
+      .followers_2d = {{.name = "bt32BitAxisSweep3", .make = make_sweep_follower<2>}},
+      .followers_3d = {{.name = "bt32BitAxisSweep3", .make = make_sweep_follower<3>}},
       .infinite_boxes = false,  // its world is bounded
       .largest_coordinate = 1e30,
       .own_allocator = true,

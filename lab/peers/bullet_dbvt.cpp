@@ -1,6 +1,7 @@
 // Bullet's dynamic tree of boxes: btDbvt joined with itself, and btDbvtBroadphase, which keeps one in motion.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
@@ -14,8 +15,19 @@ namespace broadside::lab::peers {
 namespace {
 
 template <int D>
-class BulletDbvt final : public PairFinder<D>, public TearDown {
+class BulletDbvt final : public Searcher<D>, public TearDown {
  public:
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    tear_down();
+    for (std::size_t i = 0; i < input.boxes.size(); ++i) {
+      const Box<D>& box = input.boxes[i];
+      tree_.insert(btDbvtVolume::FromMM(bullet_point(box.min), bullet_point(box.max)), bullet_data(BoxId(i)));
+    }
+    Report report(pairs);
+    tree_.collideTT(tree_.m_root, tree_.m_root, report);
+    return std::nullopt;
+  }
+
   void tear_down() override { tree_.clear(); }
 
  private:
@@ -26,16 +38,6 @@ class BulletDbvt final : public PairFinder<D>, public TearDown {
     }
     PairSink& pairs;
   };
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    tear_down();
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      tree_.insert(btDbvtVolume::FromMM(bullet_point(boxes[i].min), bullet_point(boxes[i].max)),
-                   bullet_data(BoxId(i)));
-    }
-    Report report(pairs);
-    tree_.collideTT(tree_.m_root, tree_.m_root, report);
-  }
 
   btDbvt tree_;  // of the last search
 };
@@ -98,7 +100,7 @@ class OwnDbvt final : public btDbvtBroadphase {
 };
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_dbvt_tracker(const Settings& settings) {
+std::unique_ptr<Follower<D>> make_dbvt_follower(const Settings& settings) {
   const std::string& text = settings.text("collide");
   const Collide collide = text == "auto"      ? Collide::by_motion
                           : text == "at_once" ? Collide::at_once
@@ -107,7 +109,7 @@ std::unique_ptr<PairTracker<D>> make_dbvt_tracker(const Settings& settings) {
     return std::make_unique<OwnDbvt>(margin_for(boxes), collide);
   };
   constexpr bool bounded = false;
-  return std::make_unique<ProxyTracker<D>>(std::make_unique<BulletProxies<D>>(make, bounded));
+  return std::make_unique<ProxyFollower<D>>(std::make_unique<BulletProxies<D>>(make, bounded));
 }
 
 }  // namespace
@@ -128,10 +130,10 @@ Algorithm bullet_dbvt() {
                     .standard = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"at_once", "deferred"}}},
-      .finder_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
-      .tracker_2d = make_dbvt_tracker<2>,
-      .tracker_3d = make_dbvt_tracker<3>,
+      .searcher_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
+      .searcher_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
+      .followers_2d = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<2>}},
+      .followers_3d = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<3>}},
       .infinite_boxes = false,  // moving boxes are made larger, and their centres compared
       .largest_coordinate = 1e30,
       .own_allocator = true,

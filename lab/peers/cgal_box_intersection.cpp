@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <CGAL/box_intersection_d.h>
@@ -23,15 +24,13 @@ std::ptrdiff_t cutoff_for(std::size_t boxes) {
 }
 
 template <int D>
-class CgalBoxIntersection final : public PairFinder<D> {
+class CgalBoxIntersection final : public Searcher<D> {
  public:
   explicit CgalBoxIntersection(const Settings& settings)
       : cutoff_(settings.is_auto("cutoff") ? 0 : settings.integer("cutoff")) {}
 
- private:
-  using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
     boxes_.clear();
     boxes_.reserve(boxes.size());
     const std::array<int, D> axes = axes_by_extent(boxes);  // it sweeps along its first one
@@ -49,7 +48,11 @@ class CgalBoxIntersection final : public PairFinder<D> {
     CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
                                   cutoff_ > 0 ? cutoff_ : cutoff_for(boxes.size()),
                                   CGAL::Box_intersection_d::CLOSED);
+    return std::nullopt;
   }
+
+ private:
+  using CgalBox = CGAL::Box_intersection_d::Box_with_info_d<float, D, BoxId>;
 
   std::ptrdiff_t cutoff_;  // 0: by the number of boxes
   std::vector<CgalBox> boxes_;
@@ -71,9 +74,9 @@ Algorithm cgal_box_intersection() {
                     .type = Tunable::Type::integer,
                     .least = 1,
                     .most = 1e9}},
-      .finder_2d =
+      .searcher_2d =
           [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<2>>(settings); },
-      .finder_3d =
+      .searcher_3d =
           [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<3>>(settings); },
       .infinite_boxes = false,  // the least and the greatest float are its ends of the axes
       .largest_coordinate = 3.4e38,

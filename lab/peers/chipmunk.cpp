@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "lab/peers/callback_sink.hpp"
-#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peer_follower.hpp"
 #include "lab/peers/peers.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
@@ -76,14 +77,12 @@ void find_all(cpSpatialIndex* spatial_index, std::span<const Box2> boxes, PairSi
   search.pairs.finish();
 }
 
-class ChipmunkFinder final : public PairFinder<2>, public TearDown {
+class ChipmunkSearcher final : public Searcher<2>, public TearDown {
  public:
-  explicit ChipmunkFinder(MakeIndex make) : make_(make) {}
+  explicit ChipmunkSearcher(MakeIndex make) : make_(make) {}
 
-  void tear_down() override { index_.reset(); }
-
- private:
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
+    const std::span<const Box2> boxes = input.boxes;
     tear_down();
     objects_.clear();
     objects_.reserve(boxes.size());
@@ -91,8 +90,12 @@ class ChipmunkFinder final : public PairFinder<2>, public TearDown {
     index_ = make_(boxes, false, nullptr);
     for (ChipmunkObject& object : objects_) cpSpatialIndexInsert(index_.get(), &object, hash_of(object));
     find_all(index_.get(), boxes, pairs);
+    return std::nullopt;
   }
 
+  void tear_down() override { index_.reset(); }
+
+ private:
   MakeIndex make_;
   std::vector<ChipmunkObject> objects_;
   ChipmunkIndex index_;  // of the last search; points into them
@@ -100,9 +103,9 @@ class ChipmunkFinder final : public PairFinder<2>, public TearDown {
 
 /// As cpSpace does, with an index for what moves and one for what rests: shapes go to the latter with their
 /// body once it has slept for a while, and the former alone is brought up to date and searched.
-class ChipmunkTracker final : public PeerTracker<2> {
+class ChipmunkFollower final : public PeerFollower<2> {
  public:
-  explicit ChipmunkTracker(MakeIndex make) : make_(make) {}
+  explicit ChipmunkFollower(MakeIndex make) : make_(make) {}
 
  private:
   static constexpr std::uint32_t frames_until_sleep = 30;  // half a second
@@ -212,8 +215,8 @@ class ChipmunkTracker final : public PeerTracker<2> {
   bool starts_ = true;  // there was nothing before: all that is there is in resting_
 };
 
-/// The description of an index that `Make` makes: a finder that fills a new one in each call, and a tracker
-/// that keeps one.
+/// The description of an index that `make` makes: a searcher that fills a new one in each call, and a
+/// follower that keeps one.
 Algorithm chipmunk_index(MakeIndex make) {
   return {
       .name = {},
@@ -221,8 +224,10 @@ Algorithm chipmunk_index(MakeIndex make) {
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "Chipmunk " + std::string(cpVersionString),
-      .finder_2d = [make](const Settings&) { return std::make_unique<ChipmunkFinder>(make); },
-      .tracker_2d = [make](const Settings&) { return std::make_unique<ChipmunkTracker>(make); },
+      .searcher_2d = [make](const Settings&) { return std::make_unique<ChipmunkSearcher>(make); },
+      .followers_2d = {{.name = "cpSpace",
+                        .make =
+                            [make](const Settings&) { return std::make_unique<ChipmunkFollower>(make); }}},
       .infinite_boxes = false,
       .own_allocator = true,
   };

@@ -4,6 +4,7 @@
 #include <array>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -42,7 +43,7 @@ RTCBounds bounds_of(const Box<D>& box) {
 }
 
 template <int D>
-class EmbreeCollide final : public PairFinder<D> {
+class EmbreeCollide final : public Searcher<D> {
  public:
   EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
     if (!device_) throw_error(nullptr);
@@ -55,10 +56,9 @@ class EmbreeCollide final : public PairFinder<D> {
     check();
   }
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    if (boxes.size() < 2) return;
-    boxes_ = boxes;
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    if (input.boxes.size() < 2) return std::nullopt;
+    boxes_ = input.boxes;
     pairs_ = &pairs;
     thrown_ = nullptr;
     // A device with one thread would hold all of the process to one; an arena with one holds what runs in it.
@@ -78,8 +78,10 @@ class EmbreeCollide final : public PairFinder<D> {
     });
     if (thrown_) std::rethrow_exception(thrown_);
     check();
+    return std::nullopt;
   }
 
+ private:
   static void bound(const RTCBoundsFunctionArguments* arguments) {
     const auto& self = *static_cast<const EmbreeCollide*>(arguments->geometryUserPtr);
     *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
@@ -236,8 +238,8 @@ Algorithm embree_collide() {
       .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
       .source = "Embree, rtcCollide",
       .version = "Embree " RTC_VERSION_STRING,
-      .finder_2d = [](const Settings&) { return std::make_unique<EmbreeCollide<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<EmbreeCollide<3>>(); },
+      .searcher_2d = [](const Settings&) { return std::make_unique<EmbreeCollide<2>>(); },
+      .searcher_3d = [](const Settings&) { return std::make_unique<EmbreeCollide<3>>(); },
       .infinite_boxes = false,
       .largest_coordinate = 1.8e18,  // beyond 1.844e18 it drops boxes as invalid
       .own_allocator = true,

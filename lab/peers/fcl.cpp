@@ -1,10 +1,11 @@
-// FCL's broad-phase managers as finders: all objects are registered at once, then collide() runs once. They
+// FCL's broad-phase managers as searchers: all objects are registered at once, then collide() runs once. They
 // take boxes of 2D as slabs of one thickness.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,7 +24,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "lab/peers/callback_sink.hpp"
-#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peer_follower.hpp"
 #include "lab/peers/peers.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
@@ -92,15 +93,13 @@ template <int D>
 using MakeManager = FclManager (*)(std::span<const Box<D>> boxes);
 
 template <int D>
-class FclFinder final : public PairFinder<D>, public TearDown {
+class FclSearcher final : public Searcher<D>, public TearDown {
  public:
-  FclFinder(MakeManager<D> make, bool widened, double depth)
+  FclSearcher(MakeManager<D> make, bool widened, double depth)
       : make_(make), widened_(widened), depth_(depth) {}
 
-  void tear_down() override { manager_.reset(); }
-
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
     tear_down();
     objects_.reserve(boxes.size());
     for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i));
@@ -116,8 +115,12 @@ class FclFinder final : public PairFinder<D>, public TearDown {
     FclSearch<D> search{boxes, CallbackSink(pairs)};
     manager_->collide(&search, FclSearch<D>::take);
     search.pairs.finish();
+    return std::nullopt;
   }
 
+  void tear_down() override { manager_.reset(); }
+
+ private:
   MakeManager<D> make_;
   bool widened_;
   double depth_;
@@ -126,8 +129,8 @@ class FclFinder final : public PairFinder<D>, public TearDown {
   FclManager manager_;  // of the last search; points into objects_
 };
 
-/// The description of a manager: a finder that fills a new one in each call. `widened` if it goes wrong where
-/// two bounds are equal; `depth` is that of boxes of 2D.
+/// The description of a manager: a searcher that fills a new one in each call. `widened` if it goes wrong
+/// where two bounds are equal; `depth` is that of boxes of 2D.
 Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widened = false,
                       double depth = slab) {
   return {
@@ -136,8 +139,10 @@ Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widen
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "FCL " FCL_VERSION,
-      .finder_2d = [=](const Settings&) { return std::make_unique<FclFinder<2>>(make_2d, widened, depth); },
-      .finder_3d = [=](const Settings&) { return std::make_unique<FclFinder<3>>(make_3d, widened, depth); },
+      .searcher_2d =
+          [=](const Settings&) { return std::make_unique<FclSearcher<2>>(make_2d, widened, depth); },
+      .searcher_3d =
+          [=](const Settings&) { return std::make_unique<FclSearcher<3>>(make_3d, widened, depth); },
       .infinite_boxes = false,
   };
 }
@@ -164,7 +169,7 @@ FclManager make_tree_for(std::span<const Box<D>>) {
 }
 
 template <int D>
-class FclTreeTracker final : public PeerTracker<D> {
+class FclTreeFollower final : public PeerFollower<D> {
  private:
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>>) override {
     tree_ = make_tree<Tree>();
@@ -267,8 +272,10 @@ Algorithm fcl_dynamic_aabb_tree() {
   algorithm.name = "fcl_dynamic_aabb_tree";
   algorithm.summary = "FCL's dynamic tree of boxes, built at once in the order of Morton codes";
   algorithm.source = "FCL, DynamicAABBTreeCollisionManager";
-  algorithm.tracker_2d = [](const Settings&) { return std::make_unique<FclTreeTracker<2>>(); };
-  algorithm.tracker_3d = [](const Settings&) { return std::make_unique<FclTreeTracker<3>>(); };
+  algorithm.followers_2d = {{.name = "DynamicAABBTreeCollisionManager",
+                             .make = [](const Settings&) { return std::make_unique<FclTreeFollower<2>>(); }}};
+  algorithm.followers_3d = {{.name = "DynamicAABBTreeCollisionManager",
+                             .make = [](const Settings&) { return std::make_unique<FclTreeFollower<3>>(); }}};
   return algorithm;
 }
 

@@ -15,16 +15,10 @@
 namespace broadside::lab::peers {
 namespace {
 
-class GeosStrtree final : public PairFinder<2>, public TearDown {
+class GeosStrtree final : public Searcher<2>, public TearDown {
  public:
-  void tear_down() override { tree_.reset(); }
-
- private:
-  static geos::geom::Envelope envelope(const Box2& box) {
-    return {box.min[0], box.max[0], box.min[1], box.max[1]};
-  }
-
-  void find_valid(std::span<const Box2> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
+    const std::span<const Box2> boxes = input.boxes;
     constexpr std::size_t standard_capacity = 10;
     // A tree once built takes no more items, and its memory cannot be handed on to a new one.
     auto& tree = tree_.emplace(standard_capacity, boxes.size());
@@ -36,6 +30,14 @@ class GeosStrtree final : public PairFinder<2>, public TearDown {
         if (j > i) pairs.add(BoxId{i}, BoxId{j});
       });
     }
+    return std::nullopt;
+  }
+
+  void tear_down() override { tree_.reset(); }
+
+ private:
+  static geos::geom::Envelope envelope(const Box2& box) {
+    return {box.min[0], box.max[0], box.min[1], box.max[1]};
   }
 
   std::optional<geos::index::strtree::TemplateSTRtree<std::uint32_t>> tree_;  // of the last search
@@ -49,7 +51,7 @@ Algorithm geos_strtree() {
       .summary = "GEOS's packed R-tree (sort, tile, recurse), and a query for each box",
       .source = "GEOS, TemplateSTRtree, after Leutenegger et al. 1997",
       .version = std::string("GEOS ") + GEOS_VERSION,
-      .finder_2d = [](const Settings&) { return std::make_unique<GeosStrtree>(); },
+      .searcher_2d = [](const Settings&) { return std::make_unique<GeosStrtree>(); },
       .infinite_boxes = false,  // it compares their centres
       .largest_coordinate = std::numeric_limits<float>::max(),
   };

@@ -1,17 +1,18 @@
-// ODE's spaces as finders and trackers: geoms of a class of our own, whose bounds are exactly the boxes, put
-// in one by one; then one dSpaceCollide().
+// ODE's spaces as searchers and followers: geoms of a class of our own, whose bounds are exactly the boxes,
+// put in one by one; then one dSpaceCollide().
 #include "lab/peers/ode_space.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "lab/peers/callback_sink.hpp"
-#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peer_follower.hpp"
 #include "lab/peers/tear_down.hpp"
 
 namespace broadside::lab::peers {
@@ -105,19 +106,13 @@ class Geoms {
   std::deque<Geom> geoms_;  // point into items_
 };
 
-class OdeFinder final : public PairFinder<3>, public TearDown {
+class OdeSearcher final : public Searcher<3>, public TearDown {
  public:
-  explicit OdeFinder(const OdeSpaceKind& kind) : kind_(kind) {}
-  ~OdeFinder() override { OdeFinder::tear_down(); }
+  explicit OdeSearcher(const OdeSpaceKind& kind) : kind_(kind) {}
+  ~OdeSearcher() override { OdeSearcher::tear_down(); }
 
-  void tear_down() override {
-    // The last one first: it is the first that a list is searched for.
-    for (; in_space_ > 0; --in_space_) dSpaceRemove(space_.get(), geoms_[in_space_ - 1]);
-    space_.reset();
-  }
-
- private:
-  void find_valid(std::span<const Box3> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<3>& input, PairSink& pairs) override {
+    const std::span<const Box3> boxes = input.boxes;
     if (boxes.size() > kind_.most_boxes)
       throw std::length_error(std::to_string(boxes.size()) + " boxes in ODE's hash space; expected at most " +
                               std::to_string(kind_.most_boxes) + ", as it counts pairs of boxes in an int");
@@ -129,18 +124,26 @@ class OdeFinder final : public PairFinder<3>, public TearDown {
     CallbackSink sink(pairs);
     find_all(space_.get(), boxes, sink);
     sink.finish();
+    return std::nullopt;
   }
 
+  void tear_down() override {
+    // The last one first: it is the first that a list is searched for.
+    for (; in_space_ > 0; --in_space_) dSpaceRemove(space_.get(), geoms_[in_space_ - 1]);
+    space_.reset();
+  }
+
+ private:
   OdeSpaceKind kind_;
   Geoms geoms_;
   OdeSpace space_;            // of the last search
   std::size_t in_space_ = 0;  // geoms before this one are in the space
 };
 
-class OdeTracker final : public PeerTracker<3> {
+class OdeFollower final : public PeerFollower<3> {
  public:
-  explicit OdeTracker(const OdeSpaceKind& kind) : kind_(kind) {}
-  ~OdeTracker() override { clear(); }
+  explicit OdeFollower(const OdeSpaceKind& kind) : kind_(kind) {}
+  ~OdeFollower() override { clear(); }
 
  private:
   void build(std::span<const Box3> boxes, std::span<const Box3> now) override {
@@ -196,12 +199,15 @@ Algorithm ode_space(const OdeSpaceKind& kind) {
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "ODE " dODE_VERSION,
-      .finder_3d = [kind](const Settings&) { return std::make_unique<OdeFinder>(kind); },
+      .searcher_3d = [kind](const Settings&) { return std::make_unique<OdeSearcher>(kind); },
       .most_boxes = kind.most_boxes,
       .own_allocator = true,
   };
-  if (kind.tracks)
-    algorithm.tracker_3d = [kind](const Settings&) { return std::make_unique<OdeTracker>(kind); };
+  if (kind.tracks) {
+    algorithm.followers_3d = {{.name = "dSpaceCollide", .make = [kind](const Settings&) {
+                                 return std::make_unique<OdeFollower>(kind);
+                               }}};
+  }
   return algorithm;
 }
 

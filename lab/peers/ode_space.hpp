@@ -34,7 +34,7 @@ struct OdeSpaceKind {
   std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
 };
 
-/// The description of a space: a finder that fills a new one in each call, and a tracker that keeps one.
+/// The description of a space: a searcher that fills a new one in each call, and a follower that keeps one.
 Algorithm ode_space(const OdeSpaceKind& kind);
 
 }  // namespace broadside::lab::peers

@@ -1,15 +1,15 @@
-// Adapts a library that follows boxes one by one to a tracker and a finder.
+// Adapts a library that follows boxes one by one to a Follower and a Searcher.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
-#include "lab/peers/peer_tracker.hpp"
+#include "lab/peers/peer_follower.hpp"
 
 namespace broadside::lab::peers {
 
@@ -49,11 +49,11 @@ void add_all(Proxies<D>& proxies, std::span<const Box<D>> boxes) {
   }
 }
 
-/// Tracks with proxies: tells the library what changed, and then asks it for the pairs.
+/// Follows with proxies: tells the library what changed, and then asks it for the pairs.
 template <int D>
-class ProxyTracker final : public PeerTracker<D> {
+class ProxyFollower final : public PeerFollower<D> {
  public:
-  explicit ProxyTracker(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
+  explicit ProxyFollower(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
 
  private:
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) override {
@@ -82,19 +82,20 @@ class ProxyTracker final : public PeerTracker<D> {
   std::unique_ptr<Proxies<D>> proxies_;
 };
 
-/// Finds with proxies, all of them added anew.
+/// Searches with proxies, all of them added anew.
 template <int D>
-class ProxyFinder final : public PairFinder<D> {
+class ProxySearcher final : public Searcher<D> {
  public:
-  explicit ProxyFinder(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
+  explicit ProxySearcher(std::unique_ptr<Proxies<D>> proxies) : proxies_(std::move(proxies)) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
-    proxies_->clear(boxes);
-    add_all(*proxies_, boxes);
-    proxies_->collect(boxes, {}, pairs);
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    proxies_->clear(input.boxes);
+    add_all(*proxies_, input.boxes);
+    proxies_->collect(input.boxes, {}, pairs);
+    return std::nullopt;
   }
 
+ private:
   std::unique_ptr<Proxies<D>> proxies_;
 };
 

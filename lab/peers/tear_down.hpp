@@ -3,8 +3,8 @@
 
 namespace broadside::lab::peers {
 
-/// A finder that keeps its library's structure after the search, so that the structure can be torn down after
-/// the clock has stopped. The next search tears down what is still there.
+/// A searcher that keeps its library's structure after the search, so that the structure can be torn down
+/// after the clock has stopped. The next search tears down what is still there.
 class TearDown {
  public:
   virtual ~TearDown() = default;

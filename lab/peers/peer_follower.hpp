@@ -1,42 +1,40 @@
-// A tracker over a library that moves its boxes and then reports all pairs, not the new ones.
+// PeerFollower: follows boxes with a library that moves its boxes and then reports all pairs, not the new
+// ones.
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "broadside/finder.hpp"
+#include "broadside/follower.hpp"
 #include "broadside/sinks.hpp"
-#include "broadside/tracker.hpp"
 
 namespace broadside::lab::peers {
 
 /// Turns the pairs that a library reports after its boxes moved into events. Keeps the pairs from frame to
 /// frame.
 template <int D>
-class PeerTracker : public PairTracker<D> {
- private:
-  /// Forgets all boxes and takes the present ones of `boxes`. `now` are the next frame's, for a library that
-  /// must know the size of its world beforehand.
-  virtual void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) = 0;
-
-  /// Takes every change.
-  virtual void move(const Change<D>& change) = 0;
-
-  /// Writes each overlapping pair of `change.now` once; pairs of two boxes that did not change may be left
-  /// out.
-  virtual void collide(const Change<D>& change, PairSink& pairs) = 0;
-
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) final {
+class PeerFollower : public Follower<D> {
+ public:
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) final {
     if (change.rebuild) {
       build(change.before, change.now);
       pairs_.clear();
       // Nearly always there was no frame before.
-      if (std::ranges::any_of(change.before, is_present<D, float>))
-        find({change.before, change.before, change.changed, change.flags, true}, pairs_);
+      if (std::ranges::any_of(change.before, is_present<D, float>)) {
+        find({.before = change.before,
+              .now = change.before,
+              .changed = change.changed,
+              .flags = change.flags,
+              .rebuild = true,
+              .workers = change.workers},
+             pairs_);
+      }
     }
     move(change);
     find(change, found_);
-    // As in DiffTracker: what a pair was in the other frame can be seen from its boxes.
+    // What a pair was in the other frame can be seen from its boxes.
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };
@@ -53,7 +51,20 @@ class PeerTracker : public PairTracker<D> {
       pairs_.push_back(pair);
       change.report(pair.first, pair.second, begun, ended);
     }
+    return std::nullopt;
   }
+
+ private:
+  /// Forgets all boxes and takes the present ones of `boxes`. `now` are the next frame's, for a library that
+  /// must know the size of its world beforehand.
+  virtual void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) = 0;
+
+  /// Takes every change.
+  virtual void move(const Change<D>& change) = 0;
+
+  /// Writes each overlapping pair of `change.now` once; pairs of two boxes that did not change may be left
+  /// out.
+  virtual void collide(const Change<D>& change, PairSink& pairs) = 0;
 
   void find(const Change<D>& change, std::vector<Pair>& pairs) {
     pairs.clear();
