@@ -8,4 +8,4 @@ set(broadside_observing_sources
   ${PROJECT_SOURCE_DIR}/paper/listings/grid_listing.cpp
   ${PROJECT_SOURCE_DIR}/paper/listings/quadtree_listing.cpp
   ${PROJECT_SOURCE_DIR}/paper/listings/sweep_and_prune.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/sweep_tracker.cpp)
+  ${PROJECT_SOURCE_DIR}/paper/listings/sweep_listing_follower.cpp)

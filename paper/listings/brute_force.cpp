@@ -3,21 +3,20 @@
 #include <memory>
 #include <vector>
 
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/descriptions.hpp"
-#include "paper/listings/listing_finder.hpp"
+#include "paper/listings/listing_searcher.hpp"
 
 namespace broadside::paper {
 namespace {
 
 template <int D>
-class BruteForce final : public ListingFinder<D> {
+class BruteForce final : public ListingSearcher<D> {
  private:
-  void find_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+  Statistics search_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     e_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
     Statistics statistics{.references = e_.size()};
@@ -26,7 +25,7 @@ class BruteForce final : public ListingFinder<D> {
       if constexpr (kernels::is_observing) kernels::observe_test(a, b);
       if (overlap(boxes[index(a)], boxes[index(b)])) pairs.add(a, b);
     });
-    this->count(statistics);
+    return statistics;
   }
 
   std::vector<BoxId> e_;
@@ -40,8 +39,8 @@ Algorithm brute_force() {
       .summary = "every box against every later one, as the paper lists it, mended",
       .source = "paper.md, section II, Algorithm 1",
       .kind = AlgorithmKind::paper,
-      .finder_2d = [](const Settings&) { return std::make_unique<BruteForce<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<BruteForce<3>>(); },
+      .searcher_2d = [](const Settings&) { return std::make_unique<BruteForce<2>>(); },
+      .searcher_3d = [](const Settings&) { return std::make_unique<BruteForce<3>>(); },
   };
 }
 

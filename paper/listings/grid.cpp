@@ -1,4 +1,4 @@
-// The paper's grid as an algorithm: its finder, and its description.
+// The paper's grid as an algorithm: its searcher, its outline, and its description.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,83 +9,84 @@
 #include <vector>
 
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
 #include "paper/listings/descriptions.hpp"
+#include "paper/listings/followers.hpp"
 #include "paper/listings/grid_listing.hpp"
-#include "paper/listings/listing_finder.hpp"
-#include "paper/listings/trackers.hpp"
+#include "paper/listings/listing_searcher.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {
 namespace {
 
-/// Beyond this many cells, an outline has only the cells that hold a box.
-constexpr std::size_t most_drawn = 1 << 16;
+GridListing listing_of(const Settings& settings) {
+  return {WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")};
+}
 
-class Grid final : public ListingFinder<2>, public Outlined<2> {
+class Grid final : public ListingSearcher<2> {
  public:
-  Outlined<2>* outlined() noexcept override { return this; }
-
-  explicit Grid(const Settings& settings)
-      : grid_(WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")) {}
+  explicit Grid(const Settings& settings) : grid_(listing_of(settings)) {}
 
  private:
-  void find_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+  Statistics search_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     Statistics statistics;
     if (!boxes.empty()) {
       grid_.initialize(boxes);
       grid_.algorithm_3_spanning_add_element(boxes);
       grid_.algorithm_4_spi(boxes, pairs, checkpoint, statistics);
     }
-    this->count(statistics);
-  }
-
-  /// Every cell or, of very many, the ones that hold a box.
-  Outline<2> lay_out(std::span<const Box2> boxes) override {
-    grid_.initialize(boxes);
-    const std::size_t columns = grid_.columns();
-    const std::size_t rows = grid_.rows();
-    const bool all = columns * rows <= most_drawn;
-    if (!all) grid_.algorithm_3_spanning_add_element(boxes);
-    Outline<2> outline;
-    outline.kind = "cells";
-    outline.levels.resize(1);
-    for (std::size_t r = 0; r < rows; ++r) {
-      for (std::size_t c = 0; c < columns; ++c) {
-        if (!all && grid_.g(c, r).empty()) continue;
-        const auto [left, right] = ends(boxes, c, columns, 0);
-        const auto [top, bottom] = ends(boxes, r, rows, 1);
-        outline.levels[0].push_back({{left, top}, {right, bottom}});
-      }
-    }
-    // As a stream would write it, but for the rounding mode.
-    std::array<char, 32> size;
-    const auto end =
-        std::to_chars(size.data(), size.data() + size.size(), grid_.size(), std::chars_format::general, 3);
-    outline.caption = std::to_string(columns) + " x " + std::to_string(rows) +
-                      (rows == 1 ? " cell of " : " cells of ") + std::string(size.data(), end.ptr);
-    return outline;
-  }
-
-  /// Where a cell begins and ends on an axis. One at the world's border goes on without end where boxes do.
-  std::pair<float, float> ends(std::span<const Box2> boxes, std::size_t cell, std::size_t count,
-                               int axis) const {
-    const double origin = axis == 0 ? grid_.world().left : grid_.world().top;
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const auto begin = static_cast<float>(origin + static_cast<double>(cell) * grid_.size());
-    const auto end = static_cast<float>(origin + static_cast<double>(cell + 1) * grid_.size());
-    const bool before =
-        cell == 0 && std::ranges::any_of(boxes, [&](const Box2& e) { return e.min[axis] < begin; });
-    const bool beyond =
-        cell + 1 == count && std::ranges::any_of(boxes, [&](const Box2& e) { return e.max[axis] > end; });
-    return {before ? -infinity : begin, beyond ? infinity : end};
+    return statistics;
   }
 
   GridListing grid_;
 };
+
+/// Where a cell begins and ends on an axis. One at the world's border goes on without end where boxes do.
+std::pair<float, float> ends(const GridListing& listing, std::span<const Box2> boxes, std::size_t cell,
+                             std::size_t count, int axis) {
+  const double origin = axis == 0 ? listing.world().left : listing.world().top;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto begin = static_cast<float>(origin + static_cast<double>(cell) * listing.size());
+  const auto end = static_cast<float>(origin + static_cast<double>(cell + 1) * listing.size());
+  const bool before =
+      cell == 0 && std::ranges::any_of(boxes, [&](const Box2& e) { return e.min[axis] < begin; });
+  const bool beyond =
+      cell + 1 == count && std::ranges::any_of(boxes, [&](const Box2& e) { return e.max[axis] > end; });
+  return {before ? -infinity : begin, beyond ? infinity : end};
+}
+
+/// Beyond this many cells, an outline has only the cells that hold a box.
+constexpr std::size_t most_drawn = 1 << 16;
+
+/// Every cell or, of very many, the ones that hold a box.
+Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Settings& settings) {
+  GridListing listing = listing_of(settings);
+  listing.initialize(boxes);
+  const std::size_t columns = listing.columns();
+  const std::size_t rows = listing.rows();
+  const bool all = columns * rows <= most_drawn;
+  if (!all) listing.algorithm_3_spanning_add_element(boxes);
+  Outline<2> outline;
+  outline.kind = "cells";
+  outline.levels.resize(1);
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (!all && listing.g(c, r).empty()) continue;
+      const auto [left, right] = ends(listing, boxes, c, columns, 0);
+      const auto [top, bottom] = ends(listing, boxes, r, rows, 1);
+      outline.levels[0].push_back({{left, top}, {right, bottom}});
+    }
+  }
+  // As a stream would write it, but for the rounding mode.
+  std::array<char, 32> size;
+  const auto end =
+      std::to_chars(size.data(), size.data() + size.size(), listing.size(), std::chars_format::general, 3);
+  outline.caption = std::to_string(columns) + " x " + std::to_string(rows) +
+                    (rows == 1 ? " cell of " : " cells of ") + std::string(size.data(), end.ptr);
+  return outline;
+}
 
 }  // namespace
 
@@ -114,8 +115,9 @@ Algorithm grid() {
       .source = "paper.md, sections III (Algorithms 2 to 4) and VI-B",
       .kind = AlgorithmKind::paper,
       .tunables = std::move(tunables),
-      .finder_2d = [](const Settings& settings) { return std::make_unique<Grid>(settings); },
-      .tracker_2d = make_grid_tracker,
+      .searcher_2d = [](const Settings& settings) { return std::make_unique<Grid>(settings); },
+      .followers_2d = {{.name = "paper_grid", .make = make_grid_follower}},
+      .outline_2d = grid_outline,
   };
 }
 

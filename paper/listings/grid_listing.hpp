@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "paper/listings/world.hpp"
 

@@ -1,31 +1,27 @@
-// The paper's quadtree as an algorithm: its finder, and its description.
+// The paper's quadtree as an algorithm: its searcher, its outline, and its description.
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
 #include "paper/listings/descriptions.hpp"
-#include "paper/listings/listing_finder.hpp"
+#include "paper/listings/followers.hpp"
+#include "paper/listings/listing_searcher.hpp"
 #include "paper/listings/quadtree_listing.hpp"
-#include "paper/listings/trackers.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {
 namespace {
 
-class Quadtree final : public ListingFinder<2>, public Outlined<2> {
+class Quadtree final : public ListingSearcher<2> {
  public:
-  Outlined<2>* outlined() noexcept override { return this; }
-
   explicit Quadtree(const Settings& settings)
       : world_settings_(settings), capacity_(static_cast<std::size_t>(settings.integer("capacity"))) {}
 
- private:
   /// Calls use(tree, root) with the tree over the boxes.
   template <typename Use>
   void fill(std::span<const Box2> boxes, Checkpoint& checkpoint, Use use) const {
@@ -39,32 +35,36 @@ class Quadtree final : public ListingFinder<2>, public Outlined<2> {
     use(tree, root);
   }
 
-  Outline<2> lay_out(std::span<const Box2> boxes) override {
-    Outline<2> outline;
-    outline.kind = "nodes";
-    std::size_t leaves = 0;
-    Checkpoint checkpoint(workers().checkpoint);
-    fill(boxes, checkpoint,
-         [&](const QuadTree&, const QuadTreeNode& root) { leaves = root.lay_out(outline.levels); });
-    std::size_t nodes = 0;
-    for (const std::vector<Box2>& level : outline.levels) nodes += level.size();
-    const auto counted = [](std::size_t count, const std::string& one) {
-      return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-    };
-    outline.caption = counted(nodes, "node") + " on " + counted(outline.levels.size(), "level") + ", " +
-                      (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
-    return outline;
-  }
-
-  void find_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+ private:
+  Statistics search_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+    Statistics statistics;
     fill(boxes, checkpoint, [&](const QuadTree& tree, const QuadTreeNode& root) {
-      this->count(search_tree(tree, root, pairs));
+      statistics = search_tree(tree, root, pairs);
     });
+    return statistics;
   }
 
   WorldSettings world_settings_;
   std::size_t capacity_;
 };
+
+Outline<2> quadtree_outline(std::span<const Box2> boxes, const Workers& workers, const Settings& settings) {
+  Outline<2> outline;
+  outline.kind = "nodes";
+  std::size_t leaves = 0;
+  Checkpoint checkpoint(workers.checkpoint);
+  Quadtree(settings).fill(boxes, checkpoint, [&](const QuadTree&, const QuadTreeNode& root) {
+    leaves = root.lay_out(outline.levels);
+  });
+  std::size_t nodes = 0;
+  for (const std::vector<Box2>& level : outline.levels) nodes += level.size();
+  const auto counted = [](std::size_t count, const std::string& one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+  };
+  outline.caption = counted(nodes, "node") + " on " + counted(outline.levels.size(), "level") + ", " +
+                    (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+  return outline;
+}
 
 }  // namespace
 
@@ -94,8 +94,9 @@ Algorithm quadtree() {
       .source = "paper.md, sections V (Algorithms 7 to 10) and VI-D",
       .kind = AlgorithmKind::paper,
       .tunables = std::move(tunables),
-      .finder_2d = [](const Settings& settings) { return std::make_unique<Quadtree>(settings); },
-      .tracker_2d = make_quadtree_tracker,
+      .searcher_2d = [](const Settings& settings) { return std::make_unique<Quadtree>(settings); },
+      .followers_2d = {{.name = "paper_quadtree", .make = make_quadtree_follower}},
+      .outline_2d = quadtree_outline,
   };
 }
 

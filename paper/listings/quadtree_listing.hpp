@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "paper/listings/algorithm_1.hpp"
 #include "paper/listings/world.hpp"

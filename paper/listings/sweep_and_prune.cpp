@@ -1,43 +1,40 @@
-// The paper's sweep and prune as an algorithm: its finder, and its description.
+// The paper's sweep and prune as an algorithm: its searcher, its outline, and its description.
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "broadside/debug/outline.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
 #include "paper/listings/descriptions.hpp"
-#include "paper/listings/listing_finder.hpp"
+#include "paper/listings/followers.hpp"
+#include "paper/listings/listing_searcher.hpp"
 #include "paper/listings/sweep_listing.hpp"
-#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {
 
 template <int D>
-class SweepAndPrune final : public ListingFinder<D>, public Outlined<D> {
- public:
-  Outlined<D>* outlined() noexcept override { return this; }
-
+class SweepAndPrune final : public ListingSearcher<D> {
  private:
-  void find_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
+  Statistics search_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     SweepListing<D>::sort(boxes, e_);
-    this->count(listing_.algorithm_5_sweep(boxes, e_.size(), pairs, checkpoint,
-                                           [next = e_.begin()]() mutable { return (next++)->id; }));
-  }
-
-  Outline<D> lay_out(std::span<const Box<D>>) override {
-    Box<D> all;
-    all.min.fill(-std::numeric_limits<float>::infinity());
-    all.max.fill(std::numeric_limits<float>::infinity());
-    return {.kind = "sweep", .caption = "one sweep along x", .swept_axis = 0, .levels = {{all}}};
+    return listing_.algorithm_5_sweep(boxes, e_.size(), pairs, checkpoint,
+                                      [next = e_.begin()]() mutable { return (next++)->id; });
   }
 
   SweepListing<D> listing_;
   std::vector<SweepEntry> e_;
 };
+
+template <int D>
+Outline<D> sweep_outline(std::span<const Box<D>>, const Workers&, const Settings&) {
+  Box<D> all;
+  all.min.fill(-std::numeric_limits<float>::infinity());
+  all.max.fill(std::numeric_limits<float>::infinity());
+  return {.kind = "sweep", .caption = "one sweep along x", .swept_axis = 0, .levels = {{all}}};
+}
 
 }  // namespace
 
@@ -56,10 +53,12 @@ Algorithm sweep_and_prune() {
                     .type = Tunable::Type::choice,
                     .choices = {"rebuild", "heap", "insertion", "binary"}},
                    detect_tunable()},
-      .finder_2d = [](const Settings&) { return std::make_unique<SweepAndPrune<2>>(); },
-      .finder_3d = [](const Settings&) { return std::make_unique<SweepAndPrune<3>>(); },
-      .tracker_2d = make_sweep_tracker<2>,
-      .tracker_3d = make_sweep_tracker<3>,
+      .searcher_2d = [](const Settings&) { return std::make_unique<SweepAndPrune<2>>(); },
+      .searcher_3d = [](const Settings&) { return std::make_unique<SweepAndPrune<3>>(); },
+      .followers_2d = {{.name = "paper_sweep_and_prune", .make = make_sweep_follower<2>}},
+      .followers_3d = {{.name = "paper_sweep_and_prune", .make = make_sweep_follower<3>}},
+      .outline_2d = sweep_outline<2>,
+      .outline_3d = sweep_outline<3>,
   };
 }
 

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "kernels/observed_tests.hpp"
 

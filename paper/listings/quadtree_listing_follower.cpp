@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
+#include "paper/listings/followers.hpp"
 #include "paper/listings/quadtree_listing.hpp"
-#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {
@@ -30,10 +30,10 @@ ReinsertFrom reinsert_from_of(const Settings& settings) {
   return text == "cousins" ? ReinsertFrom::cousins : ReinsertFrom::rebuild;
 }
 
-class QuadtreeTracker final : public CoherentTracker<2> {
+class QuadtreeListingFollower final : public CoherentFollower<2> {
  public:
-  explicit QuadtreeTracker(const Settings& settings)
-      : CoherentTracker(settings),
+  explicit QuadtreeListingFollower(const Settings& settings)
+      : CoherentFollower(settings),
         from_(reinsert_from_of(settings)),
         world_settings_(settings),
         capacity_(static_cast<std::size_t>(settings.integer("capacity"))) {}
@@ -190,8 +190,8 @@ class QuadtreeTracker final : public CoherentTracker<2> {
 
 }  // namespace
 
-std::unique_ptr<PairTracker<2>> make_quadtree_tracker(const Settings& settings) {
-  return std::make_unique<QuadtreeTracker>(settings);
+std::unique_ptr<Follower<2>> make_quadtree_follower(const Settings& settings) {
+  return std::make_unique<QuadtreeListingFollower>(settings);
 }
 
 }  // namespace broadside::paper

@@ -1,6 +1,6 @@
-// Section VI of paper.md: a structure is kept from frame to frame and mended where boxes changed, then
-// searched as its listing does. What this tells of a frame is the difference to the pairs of the frame
-// before.
+// CoherentFollower, section VI of paper.md: a structure is kept from frame to frame and mended where boxes
+// changed, then searched as its listing does. The events of a frame are the difference to the pairs of the
+// frame before.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,15 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/follower.hpp"
 
 namespace broadside::paper {
 
-/// VI-A: how a tracker knows which boxes changed: each has a flag, or each is compared with its previous
+/// VI-A: how a follower knows which boxes changed: each has a flag, or each is compared with its previous
 /// state.
 enum class Detection { flag, compare };
 
-/// Where the time of one update went, and what mending the structure came to.
+/// Where the time of one frame went, and what mending the structure came to.
 struct UpdateParts {
   double detecting_ms = 0;
   double mending_ms = 0;  ///< or building anew
@@ -35,18 +34,21 @@ struct UpdateParts {
 /// The tunable `detect`.
 Tunable detect_tunable();
 
-/// A tracker over one structure. Derived classes say how it is built, mended and searched.
+/// A follower over one structure. Derived classes say how it is built, mended and searched.
 ///
-/// The structure is built anew where `update` says so, after a failed update, where the boxes have become
+/// The structure is built anew where `update` says so, after a failed frame, where the boxes have become
 /// more than twice as many as it was built for, and where mend() asks for it.
 template <int D>
-class CoherentTracker : public PairTracker<D> {
+class CoherentFollower : public Follower<D> {
  public:
-  /// Of the last update().
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) final;
+  std::size_t bytes() const noexcept final;
+
+  /// Of the last frame.
   const UpdateParts& parts() const noexcept { return parts_; }
 
  protected:
-  explicit CoherentTracker(const Settings& settings);
+  explicit CoherentFollower(const Settings& settings);
 
   /// The previous state of each box, absent ones among them. A box that mend() has dealt with is to be
   /// brought up to date by it.
@@ -76,8 +78,6 @@ class CoherentTracker : public PairTracker<D> {
   /// The bytes of the structure.
   virtual std::size_t structure_bytes() const noexcept = 0;
 
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) final;
-  std::size_t algorithm_bytes() const noexcept final;
   void find_movers(const Change<D>& change);
   void build_anew(std::span<const Box<D>> boxes);
 
@@ -89,7 +89,7 @@ class CoherentTracker : public PairTracker<D> {
   std::size_t present_ = 0;
   std::size_t built_for_ = 0;  // boxes present when the structure was built
   UpdateParts parts_;
-  std::optional<Checkpoint> checkpoint_;  // of this update
+  std::optional<Checkpoint> checkpoint_;  // of this frame
 };
 
 }  // namespace broadside::paper

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
+#include "paper/listings/followers.hpp"
 #include "paper/listings/sweep_listing.hpp"
-#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {
@@ -32,10 +32,10 @@ ReorderMethod method_of(const Settings& settings) {
 bool is_later(const SweepEntry& a, const SweepEntry& b) { return b < a; }
 
 template <int D>
-class SweepTracker final : public CoherentTracker<D> {
+class SweepListingFollower final : public CoherentFollower<D> {
  public:
-  explicit SweepTracker(const Settings& settings)
-      : CoherentTracker<D>(settings), method_(method_of(settings)) {}
+  explicit SweepListingFollower(const Settings& settings)
+      : CoherentFollower<D>(settings), method_(method_of(settings)) {}
 
  private:
   void build() override {
@@ -154,11 +154,11 @@ class SweepTracker final : public CoherentTracker<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<PairTracker<D>> make_sweep_tracker(const Settings& settings) {
-  return std::make_unique<SweepTracker<D>>(settings);
+std::unique_ptr<Follower<D>> make_sweep_follower(const Settings& settings) {
+  return std::make_unique<SweepListingFollower<D>>(settings);
 }
 
-template std::unique_ptr<PairTracker<2>> make_sweep_tracker<2>(const Settings&);
-template std::unique_ptr<PairTracker<3>> make_sweep_tracker<3>(const Settings&);
+template std::unique_ptr<Follower<2>> make_sweep_follower<2>(const Settings&);
+template std::unique_ptr<Follower<3>> make_sweep_follower<3>(const Settings&);
 
 }  // namespace broadside::paper

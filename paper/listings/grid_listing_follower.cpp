@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
+#include "paper/listings/followers.hpp"
 #include "paper/listings/grid_listing.hpp"
-#include "paper/listings/trackers.hpp"
 
 namespace broadside::paper {
 namespace {
@@ -46,10 +46,10 @@ bool stays(double from, double to, double begin, double size) {
   return is_inside(offset) && is_inside(offset + (to - from));
 }
 
-class GridTracker final : public CoherentTracker<2> {
+class GridListingFollower final : public CoherentFollower<2> {
  public:
-  explicit GridTracker(const Settings& settings)
-      : CoherentTracker(settings),
+  explicit GridListingFollower(const Settings& settings)
+      : CoherentFollower(settings),
         reposition_(reposition_of(settings)),
         grid_(WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")) {}
 
@@ -179,8 +179,8 @@ class GridTracker final : public CoherentTracker<2> {
 
 }  // namespace
 
-std::unique_ptr<PairTracker<2>> make_grid_tracker(const Settings& settings) {
-  return std::make_unique<GridTracker>(settings);
+std::unique_ptr<Follower<2>> make_grid_follower(const Settings& settings) {
+  return std::make_unique<GridListingFollower>(settings);
 }
 
 }  // namespace broadside::paper

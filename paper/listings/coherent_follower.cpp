@@ -1,5 +1,5 @@
-// What the trackers of section VI have in common.
-#include "paper/listings/coherent_tracker.hpp"
+// What the followers of section VI have in common.
+#include "paper/listings/coherent_follower.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -41,11 +41,11 @@ Tunable detect_tunable() {
 }
 
 template <int D>
-CoherentTracker<D>::CoherentTracker(const Settings& settings)
+CoherentFollower<D>::CoherentFollower(const Settings& settings)
     : detection_(settings.text("detect") == "flag" ? Detection::flag : Detection::compare) {}
 
 template <int D>
-void CoherentTracker<D>::find_movers(const Change<D>& change) {
+void CoherentFollower<D>::find_movers(const Change<D>& change) {
   movers_.clear();
   for (std::size_t i = 0; i < change.now.size(); ++i) {
     const bool changed = detection_ == Detection::flag ? change.flags[i] != 0 : !(change.now[i] == boxes_[i]);
@@ -57,7 +57,7 @@ void CoherentTracker<D>::find_movers(const Change<D>& change) {
 }
 
 template <int D>
-void CoherentTracker<D>::build_anew(std::span<const Box<D>> boxes) {
+void CoherentFollower<D>::build_anew(std::span<const Box<D>> boxes) {
   boxes_.assign(boxes.begin(), boxes.end());
   built_for_ = present_ = count_present(boxes);
   parts_.built = true;
@@ -65,7 +65,8 @@ void CoherentTracker<D>::build_anew(std::span<const Box<D>> boxes) {
 }
 
 template <int D>
-void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) {
+std::optional<Statistics> CoherentFollower<D>::follow(const Change<D>& change, PairSink& begun,
+                                                      PairSink& ended) {
   const auto search_into = [this](std::vector<Pair>& pairs) {
     pairs.clear();
     PairCollector collector(pairs);
@@ -73,7 +74,7 @@ void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, 
     collector.flush();
     return statistics;
   };
-  checkpoint_.emplace(this->workers().checkpoint);
+  checkpoint_.emplace(change.workers.checkpoint);
   parts_ = {};
   if (change.rebuild) {  // the events start from the frame before, and nothing of it was kept
     build_anew(change.before);
@@ -97,16 +98,16 @@ void CoherentTracker<D>::update_valid(const Change<D>& change, PairSink& begun, 
   }
   std::swap(pairs_, found_);
   parts_.comparing_ms = lap();
-  this->count(statistics);
+  return statistics;
 }
 
 template <int D>
-std::size_t CoherentTracker<D>::algorithm_bytes() const noexcept {
+std::size_t CoherentFollower<D>::bytes() const noexcept {
   return boxes_.capacity() * sizeof(Box<D>) + movers_.capacity() * sizeof(BoxId) +
          (pairs_.capacity() + found_.capacity()) * sizeof(Pair) + structure_bytes();
 }
 
-template class CoherentTracker<2>;
-template class CoherentTracker<3>;
+template class CoherentFollower<2>;
+template class CoherentFollower<3>;
 
 }  // namespace broadside::paper
