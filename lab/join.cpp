@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 
 #include "lab/numbers.hpp"
 
@@ -101,7 +102,7 @@ void match(FrameOfFile& left, FrameOfFile& right) {
 void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        make_finder<D, Real>(*entry.algorithm, entry.spec)->find(list, pairs);
+        Finder<D, Real>(*entry.algorithm, entry.spec).find(list, pairs);
       },
       boxes);
 }
@@ -109,8 +110,8 @@ void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs) {
 void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
-        finder->find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs);
+        Finder<D, Real> finder(*entry.algorithm, entry.spec);
+        finder.find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs);
       },
       left);
 }

@@ -47,7 +47,7 @@ Rounding round_to_float(AnyBoxes& boxes);
 void match(FrameOfFile& left, FrameOfFile& right);
 
 /// Writes every pair of overlapping boxes once, in the order in which the entry finds them. Throws as
-/// PairFinder::find() does, and InvalidSpec if the entry cannot search boxes of this dimension.
+/// Finder::find() does, and InvalidSpec if the entry cannot search boxes of this dimension.
 void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs);
 
 /// Writes every pair of a box of `left` and one of `right`, which match, likewise.

@@ -22,8 +22,8 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
   if (!is_ours)
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);
   // What the library cannot look up by its name is made of its description.
-  const auto made = [&](std::string_view function) {
-    return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec(\"{}\"))", function, dimension,
+  const auto made = [&](std::string_view facade) {
+    return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec(\"{}\"))", facade, dimension,
                        precision == Precision::float64 ? ", double" : "", name, spec);
   };
   if (mode == Mode::find) {
@@ -36,9 +36,9 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
                       is_ours ? fmt::format("  return broadside::find_pairs(boxes, \"{}\");\n", spec)
                               : fmt::format("  std::vector<broadside::Pair> pairs;\n"
                                             "  broadside::PairCollector collector(pairs);\n"
-                                            "  {}->find(boxes, collector);\n"
+                                            "  {}.find(boxes, collector);\n"
                                             "  return pairs;\n",
-                                            made("make_finder")));
+                                            made("Finder")));
   }
   return text + fmt::format(
                     "broadside::{0}World{1} world({2});\n\n"
@@ -47,7 +47,7 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
                     "void remove(broadside::Handle handle) {{ world.remove(handle); }}\n\n"
                     "// Once a frame: the pairs that began and ended since the last call.\n"
                     "broadside::Events update() {{ return world.update(); }}\n",
-                    real, dimension, is_ours ? fmt::format("\"{}\"", spec) : made("make_tracker"), box);
+                    real, dimension, is_ours ? fmt::format("\"{}\"", spec) : made("Tracker"), box);
 }
 
 }  // namespace broadside::lab

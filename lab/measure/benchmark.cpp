@@ -10,6 +10,7 @@
 
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/version.hpp"
 
 #include "lab/numbers.hpp"
@@ -94,8 +95,7 @@ std::string unfit(const Entry& entry, int dimension, const Extremes& extremes) {
     return fmt::format("does not take more than {} boxes", grouped(algorithm.most_boxes));
   try {
     // A value may make sense in one dimension only, such as an axis.
-    dimension == 2 ? void(make_finder<2>(algorithm, entry.spec))
-                   : void(make_finder<3>(algorithm, entry.spec));
+    dimension == 2 ? void(Finder<2>(algorithm, entry.spec)) : void(Finder<3>(algorithm, entry.spec));
   } catch (const InvalidSpec& unusable) {
     return unusable.what();
   }

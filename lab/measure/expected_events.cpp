@@ -91,21 +91,11 @@ ExpectedEvents expected_events(const Reference& reference, const History<D, Real
                                const std::function<void()>& asks) {
   if (reference.is_definition()) return events_by_definition(history);
   ExpectedEvents expected;
-  DiffTracker<D, Real> tracker(reference.finder<D, Real>());
-  Workers workers = tracker.workers();
-  workers.checkpoint = asks;
-  tracker.set_workers(workers);
   std::vector<Pair> pairs;
   replay(history, [&](const Frame<D, Real>& frame) {
-    Events events;
-    PairCollector begun(events.begun);
-    PairCollector ended(events.ended);
-    tracker.update(frame, begun, ended);
-    const std::vector<Pair> rest = without(pairs, events.ended);
-    pairs.clear();
-    std::ranges::merge(rest, events.begun, std::back_inserter(pairs));
+    const std::vector<Pair> before = std::exchange(pairs, reference.pairs<D, Real>(frame.boxes, asks));
     const std::size_t number = expected.frames.size();
-    expected.frames.push_back(std::move(events));
+    expected.frames.push_back({without(pairs, before), without(before, pairs)});
     // Other boxes in each frame.
     auto divergence =
         expected.fault.empty() ? check_sample<D, Real>(frame.boxes, pairs, number + 1) : std::nullopt;

@@ -31,9 +31,8 @@ struct ExpectedEvents {
 template <int D, typename Real>
 double tests_by_definition(const History<D, Real>& history);
 
-/// The events of `history` by the reference: the definition's pairs in each frame and what differs from one
-/// to the next, or those of a DiffTracker over the reference's finder, whose pairs are sampled in every
-/// frame, each time those of other boxes.
+/// The events of `history` by the reference: what differs between its pairs of one frame and the next. Where
+/// the reference is not the definition, its pairs are sampled in every frame, each time those of other boxes.
 template <int D, typename Real>
 ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history,
                                const std::function<void()>& asks = {});

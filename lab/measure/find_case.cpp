@@ -1,11 +1,13 @@
-// Measures finders: every algorithm on the same boxes, in rounds, each result checked.
+// Measures searches: every algorithm on the same boxes, in rounds, each result checked.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/measure/cases.hpp"
@@ -39,12 +41,27 @@ struct ExpectedPairs {
   std::string fault;        // of the reference itself
 };
 
+/// A finder, and what tears down the structure that a peer's searcher leaves; null where nothing does.
+template <int D, typename Real>
+struct TornDownFinder {
+  Finder<D, Real> finder;
+  peers::TearDown* structure = nullptr;
+
+  static TornDownFinder of(const Entry& entry) {
+    if (entry.algorithm->kind != AlgorithmKind::peer) return {Finder<D, Real>(*entry.algorithm, entry.spec)};
+    const Settings settings(entry.spec, entry.algorithm->tunables);
+    std::unique_ptr<Searcher<D>> searcher = entry.algorithm->searcher<D>()(settings);
+    auto* const structure = dynamic_cast<peers::TearDown*>(searcher.get());
+    return {Finder<D, Real>(std::move(searcher)), structure};
+  }
+};
+
 /// An algorithm that takes part.
 template <int D, typename Real>
 struct FindParticipant {
   const Entry* entry;
   Measurement* measurement;
-  std::unique_ptr<PairFinder<D, Real>> finder{};
+  std::optional<TornDownFinder<D, Real>> kept{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
   std::size_t most_rounds = no_limit;
 };
@@ -93,13 +110,13 @@ class FindCase {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
-      const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
-      benchmark_.watch.ask_within(*finder);
-      const double first = call(*finder, some);
+      auto kept = TornDownFinder<D, Real>::of(entry);
+      benchmark_.watch.ask_within(kept.finder);
+      const double first = call(kept, some);
       // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
       // call takes memory.
       constexpr double is_short_ms = 50;
-      return (first < is_short_ms ? std::min(first, call(*finder, some)) : first) / 1e3;
+      return (first < is_short_ms ? std::min(first, call(kept, some)) : first) / 1e3;
     };
     attempt(measurement, [&]() -> std::string {
       benchmark_.watch.at(measurement.algorithm + ", making the reference");
@@ -127,16 +144,15 @@ class FindCase {
     measurement.outcome = Outcome::verified;
     attempt(measurement, [&] {
       const AllocationMeter meter;
-      participant.finder = make_finder<D, Real>(*participant.entry->algorithm, participant.entry->spec);
-      benchmark_.watch.ask_within(*participant.finder);
-      const double first = call(*participant.finder, boxes_of(0));
-      benchmark_.watch.ask_within(*participant.finder, first >= least_asking_ms);
+      auto& kept = participant.kept.emplace(TornDownFinder<D, Real>::of(*participant.entry));
+      benchmark_.watch.ask_within(kept.finder);
+      const double first = call(kept, boxes_of(0));
+      benchmark_.watch.ask_within(kept.finder, first >= least_asking_ms);
       count_memory(measurement, *participant.entry->algorithm, meter.read());
       measurement.pairs = pairs_.size();
       measurement.pair_hash = hash_of(pairs_);
-      measurement.statistics = participant.finder->statistics();
-      measurement.explanation =
-          explanation_of(*participant.entry->algorithm, participant.finder->explanation());
+      measurement.statistics = statistics_;
+      measurement.explanation = explanation_of(*participant.entry->algorithm, kept.finder.explanation());
       return check(participant, 0);
     });
   }
@@ -174,7 +190,7 @@ class FindCase {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
     attempt(measurement, [&] {
-      measurement.samples_ms.push_back(call(*participant.finder, boxes_of(input)));
+      measurement.samples_ms.push_back(call(*participant.kept, boxes_of(input)));
       return check(participant, input);
     });
   }
@@ -188,15 +204,15 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  /// Milliseconds for one search, whose pairs are then in pairs_.
-  double call(PairFinder<D, Real>& finder, std::span<const Box<D, Real>> boxes) {
+  /// Milliseconds for one search, whose pairs are then in pairs_ and whose statistics in statistics_.
+  double call(TornDownFinder<D, Real>& kept, std::span<const Box<D, Real>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
-    finder.find(boxes, collector);
+    statistics_ = kept.finder.find(boxes, collector);
     const double milliseconds = watch.milliseconds();
-    if (auto* const peer = dynamic_cast<peers::TearDown*>(&finder)) peer->tear_down();
+    if (kept.structure != nullptr) kept.structure->tear_down();
     return milliseconds;
   }
 
@@ -250,8 +266,9 @@ class FindCase {
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<FindParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<ExpectedPairs>> expectations_;
-  std::vector<Pair> pairs_;  // of the last call; its memory serves all
-  std::size_t touched_ = 0;  // how many pairs of that memory were written to
+  std::vector<Pair> pairs_;               // of the last call; its memory serves all
+  std::optional<Statistics> statistics_;  // likewise
+  std::size_t touched_ = 0;               // how many pairs of that memory were written to
   CacheState caches_;
   Stopwatch watch_;
   std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;

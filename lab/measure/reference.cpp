@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "broadside/executor.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/numbers.hpp"
@@ -36,20 +37,15 @@ std::string Reference::text() const {
 }
 
 template <int D, typename Real>
-std::unique_ptr<PairFinder<D, Real>> Reference::finder() const {
-  return is_definition() ? nullptr : make_finder<D, Real>(*algorithm_, Spec{algorithm_->name, {}});
-}
-
-template <int D, typename Real>
 std::vector<Pair> Reference::pairs(BoxSpan<D, Real> boxes, const std::function<void()>& asks) const {
   if (is_definition()) return reference_pairs<D, Real>(boxes);
   std::vector<Pair> pairs;
   PairCollector collector(pairs);
-  const auto searching = finder<D, Real>();
-  Workers workers = searching->workers();
+  Finder<D, Real> finder(*algorithm_, Spec{algorithm_->name, {}});
+  Workers workers = finder.workers();
   workers.checkpoint = asks;
-  searching->set_workers(workers);
-  searching->find(boxes, collector);
+  finder.set_workers(workers);
+  finder.find(boxes, collector);
   Checkpoint checkpoint(asks);
   sort_pairs(pairs, checkpoint);
   return pairs;
@@ -84,20 +80,16 @@ std::vector<std::size_t> sample_of(std::size_t size, std::size_t count, std::uin
   return chosen;
 }
 
-template std::unique_ptr<PairFinder<2, float>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<2, float>(BoxSpan<2, float>, const std::function<void()>&) const;
 template std::optional<Divergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>,
                                                           std::uint64_t);
-template std::unique_ptr<PairFinder<2, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<2, double>(BoxSpan<2, double>,
                                                        const std::function<void()>&) const;
 template std::optional<Divergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>,
                                                            std::uint64_t);
-template std::unique_ptr<PairFinder<3, float>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, float>(BoxSpan<3, float>, const std::function<void()>&) const;
 template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>,
                                                           std::uint64_t);
-template std::unique_ptr<PairFinder<3, double>> Reference::finder() const;
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>,
                                                        const std::function<void()>&) const;
 template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>,

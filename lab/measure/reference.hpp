@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,10 +40,6 @@ class Reference {
   /// and sorting call the checkpoint.
   template <int D, typename Real = float>
   std::vector<Pair> pairs(BoxSpan<D, Real> boxes, const std::function<void()>& checkpoint = {}) const;
-
-  /// A finder of the expected pairs; null if they come from the definition.
-  template <int D, typename Real = float>
-  std::unique_ptr<PairFinder<D, Real>> finder() const;
 
   friend bool operator==(const Reference&, const Reference&) = default;
 

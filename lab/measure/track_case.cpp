@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/measure/cases.hpp"
 #include "lab/measure/evidence.hpp"
@@ -30,8 +32,8 @@ template <int D, typename Real>
 struct TrackParticipant {
   const Entry* entry;
   Measurement* measurement;
-  std::unique_ptr<PairTracker<D, Real>> tracker{};  // of this pass
-  const ExpectedEvents* expected = nullptr;         // of this pass
+  std::optional<Tracker<D, Real>> tracker{};  // of this pass
+  const ExpectedEvents* expected = nullptr;   // of this pass
   EventHasher hasher{};
   std::vector<double> frames_ms{};  // of this pass
   std::vector<double> builds_ms{};  // the first frames of all timed passes
@@ -107,14 +109,14 @@ class TrackCase {
     double least = INFINITY;
     for (int attempt = 0; attempt < 3; ++attempt) {
       if (attempt > 0 && least > is_short) break;
-      const auto tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
-      benchmark_.watch.ask_within(*tracker);
+      Tracker<D, Real> tracker(*entry.algorithm, entry.spec);
+      benchmark_.watch.ask_within(tracker);
       std::vector<Box<D, Real>> boxes = history.boxes;
-      const double first = update(*tracker, {boxes, {}});
+      const double first = update(tracker, {boxes, {}});
       double others = 0;
       for (const Step<D, Real>& step : history.steps) {
         apply(step, boxes);
-        others += update(*tracker, {boxes, step.changed});
+        others += update(tracker, {boxes, step.changed});
       }
       const double frames = static_cast<double>(case_.frames) /
                             static_cast<double>(std::max<std::size_t>(history.steps.size(), 1));
@@ -123,15 +125,15 @@ class TrackCase {
     return least;
   }
 
-  /// Milliseconds for one frame, whose events are then in events_.
-  double update(PairTracker<D, Real>& tracker, const Frame<D, Real>& frame) {
+  /// Milliseconds for one frame, whose events are then in events_ and whose statistics in statistics_.
+  double update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame) {
     events_.begun.clear();
     events_.ended.clear();
     PairCollector begun(events_.begun);
     PairCollector ended(events_.ended);
     caches_.settle(std::as_bytes(frame.boxes));
     const Stopwatch watch;
-    tracker.update(frame, begun, ended);
+    statistics_ = tracker.update(frame, begun, ended);
     return watch.milliseconds();
   }
 
@@ -208,7 +210,7 @@ class TrackCase {
     touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
     const auto make_and_update = [&] {
       if (!participant.tracker) {
-        participant.tracker = make_tracker<D, Real>(*participant.entry->algorithm, participant.entry->spec);
+        participant.tracker.emplace(*participant.entry->algorithm, participant.entry->spec);
         benchmark_.watch.ask_within(*participant.tracker, counts_memory || participant.is_long);
       }
       return update(*participant.tracker, now);
@@ -248,10 +250,9 @@ class TrackCase {
     participant.hasher.add(events_);
     participant.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
-    const auto& statistics = participant.tracker->statistics();
-    if (frame == 0 || !statistics) return;
-    participant.tests += statistics->tests;
-    participant.references += statistics->references;
+    if (frame == 0 || !statistics_) return;
+    participant.tests += statistics_->tests;
+    participant.references += statistics_->references;
     participant.measurement->statistics =
         Statistics{participant.tests / frame, participant.references / frame};
   }
@@ -295,8 +296,9 @@ class TrackCase {
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<TrackParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<InputEvents>> expectations_;
-  Events events_;            // of the last update; its memory serves all
-  std::size_t touched_ = 0;  // how many events of that memory were written to
+  Events events_;                         // of the last update; its memory serves all
+  std::optional<Statistics> statistics_;  // likewise
+  std::size_t touched_ = 0;               // how many events of that memory were written to
   CacheState caches_;
   Stopwatch watch_;
 };

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -15,7 +14,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/sinks.hpp"
 
 #include "lab/numbers.hpp"
@@ -143,8 +142,7 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
   Drawing drawing{scene, D, drawn.size(), of, {}};
   std::vector<std::pair<const Entry*, Outline<D>>> outlines;
   for (const Entry& entry : entries) {
-    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*entry.algorithm, entry.spec);
-    outlines.emplace_back(&entry, outline(*finder, drawn));
+    outlines.emplace_back(&entry, outline(*entry.algorithm, entry.spec, drawn));
   }
   const std::vector<bool> touches = touching(drawn);
   for (const Axes& axes : views_of<D>()) {
@@ -170,12 +168,7 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
 }
 
 bool has_outline(const Entry& entry, int dimension) {
-  if (!entry.algorithm->has_dimension(dimension)) return false;
-  const auto in_dimension = [&]<int D>() {
-    const std::unique_ptr<PairFinder<D>> finder = make_finder<D>(*entry.algorithm, entry.spec);
-    return finder->outlined() != nullptr;
-  };
-  return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
+  return dimension == 2 ? bool(entry.algorithm->outline_2d) : bool(entry.algorithm->outline_3d);
 }
 
 Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of, std::span<const Entry> entries,

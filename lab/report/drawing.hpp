@@ -53,9 +53,9 @@ inline constexpr std::size_t most_drawn = 600;
 template <int D>
 std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most = most_drawn);
 
-/// Draws these boxes and each entry's layer over them: of those that are Outlined in D dimensions, which
-/// are searched for as make_finder() makes them. A view holds all boxes but for far outliers; what reaches
-/// beyond it is clipped. Absent boxes are not there. `of` is what Drawing::of is to be.
+/// Draws these boxes and over them the layer of each entry with an outline in D dimensions. A view holds all
+/// boxes but for far outliers; what reaches beyond it is clipped. Absent boxes are not there. `of` is what
+/// Drawing::of is to be.
 template <int D>
 Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_t of,
              std::span<const Entry> entries);

@@ -30,16 +30,16 @@ std::string fault_on(const History<D, Real>& history, const Entry& entry, std::s
     return reference.pairs<D, Real>(boxes);
   };
   return fault_of(name, [&]() -> std::string {
-    const auto finder = make_finder<D, Real>(algorithm, entry.spec);
+    Finder<D, Real> finder(algorithm, entry.spec);
     std::vector<Box<D, Real>> boxes = history.boxes;
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) lab::apply(history.steps[frame - 1], boxes);
-      if (const auto divergence = check_finder<D, Real>(*finder, boxes, name, expected, frame))
+      if (const auto divergence = check_finder<D, Real>(finder, boxes, name, expected, frame))
         return divergence->text;
     }
     if (history.steps.empty()) return {};
-    const auto tracker = make_tracker<D, Real>(algorithm, entry.spec);
-    const auto divergence = check_tracker<D, Real>(*tracker, history, name, expected);
+    Tracker<D, Real> tracker(algorithm, entry.spec);
+    const auto divergence = check_tracker<D, Real>(tracker, history, name, expected);
     return divergence ? divergence->text : "";
   });
 }

@@ -128,9 +128,8 @@ Divergence explained(Divergence divergence, std::string_view name, std::string_v
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
-                                       std::string_view name, const ExpectedPairs<D, Real>& expected,
-                                       std::size_t frame) {
+std::optional<Divergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
+                                       const ExpectedPairs<D, Real>& expected, std::size_t frame) {
   std::vector<Pair> found;
   PairCollector collector(found);
   finder.find(boxes, collector);
@@ -161,7 +160,7 @@ std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const History<D, Real>& history,
+std::optional<Divergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
                                         std::string_view name, const ExpectedPairs<D, Real>& expected) {
   std::vector<Box<D, Real>> boxes = history.boxes;
   std::vector<Pair> before;
@@ -186,9 +185,9 @@ template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs_of<2, float>(BoxSpan<2, float>, std::span<const std::size_t>);
 template Divergence explained<2, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<2, float>);
-template std::optional<Divergence> check_finder(PairFinder<2, float>&, BoxSpan<2, float>, std::string_view,
+template std::optional<Divergence> check_finder(Finder<2, float>&, BoxSpan<2, float>, std::string_view,
                                                 const ExpectedPairs<2, float>&, std::size_t);
-template std::optional<Divergence> check_tracker(PairTracker<2, float>&, const History<2, float>&,
+template std::optional<Divergence> check_tracker(Tracker<2, float>&, const History<2, float>&,
                                                  std::string_view, const ExpectedPairs<2, float>&);
 template std::optional<Divergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                           std::span<const Pair>, std::span<const Pair>,
@@ -197,9 +196,9 @@ template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs_of<2, double>(BoxSpan<2, double>, std::span<const std::size_t>);
 template Divergence explained<2, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<2, double>);
-template std::optional<Divergence> check_finder(PairFinder<2, double>&, BoxSpan<2, double>, std::string_view,
+template std::optional<Divergence> check_finder(Finder<2, double>&, BoxSpan<2, double>, std::string_view,
                                                 const ExpectedPairs<2, double>&, std::size_t);
-template std::optional<Divergence> check_tracker(PairTracker<2, double>&, const History<2, double>&,
+template std::optional<Divergence> check_tracker(Tracker<2, double>&, const History<2, double>&,
                                                  std::string_view, const ExpectedPairs<2, double>&);
 template std::optional<Divergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                            std::span<const Pair>, std::span<const Pair>,
@@ -208,9 +207,9 @@ template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs_of<3, float>(BoxSpan<3, float>, std::span<const std::size_t>);
 template Divergence explained<3, float>(Divergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<3, float>);
-template std::optional<Divergence> check_finder(PairFinder<3, float>&, BoxSpan<3, float>, std::string_view,
+template std::optional<Divergence> check_finder(Finder<3, float>&, BoxSpan<3, float>, std::string_view,
                                                 const ExpectedPairs<3, float>&, std::size_t);
-template std::optional<Divergence> check_tracker(PairTracker<3, float>&, const History<3, float>&,
+template std::optional<Divergence> check_tracker(Tracker<3, float>&, const History<3, float>&,
                                                  std::string_view, const ExpectedPairs<3, float>&);
 template std::optional<Divergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                           std::span<const Pair>, std::span<const Pair>,
@@ -219,9 +218,9 @@ template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
 template std::vector<Pair> reference_pairs_of<3, double>(BoxSpan<3, double>, std::span<const std::size_t>);
 template Divergence explained<3, double>(Divergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<3, double>);
-template std::optional<Divergence> check_finder(PairFinder<3, double>&, BoxSpan<3, double>, std::string_view,
+template std::optional<Divergence> check_finder(Finder<3, double>&, BoxSpan<3, double>, std::string_view,
                                                 const ExpectedPairs<3, double>&, std::size_t);
-template std::optional<Divergence> check_tracker(PairTracker<3, double>&, const History<3, double>&,
+template std::optional<Divergence> check_tracker(Tracker<3, double>&, const History<3, double>&,
                                                  std::string_view, const ExpectedPairs<3, double>&);
 template std::optional<Divergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                            std::span<const Pair>, std::span<const Pair>,

@@ -10,7 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/scenes/scene.hpp"
 
@@ -55,15 +56,14 @@ Divergence explained(Divergence divergence, std::string_view name, std::string_v
 
 /// Whether `finder` gives the expected pairs on `boxes`. `name` and `frame` are for the divergence's text.
 template <int D, typename Real>
-std::optional<Divergence> check_finder(PairFinder<D, Real>& finder, BoxSpan<D, Real> boxes,
-                                       std::string_view name,
+std::optional<Divergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
                                        const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>,
                                        std::size_t frame = 0);
 
 /// Whether `tracker`, over the whole history, gives in each frame exactly the events that lead from the
 /// expected pairs of the frame before to this frame's, sorted.
 template <int D, typename Real>
-std::optional<Divergence> check_tracker(PairTracker<D, Real>& tracker, const History<D, Real>& history,
+std::optional<Divergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
                                         std::string_view name,
                                         const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
 

@@ -35,8 +35,8 @@ struct Participant {
   const Entry* entry;
   std::size_t verdict;  // its place in the list
   Expectation* expected;
-  std::unique_ptr<PairFinder<D, Real>> finder{};
-  std::unique_ptr<PairTracker<D, Real>> tracker{};
+  Finder<D, Real> finder;
+  std::optional<Tracker<D, Real>> tracker{};  // none for a single frame
   double spent_ms = 0;
   bool done = false;
 };
@@ -88,9 +88,9 @@ class HistoryCheck {
     } else {
       Expectation& expected = expectation_for(*entry.algorithm);
       verdict.verified_by = expected.reference.text();
-      Participant<D, Real> participant{&entry, result_.verdicts.size(), &expected};
-      participant.finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
-      if (!history_.steps.empty()) participant.tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
+      Participant<D, Real> participant{&entry, result_.verdicts.size(), &expected,
+                                       Finder<D, Real>(*entry.algorithm, entry.spec)};
+      if (!history_.steps.empty()) participant.tracker.emplace(*entry.algorithm, entry.spec);
       participants_.push_back(std::move(participant));
     }
     result_.verdicts.push_back(std::move(verdict));
@@ -105,7 +105,7 @@ class HistoryCheck {
       for (const std::size_t i : sample_of(fullest_.size(), count)) some.push_back(fullest_[i]);
       PairCounter counter;
       const Stopwatch watch;
-      make_finder<D, Real>(*entry.algorithm, entry.spec)->find(some, counter);
+      Finder<D, Real>(*entry.algorithm, entry.spec).find(some, counter);
       return watch.milliseconds() / 1e3;
     };
     std::string reason;
@@ -196,7 +196,7 @@ class HistoryCheck {
     std::vector<Pair> found;
     PairCollector collector(found);
     const Stopwatch search;
-    participant.finder->find(boxes, collector);
+    participant.finder.find(boxes, collector);
     participant.spent_ms += search.milliseconds();
     if (auto divergence = compare_pairs(std::move(found), expected.now)) {
       if (is_right_about(*divergence, boxes)) {

@@ -37,7 +37,7 @@ struct InputFamily {
   MakeDoubleBoxes<2> boxes_2d;
   MakeDoubleBoxes<3> boxes_3d;
   bool fixed_order = false;  ///< the order of the boxes matters
-  bool two_sets = false;  ///< few pairs between two halves, about n^2 within each: for find_between() alone
+  bool two_sets = false;     ///< few pairs between two halves, about n^2 within each: for find_across() alone
 };
 
 /// All families, in a fixed order. Thread-safe.

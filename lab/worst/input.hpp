@@ -25,7 +25,7 @@ struct HardInput {
   int dimension = 2;
   bool in_double = false;  ///< the precision of the boxes
   Call call = Call::find;
-  double left = 0.5;           ///< of find_between: the part of the boxes in the left set
+  double left = 0.5;           ///< of find_across(): the part of the boxes in the left set
   double moving = 0;           ///< of trackers: the fraction that moves
   double drift = 0;            ///< how far a mover goes in a frame, in units of its size
   double teleport = 0;         ///< the fraction of movers that jumps in a frame
@@ -51,7 +51,7 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers = 100
 template <int D, typename Real>
 History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size_t frames);
 
-/// How many of `boxes` boxes are in the left set; 0 unless the call is to find_between().
+/// How many of `boxes` boxes are in the left set; 0 unless the call is to find_across().
 std::size_t left_count(const HardInput& input, std::size_t boxes);
 
 /// Even boxes with the same call: the input that this one is compared with.
