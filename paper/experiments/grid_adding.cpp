@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -60,10 +59,11 @@ class FirstPairClock final : public PairSink {
 struct Times {
   std::vector<double> first_ms{};
   std::vector<double> all_ms{};
+  Statistics statistics{};  ///< of the last search
 
-  void sample(PairFinder<2>& finder, std::span<const Box2> boxes, std::span<const Pair> expected) {
+  void sample(Finder<2>& finder, std::span<const Box2> boxes, std::span<const Pair> expected) {
     FirstPairClock clock;
-    finder.find(boxes, clock);
+    statistics = finder.find(boxes, clock).value();
     all_ms.push_back(clock.all_ms());
     first_ms.push_back(clock.first_ms());
     if (const auto divergence = compare_pairs(clock.pairs(), expected))
@@ -85,9 +85,9 @@ struct World {
     boxes[0] = boxes[1] = {low, {low[0] + 1, low[1] + 1}};
   }
 
-  std::unique_ptr<PairFinder<2>> make_grid(double cell) const {
-    return make_finder<2>(fmt::format("paper_grid:cell={}:left={}:top={}:width={}:height={}", cell, low[0],
-                                      low[1], extent[0], extent[1]));
+  Finder<2> make_grid(double cell) const {
+    return Finder<2>(fmt::format("paper_grid:cell={}:left={}:top={}:width={}:height={}", cell, low[0], low[1],
+                                 extent[0], extent[1]));
   }
 
   double cells(double cell) const {
@@ -120,7 +120,7 @@ bool measure_shares(const Laboratory& laboratory, double neighbours, double acro
   Times fresh;       // new ones
   Times kept_alone;  // likewise, with nothing but two points in the first cell
   Times fresh_alone;
-  std::vector<std::unique_ptr<PairFinder<2>>> grids;
+  std::vector<Finder<2>> grids;
   for (const World& world : worlds) grids.push_back(world.make_grid(cell));
   const std::vector<Pair> pair = {{BoxId(0), BoxId(1)}};
   std::array<Statistics, 4> statistics;
@@ -128,12 +128,14 @@ bool measure_shares(const Laboratory& laboratory, double neighbours, double acro
   for (std::size_t round = 0;
        round < 12 || (round < 400 && watch.milliseconds() < laboratory.either(600, 100)); ++round) {
     const std::size_t i = round % worlds.size();
-    kept.sample(*grids[i], worlds[i].boxes, expected[i]);
-    statistics[i] = *grids[i]->statistics();
+    kept.sample(grids[i], worlds[i].boxes, expected[i]);
+    statistics[i] = kept.statistics;
     const std::vector<Box2> points(2, Box2{worlds[i].low, worlds[i].low});
-    kept_alone.sample(*grids[i], points, pair);
-    fresh.sample(*worlds[i].make_grid(cell), worlds[i].boxes, expected[i]);
-    fresh_alone.sample(*worlds[i].make_grid(cell), points, pair);
+    kept_alone.sample(grids[i], points, pair);
+    Finder<2> new_grid = worlds[i].make_grid(cell);
+    fresh.sample(new_grid, worlds[i].boxes, expected[i]);
+    new_grid = worlds[i].make_grid(cell);
+    fresh_alone.sample(new_grid, points, pair);
   }
   double references = 0;
   double tests = 0;

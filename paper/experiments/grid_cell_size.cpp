@@ -78,11 +78,11 @@ struct Cells {
   double tests = 0;
 };
 
-/// The side of a cell, by the cells that the finder lays over the boxes: most often that of most of them,
+/// The side of a cell, by the cells that the algorithm lays over the boxes: most often that of most of them,
 /// since the ones at the border end with the boxes.
 template <int D>
-double side_of(PairFinder<D>& finder, const std::vector<Box<D>>& boxes) {
-  const Outline<D> cells = outline(finder, boxes);
+double side_of(const std::string& algorithm, const std::vector<Box<D>>& boxes) {
+  const Outline<D> cells = outline<D, float>(algorithm, boxes);
   const int axis = cells.swept_axis == 0 ? 1 : 0;
   std::vector<double> sides;
   for (const Box<D>& cell : cells.levels.at(0))
@@ -92,17 +92,17 @@ double side_of(PairFinder<D>& finder, const std::vector<Box<D>>& boxes) {
 
 template <int D>
 Cells cells_of(const Case& of, const std::string& scene, std::size_t boxes, const Measurement& measured) {
-  const auto finder = make_finder<D>(measured.algorithm);
+  Finder<D> finder(measured.algorithm);
   const std::size_t seeds = std::min(of.seeds.size(), measured.samples_ms.size());
   Cells cells;
   for (std::size_t i = 0; i < seeds; ++i) {
     const std::vector<Box<D>> some = history_of<D>(scene, {.boxes = boxes, .seed = of.seeds[i]}).boxes;
     PairCounter pairs;
-    finder->find(some, pairs);
+    const Statistics statistics = finder.find(some, pairs).value();
     const auto share = 1 / static_cast<double>(seeds);
-    cells.references += share * static_cast<double>(finder->statistics()->references);
-    cells.tests += share * static_cast<double>(finder->statistics()->tests);
-    cells.side += share * side_of<D>(*finder, some);
+    cells.references += share * static_cast<double>(statistics.references);
+    cells.tests += share * static_cast<double>(statistics.tests);
+    cells.side += share * side_of<D>(measured.algorithm, some);
   }
   return cells;
 }

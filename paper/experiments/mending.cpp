@@ -1,19 +1,22 @@
-// The paper's trackers on a history, frame by frame.
+// The paper's followers on a history, frame by frame.
 #include "paper/experiments/mending.hpp"
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/samples.hpp"
 #include "paper/experiments/laboratory.hpp"
-#include "paper/listings/coherent_tracker.hpp"
+#include "paper/listings/coherent_follower.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -55,19 +58,24 @@ std::vector<FrameEvents> expected_events(const History<D>& history) {
 template <int D>
 void play(const std::string& spec, const History<D>& history, const std::vector<FrameEvents>& expected,
           MendingCost& cost) {
-  const auto tracker = make_tracker<D>(spec);
-  const auto& coherent = dynamic_cast<const paper::CoherentTracker<D>&>(*tracker);
+  const Spec parsed(spec);
+  const Algorithm& algorithm = *find_algorithm(parsed.name);
+  std::unique_ptr<Follower<D>> follower =
+      algorithm.followers<D>().front().make(Settings(parsed, algorithm.tunables));
+  const auto& coherent = dynamic_cast<const paper::CoherentFollower<D>&>(*follower);
+  Tracker<D> tracker(std::move(follower));
   std::vector<Box<D>> boxes = history.boxes;
   FrameEvents events;
   PairCollector begun(events.begun);
   PairCollector ended(events.ended);
-  tracker->update({boxes, {}}, begun, ended);
+  tracker.update({boxes, {}}, begun, ended);
   for (std::size_t i = 0; i < history.steps.size(); ++i) {
     apply(history.steps[i], boxes);
     events.begun.clear();
     events.ended.clear();
     const Stopwatch watch;
-    tracker->update({boxes, history.steps[i].changed}, begun, ended);
+    const std::optional<Statistics> statistics =
+        tracker.update({boxes, history.steps[i].changed}, begun, ended);
     cost.frame.all.push_back(watch.milliseconds());
     const paper::UpdateParts& parts = coherent.parts();
     cost.detecting.all.push_back(parts.detecting_ms);
@@ -76,8 +84,7 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
     cost.moved += static_cast<double>(parts.moved);
     cost.visited += static_cast<double>(parts.visited);
     cost.movers += static_cast<double>(parts.movers);
-    cost.references +=
-        static_cast<double>(tracker->statistics()->references) / static_cast<double>(boxes.size());
+    cost.references += static_cast<double>(statistics.value().references) / static_cast<double>(boxes.size());
     if (events != expected[i])
       throw std::runtime_error(
           fmt::format("{}: events of frame {} are wrong; expected those of the library's "

@@ -3,30 +3,38 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "broadside/executor.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/searcher.hpp"
 
 namespace broadside::lab {
 namespace {
 
+/// A search of the library by its name.
 template <int D>
-class HeldBack final : public PairFinder<D> {
+std::unique_ptr<Searcher<D>> searcher_called(const std::string& name) {
+  const Algorithm& algorithm = *find_algorithm(name);
+  return algorithm.searcher<D>()(Settings(Spec(name), algorithm.tunables));
+}
+
+template <int D>
+class HeldBack final : public Searcher<D> {
  public:
   explicit HeldBack(const Settings& settings)
-      : instruction_set_(settings.text("simd")), finder_(make_finder<D>(settings.text("search"))) {}
+      : instruction_set_(settings.text("simd")), searcher_(searcher_called<D>(settings.text("search"))) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     limit_instruction_set(instruction_set_);
-    finder_->find(boxes, pairs);
+    const std::optional<Statistics> statistics = searcher_->search(input, pairs);
     limit_instruction_set("");
-    this->count(finder_->statistics().value_or(Statistics{}));
+    return statistics;
   }
 
+ private:
   std::string instruction_set_;
-  std::unique_ptr<PairFinder<D>> finder_;
+  std::unique_ptr<Searcher<D>> searcher_;
 };
 
 }  // namespace
@@ -45,8 +53,8 @@ Algorithm held_back() {
                         .standard = instruction_set(),
                         .type = Tunable::Type::choice,
                         .choices = instruction_sets()}},
-          .finder_2d = [](const Settings& settings) { return std::make_unique<HeldBack<2>>(settings); },
-          .finder_3d = [](const Settings& settings) { return std::make_unique<HeldBack<3>>(settings); }};
+          .searcher_2d = [](const Settings& settings) { return std::make_unique<HeldBack<2>>(settings); },
+          .searcher_3d = [](const Settings& settings) { return std::make_unique<HeldBack<3>>(settings); }};
 }
 
 Tunable switch_tunable(std::string name, std::string summary) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -103,15 +104,15 @@ class Tiler {
 };
 
 template <int D, typename Level>
-class PlainBvh final : public PairFinder<D> {
+class PlainBvh final : public Searcher<D> {
  public:
   explicit PlainBvh(const Settings& settings)
       : joins_(settings.text("join") == "yes"),
         branch_free_(settings.text("branch_free") == "yes"),
         tiler_(settings.text("buckets") == "yes") {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    const std::span<const Box<D>> boxes = input.boxes;
     tests_ = 0;
     if (!boxes.empty()) {
       pack(boxes);
@@ -125,9 +126,10 @@ class PlainBvh final : public PairFinder<D> {
         for (std::size_t place = 0; place < boxes.size(); ++place) query(place, level_count_ - 1, 0, pairs);
       }
     }
-    this->count({.tests = tests_, .references = boxes.size()});
+    return Statistics{.tests = tests_, .references = boxes.size()};
   }
 
+ private:
   /// Level 0 holds the boxes; each level after it bounds sixteen of the one before. The last one has at most
   /// sixteen.
   void pack(std::span<const Box<D>> boxes) {
@@ -237,7 +239,7 @@ class PlainBvh final : public PairFinder<D> {
 };
 
 template <int D>
-std::unique_ptr<PairFinder<D>> make_plain_bvh(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make_plain_bvh(const Settings& settings) {
   if (settings.text("arrays") == "yes") return std::make_unique<PlainBvh<D, ArrayLevel<D>>>(settings);
   return std::make_unique<PlainBvh<D, BoxLevel<D>>>(settings);
 }
@@ -253,8 +255,8 @@ Algorithm plain_bvh() {
                    switch_tunable("join", "whether the tree is joined with itself, or asked for each box"),
                    switch_tunable("arrays", "whether a level of the tree is an array for each bound"),
                    switch_tunable("branch_free", "whether hits are written without a branch")},
-      .finder_2d = make_plain_bvh<2>,
-      .finder_3d = make_plain_bvh<3>,
+      .searcher_2d = make_plain_bvh<2>,
+      .searcher_3d = make_plain_bvh<3>,
       .infinite_boxes = false};
 }
 

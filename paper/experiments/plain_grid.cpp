@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -102,7 +103,7 @@ struct BoundArrays {
 };
 
 template <int D>
-class PlainGrid final : public PairFinder<D> {
+class PlainGrid final : public Searcher<D> {
  public:
   explicit PlainGrid(const Settings& settings)
       : samples_(settings.text("sample") == "yes"),
@@ -111,14 +112,11 @@ class PlainGrid final : public PairFinder<D> {
         uses_arrays_(settings.text("arrays") == "yes"),
         branch_free_(settings.text("branch_free") == "yes") {}
 
- private:
-  using Entry = CellEntry<D>;
-
-  void find_valid(std::span<const Box<D>> boxes, PairSink& pairs) override {
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     statistics_ = {};
-    if (!boxes.empty()) {
-      choose_cells(boxes);
-      insert(boxes);
+    if (!input.boxes.empty()) {
+      choose_cells(input.boxes);
+      insert(input.boxes);
       up_.resize(columns_.count);
       for (std::vector<Entry>& list : up_) list.clear();
       for (std::size_t cell = 0; cell + 1 < begin_.size(); ++cell) {
@@ -126,8 +124,11 @@ class PlainGrid final : public PairFinder<D> {
         sweep(pairs);
       }
     }
-    this->count(statistics_);
+    return statistics_;
   }
+
+ private:
+  using Entry = CellEntry<D>;
 
   void choose_cells(std::span<const Box<D>> boxes) {
     shape_ = shape_of(boxes, samples_);
@@ -300,8 +301,8 @@ Algorithm plain_grid() {
                    switch_tunable("buckets", "whether a cell's boxes are ordered by a counting sort"),
                    switch_tunable("arrays", "whether a cell's boxes are an array for each bound"),
                    switch_tunable("branch_free", "whether pairs are written without a branch")},
-      .finder_2d = [](const Settings& settings) { return std::make_unique<PlainGrid<2>>(settings); },
-      .finder_3d = [](const Settings& settings) { return std::make_unique<PlainGrid<3>>(settings); },
+      .searcher_2d = [](const Settings& settings) { return std::make_unique<PlainGrid<2>>(settings); },
+      .searcher_3d = [](const Settings& settings) { return std::make_unique<PlainGrid<3>>(settings); },
       .infinite_boxes = false};
 }
 

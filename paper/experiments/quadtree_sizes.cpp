@@ -43,7 +43,7 @@ Box2 square_box(double size, std::size_t side, Random& random) {
 }
 
 /// How many leaves the last of the boxes is in, by the references of a tree with and without it.
-double leaves_of_last(PairFinder<2>& finder, const std::vector<Box2>& boxes) {
+double leaves_of_last(Finder<2>& finder, const std::vector<Box2>& boxes) {
   std::vector<Pair> found;
   std::vector<Pair> expected;
   const auto last = BoxId(boxes.size() - 1);
@@ -51,11 +51,11 @@ double leaves_of_last(PairFinder<2>& finder, const std::vector<Box2>& boxes) {
     if (overlap(boxes[i], boxes.back())) expected.push_back({BoxId(i), last});
   }
   PairCollector collector(found);
-  finder.find(boxes, collector);
+  const Statistics statistics = finder.find(boxes, collector).value();
   if (const auto divergence = compare_pairs(found, expected))
     throw std::runtime_error("paper_quadtree: " + divergence->text);
   // Each of the small boxes is in one leaf.
-  return static_cast<double>(finder.statistics()->references) - static_cast<double>(boxes.size() - 1);
+  return static_cast<double>(statistics.references) - static_cast<double>(boxes.size() - 1);
 }
 
 Table measure_levels(const Laboratory& laboratory) {
@@ -84,13 +84,13 @@ Table measure_levels(const Laboratory& laboratory) {
     for (std::size_t leaf = side / 4; leaf >= 1; leaf /= 2, ++levels) {
       laboratory.at(fmt::format("quadtree_sizes: a box of {} units in leaves of {}", size, leaf));
       // Two boxes for each that a leaf holds: another one does not make it split.
-      const auto finder = make_finder<2>(fmt::format(
-          "paper_quadtree:capacity={0}:left=0:top=0:width={1}:height={1}", 2 * leaf * leaf, side));
+      Finder<2> finder(fmt::format("paper_quadtree:capacity={0}:left=0:top=0:width={1}:height={1}",
+                                   2 * leaf * leaf, side));
       double leaves = 0;
       for (std::size_t place = 0; place < places; ++place) {
         Random there(1 + place);
         boxes.back() = square_box(size, side, there);
-        leaves += leaves_of_last(*finder, boxes) / static_cast<double>(places);
+        leaves += leaves_of_last(finder, boxes) / static_cast<double>(places);
       }
       const auto length = static_cast<double>(leaf);
       table.add({fmt::format("{} units", size), size, static_cast<double>(levels), length, leaves,
